@@ -1,0 +1,215 @@
+// The spec as written: one plain struct a construct, each with its span. Names are not resolved, nothing is checked.
+// Takes: what parse/ saw. Gives: check/ its input, and `--emit ast` its text.
+// Keeps true: declarations stand in file order; && and || are n-ary, so a long chain is not a deep tree.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "source/source.hpp"
+
+namespace etlc::ast {
+
+using source::Span;
+
+struct Name {
+    std::string text;
+    Span span;
+};
+
+/// A decimal number, kept as its exact text: it rounds once, where it is used.
+struct Number {
+    std::string text;  ///< with a leading '-' where it was negated; or "inf", "-inf" (bounds and ranges only)
+    Span span;
+};
+
+// ---- expressions: EXPR ---------------------------------------------------------------------------------------------
+
+struct MatrixLiteral {
+    std::vector<std::vector<Number>> rows;
+    Span span;
+};
+
+/// load("file.npy") or load("file.npz", "key")
+struct Load {
+    std::string path;
+    std::string key;  ///< empty: none given
+    Span path_span;
+    Span key_span;
+    Span span;
+};
+
+/// [1, 2, 3]: the diagonal of a weight matrix.
+struct VectorLiteral {
+    std::vector<Number> values;
+    Span span;
+};
+
+/// W of mahalanobis(W): loaded, a literal matrix or diagonal, or the name of a target.
+using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Name>;
+
+struct Aggregation {
+    enum class Kind : std::uint8_t { min, max, mean, kth };
+    Kind kind = Kind::min;
+    std::optional<Number> n;  ///< of kth(n)
+    Span span;
+};
+
+/// AGG DIST(point, target)
+struct Distance {
+    std::optional<Aggregation> aggregation;
+    Name metric;  ///< l2, l2sq, l1, linf, cosine, angular, mahalanobis; its span is the word's
+    std::optional<Weights> weights;
+    std::vector<Name> point;     ///< one embedding input, or the scalars of a vector [px, py]
+    bool point_is_vector = false;///< written with brackets
+    Span point_span;
+    Name target;
+    Span span;
+};
+
+struct Expr;
+using ExprPtr = std::unique_ptr<Expr>;
+
+struct Expr {
+    enum class Kind : std::uint8_t { number, name, distance, negate, add, subtract, multiply, divide, abs, sqrt, min, max };
+    Kind kind = Kind::number;
+    std::string text;                   ///< number: its digits; name: the input
+    std::unique_ptr<Distance> distance; ///< kind distance
+    std::vector<ExprPtr> arguments;     ///< operands, in order; add and multiply etc. are binary, left-associated
+    Span span;
+};
+
+// ---- formulas ------------------------------------------------------------------------------------------------------
+
+enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
+
+/// One bound of an interval: steps, a duration, or inf.
+struct Bound {
+    Number number;
+    std::string unit;  ///< "", "us", "ms", "s", "min"
+    Span span;
+};
+
+struct Interval {
+    Bound low;
+    Bound high;
+    Span span;
+};
+
+struct Formula;
+using FormulaPtr = std::unique_ptr<Formula>;
+
+struct Formula {
+    enum class Kind : std::uint8_t {
+        constant_true, constant_false, name, comparison,
+        negation, conjunction, disjunction, implication, equivalence,
+        next, eventually, always, until, weak_until, release,
+        previous, once, historically, since,
+    };
+    Kind kind = Kind::constant_true;
+    std::string name;                  ///< kind name
+    std::vector<FormulaPtr> operands;  ///< conjunction and disjunction: two or more; implication etc.: left, right
+    std::optional<Interval> interval;
+    ExprPtr left;                      ///< comparison: EXPR CMP NUMBER
+    Comparison comparison = Comparison::less_equal;
+    Number right;
+    Span operator_span;                ///< of the operator's own word or symbol
+    Span span;
+};
+
+// ---- declarations --------------------------------------------------------------------------------------------------
+
+struct Rate {
+    Number number;
+    bool is_period = false;  ///< period N ms; else rate N Hz
+    std::string unit;        ///< "Hz", or "us", "ms", "s", "min"
+    Span span;
+};
+
+struct Type {
+    enum class Kind : std::uint8_t { f32, f16, i8, boolean };
+    Kind kind = Kind::f32;
+    std::optional<Number> dimension;  ///< [D]
+    std::optional<Number> scale;      ///< i8[D] scale S
+    Span span;
+};
+
+struct Range {
+    Number low;
+    Number high;
+    Span span;
+};
+
+struct Input {
+    std::vector<Name> names;
+    Type type;
+    std::optional<Range> range;
+    std::optional<Number> hold;
+    Span span;
+};
+
+struct Target {
+    Name name;
+    std::variant<Load, MatrixLiteral, VectorLiteral> value;  ///< a VectorLiteral is an error that check/ explains
+    Span span;
+};
+
+/// calibrated(METHOD, key = value, ...)
+struct Calibrated {
+    struct Argument {
+        Name key;
+        std::variant<Number, Name> value;
+    };
+    Name method;
+    std::vector<Argument> arguments;
+    Span span;
+};
+
+struct Predicate {
+    Name name;
+    ExprPtr expression;
+    Comparison comparison = Comparison::less_equal;
+    std::variant<Number, Calibrated> threshold;
+    Span span;
+};
+
+struct Truth {
+    Name predicate;
+    FormulaPtr formula;
+    Span span;
+};
+
+struct Let {
+    Name name;
+    FormulaPtr formula;
+    Span span;
+};
+
+struct Monitor {
+    Name name;
+    FormulaPtr formula;
+    bool sliding = false;
+    std::optional<Calibrated> calibrated;
+    Span span;
+};
+
+using Declaration = std::variant<Rate, Input, Target, Predicate, Truth, Let, Monitor>;
+
+struct Spec {
+    Name name;  ///< empty text: missing or unreadable, already reported
+    std::vector<Declaration> declarations;
+    /// Names of declarations that could not be read. check/ takes them as declared, so that one broken line does not
+    /// make every use of its name an error too.
+    std::vector<Name> unreadable;
+};
+
+/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again gives the same tree.
+std::string print(const Spec& spec);
+std::string print(const Formula& formula);
+std::string print(const Expr& expression);
+
+}  // namespace etlc::ast

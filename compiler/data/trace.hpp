@@ -1,0 +1,42 @@
+// Recorded traces and episodes, read a step at a time.
+// Takes: the columns wanted and a file (.npz or .csv). Gives: one sample a step, missing ones marked.
+// Keeps true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a buffer is held).
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "diag/diag.hpp"
+
+namespace etlc::data {
+
+/// One column group of a trace: a scalar (`width` 1, written `name`), an embedding (`name[0]`, `name[1]`, ... in CSV,
+/// an array T x width in NPZ) or a bool (0/1, or a bool array).
+struct Channel {
+    enum class Kind : std::uint8_t { scalar, boolean, vector };
+    std::string name;
+    Kind kind = Kind::scalar;
+    std::uint32_t width = 1;
+};
+
+/// One step of all channels. Values keep the file's precision; narrowing them is the reader's user's business.
+struct Sample {
+    std::vector<std::vector<double>> values;  ///< per channel, `width` numbers; NaN where the cell was not finite
+    std::vector<bool> present;                ///< per channel: false for an empty cell or a partly empty vector
+};
+
+class Trace {
+public:
+    virtual ~Trace() = default;
+    /// Reads the next step into `sample`; false at the end of the trace.
+    virtual diag::Result<bool> next(Sample& sample) = 0;
+    /// Number of steps where the file tells it beforehand, else 0: for progress.
+    virtual std::uint64_t length() const { return 0; }
+};
+
+/// Opens a trace. Every channel must be there; extra columns and arrays are ignored.
+diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);
+
+}  // namespace etlc::data

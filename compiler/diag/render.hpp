@@ -1,0 +1,21 @@
+// Diagnostics as text with carets, and as JSON.
+// Takes: the spec's file and a sink. Gives: `spec.etl:12:24: error: ... [E0204]`, the source line, a caret under the
+// span, then notes; or one JSON array. Keeps true: the same findings give the same bytes.
+#pragma once
+
+#include <string>
+
+#include "diag/diag.hpp"
+
+namespace etlc::diag {
+
+struct RenderOptions {
+    bool colour = false;             ///< ANSI colours, for terminals
+    bool warnings_as_errors = false; ///< -Werror: say "error" for warnings
+};
+
+std::string render_text(const source::File& spec, const Sink& sink, RenderOptions options = {});
+/// {"diagnostics": [{"code", "severity", "message", "file", "line", "column", "end_line", "end_column", "notes"}]}
+std::string render_json(const source::File& spec, const Sink& sink, RenderOptions options = {});
+
+}  // namespace etlc::diag

@@ -1,0 +1,48 @@
+// Brute-force semantics straight from docs/language.md: the judge in tests.
+// Takes: the typed spec and a whole trace. Gives: every verdict. Keeps true: shares nothing with ir/ and below and no
+// arithmetic with the runtime; distances are computed in double; clarity before speed (memoised recursion per prefix).
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "check/model.hpp"
+
+namespace etlc::reference {
+
+/// One step of a trace: per input of the model, its numbers; empty where the sample is missing.
+/// A bool is 0 or 1; an f16 or i8 embedding holds its real values.
+using Step = std::vector<std::vector<double>>;
+using Trace = std::vector<Step>;
+
+enum class Status : std::uint8_t { satisfied, violated, unknown, undecided };
+
+struct Verdict {
+    Status status = Status::undecided;
+    bool final = false;
+    double lower = 0;
+    double robustness = 0;
+    double robustness_high = 0;  ///< rho with unknown literals at the high end of their range
+    double upper = 0;
+};
+
+struct Telemetry {
+    double delta = 0;            ///< NaN where the predicate is unknown
+    std::uint32_t nearest = 0;   ///< row of the nearest target, for plain distances
+};
+
+struct Run {
+    /// verdicts[step][monitor], as after `step` steps have been seen.
+    std::vector<std::vector<Verdict>> verdicts;
+    /// finish[call][monitor]: the calls of finish() after the trace, as many as the largest horizon.
+    std::vector<std::vector<Verdict>> finish;
+    /// telemetry[step][predicate]
+    std::vector<std::vector<Telemetry>> telemetry;
+    /// Steps that lacked an input some monitor depends on, after hold.
+    std::uint32_t missing_steps = 0;
+};
+
+Run evaluate(const check::Model& model, const Trace& trace);
+
+}  // namespace etlc::reference
