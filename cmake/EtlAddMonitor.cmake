@@ -1,0 +1,117 @@
+# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name] [STANDALONE])
+#
+# Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of TARGET then include by that name.
+#   TARGET      an executable or a library made in this directory; it may have several monitors
+#   SPEC        the .etl file
+#   THRESHOLDS  the thresholds file (default: SPEC.thresholds.json beside the spec, where it exists)
+#   VALUES      robustness (default) or boolean
+#   NAMESPACE   of the generated code (default: the name after `spec`)
+#   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon
+# Relative paths are relative to the current source directory. The header lies in the build folder and is made anew when the spec,
+# a file that the spec loads, the thresholds or etlc itself change. Of a library, the header and the runtime are public.
+# Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for the others).
+cmake_policy(PUSH)
+cmake_policy(VERSION 3.20)
+
+function(etlc_add_monitor target)
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;VALUES;NAMESPACE" "")
+  set(call "etlc_add_monitor(${target})")
+
+  if(arg_UNPARSED_ARGUMENTS)
+    list(JOIN arg_UNPARSED_ARGUMENTS " " unknown)
+    message(FATAL_ERROR "${call}: unknown arguments: ${unknown}")
+  endif()
+  if(arg_KEYWORDS_MISSING_VALUES)
+    list(JOIN arg_KEYWORDS_MISSING_VALUES " " valueless)
+    message(FATAL_ERROR "${call}: no value after: ${valueless}")
+  endif()
+  if(NOT arg_SPEC)
+    message(FATAL_ERROR "${call}: SPEC is missing")
+  endif()
+  if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
+    message(FATAL_ERROR "${call}: VALUES is robustness or boolean, not ${arg_VALUES}")
+  endif()
+  if(arg_NAMESPACE AND NOT arg_NAMESPACE MATCHES "^[A-Za-z_][A-Za-z0-9_]*(::[A-Za-z_][A-Za-z0-9_]*)*$")
+    message(FATAL_ERROR "${call}: NAMESPACE ${arg_NAMESPACE} is not a C++ namespace")
+  endif()
+  __etlc_check_target("${call}" "${target}")
+  __etlc_input("${call}" SPEC "${arg_SPEC}" spec)
+
+  get_filename_component(stem "${spec}" NAME_WLE)
+  set(folder "${CMAKE_CURRENT_BINARY_DIR}/etlc/${target}")
+  set(header "${folder}/${stem}.hpp")
+  get_target_property(monitors ${target} ETLC_MONITORS)
+  if("${stem}" IN_LIST monitors)
+    message(FATAL_ERROR "${call}: there is a monitor ${stem}.hpp already: name one of the two specs otherwise")
+  endif()
+  set_property(TARGET ${target} APPEND PROPERTY ETLC_MONITORS "${stem}")
+
+  set(options)
+  set(depends "${spec}")
+  if(arg_THRESHOLDS)
+    __etlc_input("${call}" THRESHOLDS "${arg_THRESHOLDS}" thresholds)
+    list(APPEND options --thresholds "${thresholds}")
+    list(APPEND depends "${thresholds}")
+  endif()
+  if(arg_VALUES)
+    list(APPEND options --values ${arg_VALUES})
+  endif()
+  if(arg_NAMESPACE)
+    list(APPEND options --namespace ${arg_NAMESPACE})
+  endif()
+  if(arg_STANDALONE)
+    list(APPEND options --standalone)
+  endif()
+
+  file(MAKE_DIRECTORY "${folder}")
+  add_custom_command(
+    OUTPUT "${header}"
+    COMMAND etlc::etlc "${spec}" -o "${header}" --depfile "${header}.d" ${options}
+    DEPENDS ${depends} etlc::etlc
+    DEPFILE "${header}.d"
+    COMMENT "Compiling ${stem}.etl to ${stem}.hpp"
+    VERBATIM)
+
+  get_target_property(type ${target} TYPE)
+  if(type STREQUAL "EXECUTABLE")
+    set(scope PRIVATE)
+  else()
+    set(scope PUBLIC)
+  endif()
+  target_sources(${target} PRIVATE "${header}")
+  target_include_directories(${target} ${scope} "$<BUILD_INTERFACE:${folder}>")
+  if(arg_STANDALONE)
+    target_compile_features(${target} ${scope} cxx_std_17)
+  else()
+    target_link_libraries(${target} ${scope} etlmon::etlmon)
+  endif()
+endfunction()
+
+# Stops unless `target` is one that sources can be added to.
+function(__etlc_check_target call target)
+  if(NOT TARGET ${target})
+    message(FATAL_ERROR "${call}: there is no target ${target}: call add_executable or add_library first")
+  endif()
+  get_target_property(aliased ${target} ALIASED_TARGET)
+  get_target_property(imported ${target} IMPORTED)
+  get_target_property(type ${target} TYPE)
+  if(aliased OR imported OR NOT type MATCHES "^(EXECUTABLE|(STATIC|SHARED|MODULE|OBJECT)_LIBRARY)$")
+    message(FATAL_ERROR "${call}: ${target} is neither an executable nor a library that compiles sources")
+  endif()
+  get_target_property(home ${target} SOURCE_DIR)
+  if(NOT home STREQUAL CMAKE_CURRENT_SOURCE_DIR)
+    message(FATAL_ERROR "${call}: ${target} was made in ${home}: call this there, since a build rule belongs to its directory")
+  endif()
+endfunction()
+
+# The absolute path of a file that exists or that the build makes.
+function(__etlc_input call keyword path result)
+  get_filename_component(absolute "${path}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
+  get_source_file_property(generated "${absolute}" GENERATED)
+  if(NOT generated AND (NOT EXISTS "${absolute}" OR IS_DIRECTORY "${absolute}"))
+    message(FATAL_ERROR "${call}: ${keyword} ${path}: there is no such file: ${absolute}")
+  endif()
+  set(${result} "${absolute}" PARENT_SCOPE)
+endfunction()
+
+cmake_policy(POP)
