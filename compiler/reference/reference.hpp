@@ -28,8 +28,8 @@ struct Verdict {
 };
 
 struct Telemetry {
-    double delta = 0;            ///< NaN where the predicate is unknown
-    std::uint32_t nearest = 0;   ///< row of the nearest target, for plain distances
+    double delta = 0;           ///< NaN where the predicate is unknown
+    std::uint32_t nearest = 0;  ///< row of the nearest target, for plain distances
 };
 
 struct Run {
@@ -39,7 +39,7 @@ struct Run {
     std::vector<std::vector<Verdict>> finish;
     /// telemetry[step][predicate]
     std::vector<std::vector<Telemetry>> telemetry;
-    /// Steps that lacked an input some monitor depends on, after hold.
+    /// Steps on which some predicate or bool that a monitor names was unknown, after hold.
     std::uint32_t missing_steps = 0;
 };
 

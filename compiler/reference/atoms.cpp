@@ -1,0 +1,94 @@
+#include "reference/atoms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace etlc::reference {
+namespace {
+
+using check::Expr;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+/// "a sample with any element not finite, or a scalar outside its declared range, counts as missing".
+/// The range is a range of float32 values, so the sample is narrowed first.
+bool valid(const check::Input& input, const std::vector<float>& sample) {
+    for (const float element : sample) {
+        if (!std::isfinite(element)) return false;
+        if (input.has_range && (element < input.range.low || element > input.range.high)) return false;
+    }
+    return true;
+}
+
+/// Arithmetic in double; a NaN anywhere below makes the whole expression NaN, also through min and max.
+double evaluate(const check::Model& model, const Expr& expr, const Samples& samples) {
+    std::vector<double> a;
+    for (const Expr& argument : expr.arguments) {
+        a.push_back(evaluate(model, argument, samples));
+        if (std::isnan(a.back())) return kUnknown;
+    }
+    switch (expr.kind) {
+        case Expr::Kind::number:
+            return expr.number32;
+        case Expr::Kind::scalar:
+            return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
+        case Expr::Kind::distance:
+            return distance(model, model.distances[expr.index], samples).delta.value_or(kUnknown);
+        case Expr::Kind::negate:
+            return -a[0];
+        case Expr::Kind::add:
+            return a[0] + a[1];
+        case Expr::Kind::subtract:
+            return a[0] - a[1];
+        case Expr::Kind::multiply:
+            return a[0] * a[1];
+        case Expr::Kind::divide:
+            return a[0] / a[1];
+        case Expr::Kind::abs:
+            return std::abs(a[0]);
+        case Expr::Kind::sqrt:
+            return std::sqrt(a[0]);
+        case Expr::Kind::min:
+            return *std::min_element(a.begin(), a.end());
+        case Expr::Kind::max:
+            return *std::max_element(a.begin(), a.end());
+    }
+    return kUnknown;
+}
+
+}  // namespace
+
+std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
+    std::vector<Samples> result;
+    std::vector<std::vector<float>> last(model.inputs.size());  // the last present sample
+    std::vector<std::uint32_t> held(model.inputs.size(), 0);    // steps in a row that it has stood in
+    for (const Step& step : trace) {
+        Samples samples(model.inputs.size());
+        for (std::size_t n = 0; n < model.inputs.size(); ++n) {
+            for (const double element : step[n]) samples[n].push_back(static_cast<float>(element));
+            if (!samples[n].empty() && valid(model.inputs[n], samples[n])) {
+                last[n] = samples[n];
+                held[n] = 0;
+            } else {
+                // "where a sample is missing, the last one present stands in for at most N steps in a row"
+                samples[n].clear();
+                if (held[n] < model.inputs[n].hold) {
+                    ++held[n];
+                    samples[n] = last[n];
+                }
+            }
+        }
+        result.push_back(std::move(samples));
+    }
+    return result;
+}
+
+Measurement measure(const check::Model& model, const check::Predicate& predicate, const Samples& samples) {
+    if (predicate.plain_distance()) return distance(model, model.distances[predicate.expression.index], samples);
+    const double delta = evaluate(model, predicate.expression, samples);
+    if (std::isnan(delta)) return {};
+    return {delta, 0};
+}
+
+}  // namespace etlc::reference

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "reference/atoms.hpp"
+
+namespace etlc::reference {
+namespace {
+
+using check::Aggregation;
+using check::Index;
+using check::Metric;
+using Vector = std::vector<double>;
+
+double dot(const Vector& a, const Vector& b) {
+    return std::inner_product(a.begin(), a.end(), b.begin(), 0.0);
+}
+
+double norm(const Vector& a) {
+    return std::sqrt(dot(a, a));
+}
+
+Vector difference(const Vector& a, const Vector& b) {
+    Vector result(a.size());
+    for (std::size_t n = 0; n < a.size(); ++n) result[n] = a[n] - b[n];
+    return result;
+}
+
+Vector unit(const Vector& a) {
+    Vector result = a;
+    for (double& element : result) element /= norm(a);
+    return result;
+}
+
+double l1(const Vector& a) {
+    double sum = 0;
+    for (const double element : a) sum += std::abs(element);
+    return sum;
+}
+
+double linf(const Vector& a) {
+    double largest = 0;
+    for (const double element : a) largest = std::max(largest, std::abs(element));
+    return largest;
+}
+
+/// 1 - cosine similarity, in [0, 2].
+double cosine(const Vector& a, const Vector& b) {
+    return std::clamp(1.0 - dot(a, b) / (norm(a) * norm(b)), 0.0, 2.0);
+}
+
+/// The angle between a and b in [0, pi], as 2 atan2(|u - v|, |u + v|) of the unit vectors (Kahan): acos of the cosine
+/// similarity loses half the digits near 0 and pi.
+double angular(const Vector& a, const Vector& b) {
+    const Vector u = unit(a);
+    const Vector v = unit(b);
+    Vector sum(u.size());
+    for (std::size_t n = 0; n < u.size(); ++n) sum[n] = u[n] + v[n];
+    return 2.0 * std::atan2(norm(difference(u, v)), norm(sum));
+}
+
+/// sqrt(d' W d)
+double mahalanobis(const Vector& d, const check::Distance& distance) {
+    double sum = 0;
+    for (std::size_t row = 0; row < d.size(); ++row) {
+        if (distance.weights_diagonal) {
+            sum += d[row] * distance.weights[row] * d[row];
+            continue;
+        }
+        for (std::size_t column = 0; column < d.size(); ++column)
+            sum += d[row] * distance.weights[row * d.size() + column] * d[column];
+    }
+    return std::sqrt(std::max(sum, 0.0));
+}
+
+double between(const check::Distance& distance, const Vector& point, const Vector& target) {
+    const Vector d = difference(point, target);
+    switch (distance.metric) {
+        case Metric::l2:
+            return norm(d);
+        case Metric::l2sq:
+            return dot(d, d);
+        case Metric::l1:
+            return l1(d);
+        case Metric::linf:
+            return linf(d);
+        case Metric::cosine:
+            return cosine(point, target);
+        case Metric::angular:
+            return angular(point, target);
+        case Metric::mahalanobis:
+            return mahalanobis(d, distance);
+    }
+    return std::nan("");
+}
+
+double aggregate(const check::Distance& distance, Vector distances) {
+    std::sort(distances.begin(), distances.end());
+    switch (distance.aggregation) {
+        case Aggregation::min:
+            return distances.front();
+        case Aggregation::max:
+            return distances.back();
+        case Aggregation::mean:
+            return std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
+        case Aggregation::kth:
+            return distances[distance.kth - 1];  // "the n-th smallest distance, from 1"
+    }
+    return std::nan("");
+}
+
+/// The embedding, or the scalars of a vector in order; empty where any of them is missing.
+Vector point_of(const check::Distance& distance, const Samples& samples) {
+    Vector point;
+    for (const Index input : distance.point) {
+        if (samples[input].empty()) return {};
+        point.insert(point.end(), samples[input].begin(), samples[input].end());
+    }
+    return point;
+}
+
+bool is_zero(const Vector& point) {
+    return std::all_of(point.begin(), point.end(), [](double element) { return element == 0; });
+}
+
+}  // namespace
+
+Measurement distance(const check::Model& model, const check::Distance& distance, const Samples& samples) {
+    const Vector point = point_of(distance, samples);
+    if (point.empty()) return {};
+    const bool needs_direction = distance.metric == Metric::cosine || distance.metric == Metric::angular;
+    if (needs_direction && is_zero(point)) return {};
+
+    const check::Target& target = model.targets[distance.target];
+    Vector distances;
+    for (std::uint32_t row = 0; row < target.rows; ++row) {
+        const float* begin = target.values.data() + std::size_t{row} * target.dimension;
+        distances.push_back(between(distance, point, Vector(begin, begin + target.dimension)));
+    }
+    const auto nearest = std::min_element(distances.begin(), distances.end()) - distances.begin();
+    return {aggregate(distance, distances), static_cast<std::uint32_t>(nearest)};
+}
+
+}  // namespace etlc::reference

@@ -1,0 +1,167 @@
+#include <algorithm>
+#include <limits>
+
+#include "reference/atoms.hpp"
+#include "reference/normal_form.hpp"
+#include "reference/prefix.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::reference {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+Unseen negate(const Unseen& range) {
+    return {-range.highest, -range.lowest};
+}
+
+/// "for a predicate its range [...]"; "a bool has robustness +inf or -inf".
+Unseen range_of(const check::Model& model, const Node& atom) {
+    Unseen range{-kInfinity, kInfinity};
+    if (atom.kind == Node::Kind::predicate) {
+        const check::Range& robustness = model.predicates[atom.index].robustness;
+        range = {robustness.low, robustness.high};
+    }
+    return atom.negated ? negate(range) : range;
+}
+
+/// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is unknown.
+std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
+                             const std::vector<Telemetry>& telemetry) {
+    if (atom.kind == Node::Kind::boolean) {
+        if (samples[atom.index].empty()) return {};
+        return samples[atom.index][0] != 0 ? kInfinity : -kInfinity;
+    }
+    const check::Predicate& predicate = model.predicates[atom.index];
+    const double delta = telemetry[atom.index].delta;
+    const double epsilon = predicate.threshold.value;
+    if (delta != delta) return {};
+    return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
+}
+
+/// The literal's four numbers: "with known samples (v, v)"; "its literal contributes (low, low, high, high) of its
+/// range".
+Value literal(std::optional<double> rho, bool negated, const Unseen& range) {
+    if (!rho) return {range.lowest, range.lowest, range.highest, range.highest};
+    const double v = negated ? -*rho : *rho;
+    return {v, v, v, v};
+}
+
+Verdict verdict(const Value& value) {
+    Verdict result;
+    result.lower = value.lower;
+    result.robustness = value.rho;
+    result.robustness_high = value.rho_high;
+    result.upper = value.upper;
+    // "satisfied where rho >= 0, violated where rho_high < 0, else unknown"
+    result.status = value.rho >= 0 ? Status::satisfied : value.rho_high < 0 ? Status::violated : Status::unknown;
+    return result;
+}
+
+Verdict prefix_verdict(const Value& value) {
+    Verdict result = verdict(value);
+    result.final = value.lower >= 0 || value.upper < 0;
+    return result;
+}
+
+/// "A sliding verdict has lower = rho, upper = rho_high"; it is about a position that no later step changes.
+Verdict sliding_verdict(const Value& value) {
+    Verdict result = verdict({value.rho, value.rho, value.rho_high, value.rho_high});
+    result.final = true;
+    return result;
+}
+
+class Evaluation {
+public:
+    Evaluation(const check::Model& model, const Trace& trace)
+        : model_(model), form_(normal_form(model)), samples_(accept(model, trace)) {
+        for (const check::Monitor& monitor : model.monitors)
+            horizons_.push_back(monitor.sliding ? horizon(model, monitor.formula) : 0);
+    }
+
+    Run run() {
+        measure_all();
+        fill_literals();
+        for (std::uint64_t i = 0; i < samples_.size(); ++i) run_.verdicts.push_back(after(i));
+        finish();
+        return std::move(run_);
+    }
+
+private:
+    const check::Model& model_;
+    NormalForm form_;
+    std::vector<Samples> samples_;
+    std::vector<std::uint64_t> horizons_;
+    Literals literals_;
+    Run run_;
+
+    void measure_all() {
+        for (const Samples& samples : samples_) {
+            std::vector<Telemetry> step;
+            for (const check::Predicate& predicate : model_.predicates) {
+                const Measurement m = measure(model_, predicate, samples);
+                step.push_back({m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
+            }
+            run_.telemetry.push_back(std::move(step));
+        }
+    }
+
+    void fill_literals() {
+        literals_.values.resize(form_.nodes.size());
+        literals_.ranges.resize(form_.nodes.size());
+        std::vector<bool> lacking(samples_.size(), false);
+        for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
+            const Node& node = form_.nodes[n];
+            if (!node.is_atom()) continue;
+            literals_.ranges[n] = range_of(model_, node);
+            for (std::size_t step = 0; step < samples_.size(); ++step) {
+                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step]);
+                literals_.values[n].push_back(literal(rho, node.negated, literals_.ranges[n]));
+                if (!rho) lacking[step] = true;
+            }
+        }
+        run_.missing_steps = static_cast<std::uint32_t>(std::count(lacking.begin(), lacking.end(), true));
+    }
+
+    std::vector<Verdict> after(std::uint64_t i) {
+        Prefix prefix(form_, literals_, i);
+        std::vector<Verdict> result;
+        for (std::size_t n = 0; n < model_.monitors.size(); ++n) {
+            const std::uint64_t h = horizons_[n];
+            if (!model_.monitors[n].sliding)
+                result.push_back(prefix_verdict(prefix.at(form_.roots[n], 0)));  // rho(f, 0, i)
+            else if (i >= h)
+                result.push_back(sliding_verdict(prefix.at(form_.roots[n], i - h)));  // rho(f, i-h, i)
+            else
+                result.push_back({});  // "for i < h it is undecided"
+        }
+        return result;
+    }
+
+    /// "`finish()` reports the last h positions, cut at the end of the trace, one per call". Positions before 0 and
+    /// calls after a monitor's last position are undecided; a prefix monitor repeats its last verdict.
+    void finish() {
+        if (samples_.empty() || horizons_.empty()) return;
+        const std::uint64_t length = samples_.size();
+        Prefix prefix(form_, literals_, length - 1);
+        const std::uint64_t calls = *std::max_element(horizons_.begin(), horizons_.end());
+        for (std::uint64_t call = 0; call < calls; ++call) {
+            std::vector<Verdict> result = run_.verdicts.back();
+            for (std::size_t n = 0; n < model_.monitors.size(); ++n) {
+                if (!model_.monitors[n].sliding) continue;
+                const std::uint64_t h = horizons_[n];
+                const bool has_position = call < h && length + call >= h;
+                result[n] = has_position ? sliding_verdict(prefix.at(form_.roots[n], length - h + call)) : Verdict{};
+            }
+            run_.finish.push_back(std::move(result));
+        }
+    }
+};
+
+}  // namespace
+
+Run evaluate(const check::Model& model, const Trace& trace) {
+    return Evaluation(model, trace).run();
+}
+
+}  // namespace etlc::reference

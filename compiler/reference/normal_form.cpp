@@ -1,0 +1,156 @@
+#include "reference/normal_form.hpp"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+namespace etlc::reference {
+namespace {
+
+using check::Formula;
+using FormulaKind = Formula::Kind;
+using NodeKind = Node::Kind;
+
+class Builder {
+public:
+    explicit Builder(const check::Model& model) : model_(model) {}
+
+    Index build(Index formula, bool negated) {
+        const auto key = std::pair(formula, negated);
+        if (const auto found = made_.find(key); found != made_.end()) return found->second;
+        const Index node = make(model_.formulas[formula], negated);
+        made_.emplace(key, node);
+        return node;
+    }
+
+    std::vector<Node> take() { return std::move(nodes_); }
+
+private:
+    const check::Model& model_;
+    std::vector<Node> nodes_;
+    std::map<std::pair<Index, bool>, Index> made_;
+
+    Index add(Node node) {
+        nodes_.push_back(std::move(node));
+        return static_cast<Index>(nodes_.size() - 1);
+    }
+
+    Index literal(NodeKind kind, bool negated, Index index = 0) {
+        return add({.kind = kind, .negated = negated, .index = index, .operands = {}});
+    }
+
+    Index connect(NodeKind kind, std::vector<Index> operands) {
+        return add({.kind = kind, .operands = std::move(operands)});
+    }
+
+    /// An operator that negation turns into its dual over negated operands.
+    Index temporal(const Formula& f, bool negated, NodeKind kind, NodeKind dual) {
+        Node node{.kind = negated ? dual : kind, .operands = {}, .low = f.low, .high = f.high};
+        for (const Index operand : f.operands) node.operands.push_back(build(operand, negated));
+        return add(std::move(node));
+    }
+
+    Index connective(const Formula& f, bool negated, NodeKind kind) {
+        std::vector<Index> operands;
+        for (const Index operand : f.operands) operands.push_back(build(operand, negated));
+        return connect(kind, std::move(operands));
+    }
+
+    /// `f -> g` is `!f || g`; its negation is `f && !g`.
+    Index implication(Index f, Index g, bool negated) {
+        const Index left = build(f, !negated);
+        const Index right = build(g, negated);
+        return connect(negated ? NodeKind::all : NodeKind::any, {left, right});
+    }
+
+    /// `f <-> g` is `(f -> g) && (g -> f)`; its negation is `!(f -> g) || !(g -> f)`.
+    Index equivalence(Index f, Index g, bool negated) {
+        const Index forth = implication(f, g, negated);
+        const Index back = implication(g, f, negated);
+        return connect(negated ? NodeKind::any : NodeKind::all, {forth, back});
+    }
+
+    /// `f W g` is `g R (f || g)`; its negation is `!g U (!f && !g)`.
+    Index weak_until(Index f, Index g, bool negated) {
+        const Index left = build(f, negated);
+        const Index right = build(g, negated);
+        const Index both = connect(negated ? NodeKind::all : NodeKind::any, {left, right});
+        return connect(negated ? NodeKind::until : NodeKind::release, {right, both});
+    }
+
+    Index make(const Formula& f, bool negated) {
+        switch (f.kind) {
+            case FormulaKind::constant_true:
+                return literal(NodeKind::constant, negated);
+            case FormulaKind::constant_false:
+                return literal(NodeKind::constant, !negated);
+            case FormulaKind::predicate:
+                return literal(NodeKind::predicate, negated, f.index);
+            case FormulaKind::boolean_input:
+                return literal(NodeKind::boolean, negated, f.index);
+            case FormulaKind::negation:
+                return build(f.operands[0], !negated);
+            case FormulaKind::conjunction:
+                return connective(f, negated, negated ? NodeKind::any : NodeKind::all);
+            case FormulaKind::disjunction:
+                return connective(f, negated, negated ? NodeKind::all : NodeKind::any);
+            case FormulaKind::implication:
+                return implication(f.operands[0], f.operands[1], negated);
+            case FormulaKind::equivalence:
+                return equivalence(f.operands[0], f.operands[1], negated);
+            case FormulaKind::weak_until:
+                return weak_until(f.operands[0], f.operands[1], negated);
+            // `X f` is F[1,1] f; `!X f` is G[1,1] !f. The model gives next and previous the interval [1, 1].
+            case FormulaKind::next:
+            case FormulaKind::eventually:
+                return temporal(f, negated, NodeKind::eventually, NodeKind::always);
+            case FormulaKind::always:
+                return temporal(f, negated, NodeKind::always, NodeKind::eventually);
+            case FormulaKind::until:
+                return temporal(f, negated, NodeKind::until, NodeKind::release);
+            case FormulaKind::release:
+                return temporal(f, negated, NodeKind::release, NodeKind::until);
+            case FormulaKind::previous:
+            case FormulaKind::once:
+                return temporal(f, negated, NodeKind::once, NodeKind::historically);
+            case FormulaKind::historically:
+                return temporal(f, negated, NodeKind::historically, NodeKind::once);
+            case FormulaKind::since:
+                return temporal(f, negated, NodeKind::since, NodeKind::trigger);
+        }
+        return literal(NodeKind::constant, negated);
+    }
+};
+
+}  // namespace
+
+NormalForm normal_form(const check::Model& model) {
+    NormalForm result;
+    Builder builder(model);
+    for (const check::Monitor& monitor : model.monitors) result.roots.push_back(builder.build(monitor.formula, false));
+    result.nodes = builder.take();
+    return result;
+}
+
+std::uint64_t horizon(const check::Model& model, Index formula) {
+    std::vector<std::uint64_t> depth(formula + 1, 0);  // operands have smaller indices
+    for (Index n = 0; n <= formula; ++n) {
+        const Formula& f = model.formulas[n];
+        for (const Index operand : f.operands) depth[n] = std::max(depth[n], depth[operand]);
+        switch (f.kind) {
+            case FormulaKind::next:
+            case FormulaKind::eventually:
+            case FormulaKind::always:
+            case FormulaKind::until:
+            case FormulaKind::weak_until:
+            case FormulaKind::release:
+                depth[n] += f.high;
+                break;
+            default:
+                break;
+        }
+    }
+    return depth[formula];
+}
+
+}  // namespace etlc::reference
