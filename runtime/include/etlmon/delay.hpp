@@ -1,0 +1,49 @@
+// A stream, a fixed number of steps later.
+// Takes: one value a step. Gives: the value of N steps ago; the fill for the first N steps.
+// Keeps true: one read and one write a step, whatever N; state is N values and a cursor, the same on every target.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <stdint.h>
+
+namespace etlmon {
+
+/// One step of a delay by n >= 1 over caller-owned storage of n values, all set to the fill at first; cursor starts at
+/// 0.
+template <class V>
+V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noexcept {
+  const V past = storage[cursor];
+  storage[cursor] = value;
+  cursor = cursor + 1 == n ? 0 : cursor + 1;
+  return past;
+}
+
+/// Delays by N >= 1 steps. V: trivially copyable, alignment at most 4.
+template <class V, uint32_t N>
+class Delay {
+  static_assert(N >= 1, "a delay by nothing is the value itself");
+  static_assert(alignof(V) <= alignof(uint32_t), "the cursor comes first, so that no padding follows it");
+
+ public:
+  /// Forgets all; the next N pushes give `fill`.
+  void reset(V fill) noexcept {
+    cursor_ = 0;
+    for (uint32_t i = 0; i < N; ++i) values_[i] = fill;
+  }
+
+  /// Takes this step's value, gives that of N pushes ago.
+  V push(V value) noexcept { return delay_push(values_, cursor_, N, value); }
+
+ private:
+  uint32_t cursor_;
+  V values_[N];
+};
+
+/// sizeof(Delay<V, n>).
+template <class V>
+constexpr uint32_t delay_bytes(uint32_t n) noexcept {
+  constexpr uint32_t cursor = sizeof(uint32_t);
+  return (cursor + n * static_cast<uint32_t>(sizeof(V)) + cursor - 1) / cursor * cursor;
+}
+
+}  // namespace etlmon
