@@ -1,0 +1,158 @@
+#include "ir/graph.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cassert>
+
+namespace etlc::ir {
+
+namespace {
+
+constexpr std::array kOperators = {
+#define OPERATOR(name, symbol, arity, tense, dual) OpInfo{#name, symbol, Arity::arity, Tense::tense, Op::dual},
+#include "ir/operators.def"
+#undef OPERATOR
+};
+
+std::size_t mix(std::size_t seed, std::size_t value) {
+    return seed ^ (value + 0x9e3779b97f4a7c15ULL + (seed << 6U) + (seed >> 2U));
+}
+
+std::size_t hash(const Node& node) {
+    std::size_t result = mix(static_cast<std::size_t>(node.op), static_cast<std::size_t>(node.negated));
+    result = mix(mix(result, node.index), mix(node.interval.low, node.interval.high));
+    for (NodeId operand : node.operands) result = mix(result, operand);
+    return result;
+}
+
+/// Sum of steps; without end where either is, or where it leaves the range.
+std::uint32_t add_steps(std::uint32_t a, std::uint32_t b) {
+    return a == kUnbounded || b == kUnbounded || a > kUnbounded - 1 - b ? kUnbounded : a + b;
+}
+
+}  // namespace
+
+const OpInfo& info(Op op) {
+    return kOperators[static_cast<std::size_t>(op)];
+}
+
+bool Node::same_as(const Node& other) const {
+    return op == other.op && negated == other.negated && index == other.index && interval == other.interval &&
+           operands == other.operands;
+}
+
+Graph::Graph(const check::Model& model) : model_(&model) {
+    intern({.op = Op::constant_true});
+    intern({.op = Op::constant_false});
+}
+
+NodeId Graph::intern(Node node) {
+    std::vector<NodeId>& bucket = by_hash_[hash(node)];
+    for (NodeId id : bucket)
+        if (nodes_[id].same_as(node)) return id;
+
+    const bool future = info(node.op).tense == Tense::future;
+    node.has_future = future;
+    for (NodeId operand : node.operands) {
+        node.has_future |= nodes_[operand].has_future;
+        node.horizon = std::max(node.horizon, nodes_[operand].horizon);
+    }
+    if (future) node.horizon = add_steps(node.horizon, node.interval.high);
+
+    const auto id = static_cast<NodeId>(nodes_.size());
+    nodes_.push_back(std::move(node));
+    bucket.push_back(id);
+    return id;
+}
+
+NodeId Graph::literal(Op op, Index index, bool negated, Span span) {
+    return intern({.op = op, .negated = negated, .index = index, .span = span});
+}
+
+/// Drops operands that another one makes idle: a && (a || b) is a, and dually.
+std::vector<NodeId> Graph::absorb(Op op, std::vector<NodeId> operands) const {
+    const Op dual = info(op).dual;
+    const auto absorbed = [&](NodeId candidate) {
+        const Node& node = nodes_[candidate];
+        return node.op == dual && std::any_of(node.operands.begin(), node.operands.end(), [&](NodeId part) {
+                   return std::binary_search(operands.begin(), operands.end(), part);
+               });
+    };
+    std::vector<NodeId> kept;
+    std::copy_if(operands.begin(), operands.end(), std::back_inserter(kept), [&](NodeId id) { return !absorbed(id); });
+    return kept;
+}
+
+NodeId Graph::combine(Op op, std::vector<NodeId> operands, Span span) {
+    assert(op == Op::conjunction || op == Op::disjunction);
+    const NodeId neutral = constant(op == Op::conjunction);
+    const NodeId dominant = constant(op == Op::disjunction);
+    std::vector<NodeId> flat;
+    for (NodeId id : operands) {
+        if (nodes_[id].op == op)
+            flat.insert(flat.end(), nodes_[id].operands.begin(), nodes_[id].operands.end());
+        else if (id != neutral)
+            flat.push_back(id);
+    }
+    std::sort(flat.begin(), flat.end());
+    flat.erase(std::unique(flat.begin(), flat.end()), flat.end());
+    if (std::binary_search(flat.begin(), flat.end(), dominant)) return dominant;
+    flat = absorb(op, std::move(flat));
+    if (flat.empty()) return neutral;
+    if (flat.size() == 1) return flat.front();
+    return intern({.op = op, .operands = std::move(flat), .span = span});
+}
+
+// The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it is false at the last step.
+NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
+    const bool seeks = op == Op::eventually || op == Op::once;  // a max, false over an empty window
+    const NodeId empty = constant(!seeks);
+    if (operand == empty) return empty;
+    if (interval.low == 0 && (interval.high == 0 || operand == constant(seeks))) return operand;
+    const Node& inner = nodes_[operand];
+    if (inner.op == op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
+        const std::uint32_t low = add_steps(interval.low, inner.interval.low);
+        const std::uint32_t high = add_steps(interval.high, inner.interval.high);
+        const bool exact = low <= check::kMaxBound && (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
+        if (exact) return unary(op, {low, high}, inner.operands.front(), span);
+    }
+    return intern({.op = op, .interval = interval, .operands = {operand}, .span = span});
+}
+
+NodeId Graph::binary(Op op, Interval interval, NodeId left, NodeId right, Span span) {
+    const bool seeks = op == Op::until || op == Op::since;
+    const bool future = info(op).tense == Tense::future;
+    const NodeId empty = constant(!seeks);
+    if (right == empty) return empty;
+    if (interval.low == 0 && (interval.high == 0 || right == constant(seeks) || left == empty)) return right;
+    if (left == empty) return empty;  // the left side breaks before the window opens
+    if (left == constant(seeks)) {
+        const Op one = future ? (seeks ? Op::eventually : Op::always) : (seeks ? Op::once : Op::historically);
+        return unary(one, interval, right, span);
+    }
+    return intern({.op = op, .interval = interval, .operands = {left, right}, .span = span});
+}
+
+NodeId Graph::keep(Op op, Interval interval, std::vector<NodeId> operands, Span span) {
+    return intern({.op = op, .interval = interval, .operands = std::move(operands), .span = span});
+}
+
+void verify(const Graph& graph) {
+    for (NodeId id = 0; id < graph.size(); ++id) {
+        const Node& node = graph[id];
+        const Arity arity = info(node.op).arity;
+        const bool literal = node.op == Op::predicate || node.op == Op::flag;
+        assert(literal || !node.negated);
+        assert(arity != Arity::atom || node.operands.empty());
+        assert(arity != Arity::unary || node.operands.size() == 1);
+        assert(arity != Arity::binary || node.operands.size() == 2);
+        assert(arity != Arity::many || node.operands.size() >= 2);
+        assert(node.interval.low <= node.interval.high);
+        assert(arity != Arity::many || std::is_sorted(node.operands.begin(), node.operands.end()));
+        for ([[maybe_unused]] NodeId operand : node.operands) assert(operand < id);
+        (void)literal;
+        (void)arity;
+    }
+}
+
+}  // namespace etlc::ir

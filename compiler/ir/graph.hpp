@@ -1,0 +1,98 @@
+// The formulas of all monitors as one hash-consed graph in negation normal form.
+// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of formulas is equality of ids.
+// Keeps true: operands have smaller ids; only predicates and flags are negated; && and || are flat, sorted and without
+// repeats; the laws applied on the way (see simplify.cpp) hold for min and max on every prefix, so p && !p stays.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <unordered_map>
+#include <vector>
+
+#include "check/model.hpp"
+
+namespace etlc::ir {
+
+using NodeId = std::uint32_t;
+using check::Index;
+using check::kUnbounded;
+using source::Span;
+
+enum class Op : std::uint8_t {
+#define OPERATOR(name, symbol, arity, tense, dual) name,
+#include "ir/operators.def"
+#undef OPERATOR
+};
+
+enum class Arity : std::uint8_t { atom, unary, binary, many };
+enum class Tense : std::uint8_t { now, future, past };
+
+/// One row of operators.def.
+struct OpInfo {
+    const char* name;
+    const char* symbol;
+    Arity arity;
+    Tense tense;
+    Op dual;
+};
+const OpInfo& info(Op op);
+
+/// Steps from the present: [low, high], or [low, inf).
+struct Interval {
+    std::uint32_t low = 0;
+    std::uint32_t high = kUnbounded;
+
+    bool operator==(const Interval&) const = default;
+    bool contains(Interval other) const { return low <= other.low && other.high <= high; }
+    bool bounded() const { return high != kUnbounded; }
+    /// The same window seen one step later; low and high must not be 0.
+    Interval earlier() const { return {low == 0 ? 0 : low - 1, bounded() ? high - 1 : high}; }
+};
+
+struct Node {
+    Op op = Op::constant_true;
+    bool negated = false;          ///< predicate and flag only
+    Index index = 0;               ///< predicate: of the model's predicates; flag: of its inputs
+    Interval interval{};           ///< of temporal operators
+    std::vector<NodeId> operands;
+    bool has_future = false;       ///< a future operator in it, itself included
+    std::uint32_t horizon = 0;     ///< steps of future it needs; kUnbounded without end
+    Span span{};                   ///< where the spec first says it; not part of its identity
+
+    bool same_as(const Node& other) const;
+};
+
+class Graph {
+public:
+    explicit Graph(const check::Model& model);
+
+    const check::Model& model() const { return *model_; }
+    const Node& operator[](NodeId id) const { return nodes_[id]; }
+    std::size_t size() const { return nodes_.size(); }
+
+    NodeId constant(bool value) const { return value ? 0 : 1; }
+    NodeId literal(Op op, Index index, bool negated, Span span);
+    /// && or || of any number of operands: flattened, sorted, constants and absorbed operands dropped.
+    NodeId combine(Op op, std::vector<NodeId> operands, Span span);
+    NodeId unary(Op op, Interval interval, NodeId operand, Span span);
+    NodeId binary(Op op, Interval interval, NodeId left, NodeId right, Span span);
+    /// A temporal operator as it stands, no law applied: F[0,0] f is f, but what is owed at the next position also says
+    /// what it is worth where the prefix ends before.
+    NodeId keep(Op op, Interval interval, std::vector<NodeId> operands, Span span);
+
+    /// The formula with symbols and names: "F (at_a && F at_b)".
+    std::string text(NodeId id) const;
+
+private:
+    NodeId intern(Node node);
+    std::vector<NodeId> absorb(Op op, std::vector<NodeId> operands) const;
+
+    const check::Model* model_;
+    std::vector<Node> nodes_;
+    std::unordered_map<std::size_t, std::vector<NodeId>> by_hash_;
+};
+
+/// Asserts what the graph keeps true: a fault here is a fault of etlc.
+void verify(const Graph& graph);
+
+}  // namespace etlc::ir

@@ -1,0 +1,103 @@
+#include "ir/lower.hpp"
+
+#include <array>
+
+namespace etlc::ir {
+
+namespace {
+
+using Kind = check::Formula::Kind;
+
+/// Lowers one model into one graph. `negated` is the number of negations above, modulo two.
+class Lowering {
+public:
+    Lowering(const check::Model& model, Graph& graph) : model_(model), graph_(graph) {
+        for (auto& memo : memo_) memo.assign(model.formulas.size(), check::kNone);
+    }
+
+    NodeId lower(Index formula, bool negated) {
+        NodeId& known = memo_[negated ? 1 : 0][formula];
+        if (known == check::kNone) {
+            const NodeId node = build(model_.formulas[formula], negated);
+            memo_[negated ? 1 : 0][formula] = node;
+            return node;
+        }
+        return known;
+    }
+
+private:
+    static Op turn(Op op, bool negated) { return negated ? info(op).dual : op; }
+
+    NodeId build(const check::Formula& f, bool negated) {
+        switch (f.kind) {
+            case Kind::constant_true: return graph_.constant(!negated);
+            case Kind::constant_false: return graph_.constant(negated);
+            case Kind::predicate: return graph_.literal(Op::predicate, f.index, negated, f.span);
+            case Kind::boolean_input: return graph_.literal(Op::flag, f.index, negated, f.span);
+            case Kind::negation: return lower(f.operands[0], !negated);
+            case Kind::conjunction: return combine(f, Op::conjunction, negated);
+            case Kind::disjunction: return combine(f, Op::disjunction, negated);
+            case Kind::implication: return implication(f.operands[0], f.operands[1], negated, f.span);
+            case Kind::equivalence: {
+                const NodeId there = implication(f.operands[0], f.operands[1], negated, f.span);
+                const NodeId back = implication(f.operands[1], f.operands[0], negated, f.span);
+                return graph_.combine(turn(Op::conjunction, negated), {there, back}, f.span);
+            }
+            case Kind::next:
+            case Kind::eventually: return unary(f, Op::eventually, negated);
+            case Kind::always: return unary(f, Op::always, negated);
+            case Kind::previous:
+            case Kind::once: return unary(f, Op::once, negated);
+            case Kind::historically: return unary(f, Op::historically, negated);
+            case Kind::until: return binary(f, Op::until, negated);
+            case Kind::release: return binary(f, Op::release, negated);
+            case Kind::since: return binary(f, Op::since, negated);
+            case Kind::weak_until: return weak_until(f, negated);
+        }
+        return check::kNone;
+    }
+
+    NodeId combine(const check::Formula& f, Op op, bool negated) {
+        std::vector<NodeId> operands;
+        for (Index operand : f.operands) operands.push_back(lower(operand, negated));
+        return graph_.combine(turn(op, negated), std::move(operands), f.span);
+    }
+
+    /// f -> g is !f || g.
+    NodeId implication(Index left, Index right, bool negated, Span span) {
+        return graph_.combine(turn(Op::disjunction, negated), {lower(left, !negated), lower(right, negated)}, span);
+    }
+
+    NodeId unary(const check::Formula& f, Op op, bool negated) {
+        return graph_.unary(turn(op, negated), {f.low, f.high}, lower(f.operands[0], negated), f.span);
+    }
+
+    NodeId binary(const check::Formula& f, Op op, bool negated) {
+        const NodeId left = lower(f.operands[0], negated);
+        const NodeId right = lower(f.operands[1], negated);
+        return graph_.binary(turn(op, negated), {f.low, f.high}, left, right, f.span);
+    }
+
+    /// f W g is g R (f || g).
+    NodeId weak_until(const check::Formula& f, bool negated) {
+        const NodeId left = lower(f.operands[0], negated);
+        const NodeId right = lower(f.operands[1], negated);
+        const NodeId either = graph_.combine(turn(Op::disjunction, negated), {left, right}, f.span);
+        return graph_.binary(turn(Op::release, negated), {}, right, either, f.span);
+    }
+
+    const check::Model& model_;
+    Graph& graph_;
+    std::array<std::vector<NodeId>, 2> memo_;
+};
+
+}  // namespace
+
+Program lower(const check::Model& model) {
+    Program program{Graph(model), {}};
+    Lowering lowering(model, program.graph);
+    for (const check::Monitor& monitor : model.monitors) program.monitors.push_back(lowering.lower(monitor.formula, false));
+    return program;
+}
+
+}  // namespace etlc::ir

@@ -1,0 +1,19 @@
+// Typed formulas to the graph: negation normal form, derived operators written out.
+// Takes: the model. Gives: the graph and the node of every monitor. Keeps true: each formula is lowered at most once a
+// polarity, so shared `let`s stay shared.
+#pragma once
+
+#include <vector>
+
+#include "ir/graph.hpp"
+
+namespace etlc::ir {
+
+struct Program {
+    Graph graph;
+    std::vector<NodeId> monitors;  ///< per monitor of the model
+};
+
+Program lower(const check::Model& model);
+
+}  // namespace etlc::ir

@@ -1,0 +1,59 @@
+#include "opt/opt.hpp"
+
+#include <unordered_map>
+
+namespace etlc::opt {
+
+namespace {
+
+/// Applies a rule bottom-up, each node once.
+class Rewriting {
+public:
+    Rewriting(ir::Graph& graph, Rule rule) : graph_(graph), rule_(rule) {}
+
+    ir::NodeId rewrite(ir::NodeId id) {
+        if (const auto known = done_.find(id); known != done_.end()) return known->second;
+        const ir::NodeId result = rule_(graph_, rebuild(id));
+        done_.emplace(id, result);
+        return result;
+    }
+
+private:
+    ir::NodeId rebuild(ir::NodeId id) {
+        const ir::Node node = graph_[id];  // a copy: the graph grows meanwhile
+        std::vector<ir::NodeId> operands;
+        for (ir::NodeId operand : node.operands) operands.push_back(rewrite(operand));
+        switch (ir::info(node.op).arity) {
+            case ir::Arity::atom: return id;
+            case ir::Arity::unary: return graph_.unary(node.op, node.interval, operands[0], node.span);
+            case ir::Arity::binary: return graph_.binary(node.op, node.interval, operands[0], operands[1], node.span);
+            case ir::Arity::many: return graph_.combine(node.op, std::move(operands), node.span);
+        }
+        return id;
+    }
+
+    ir::Graph& graph_;
+    Rule rule_;
+    std::unordered_map<ir::NodeId, ir::NodeId> done_;
+};
+
+}  // namespace
+
+const std::vector<Pass>& passes() {
+    static const std::vector<Pass> table = {
+        {"distribute", distribute},
+    };
+    return table;
+}
+
+void optimise(ir::Program& program) {
+    for (const Pass& pass : passes()) {
+        Rewriting rewriting(program.graph, pass.rule);
+        for (std::size_t m = 0; m < program.monitors.size(); ++m)
+            if (!program.graph.model().monitors[m].sliding)
+                program.monitors[m] = rewriting.rewrite(program.monitors[m]);
+    }
+    ir::verify(program.graph);
+}
+
+}  // namespace etlc::opt

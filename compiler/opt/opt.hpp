@@ -1,0 +1,27 @@
+// Rewriting the graph before it is planned.
+// Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the bounds of every monitor on
+// every prefix; the passes stand in one table, each is a file.
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "ir/lower.hpp"
+
+namespace etlc::opt {
+
+/// Rewrites one node whose operands are rewritten already; gives the node itself where the pass has nothing to say.
+using Rule = ir::NodeId (*)(ir::Graph& graph, ir::NodeId node);
+
+struct Pass {
+    std::string_view name;
+    Rule rule;
+};
+const std::vector<Pass>& passes();
+
+/// Applies every pass to every prefix monitor. Sliding monitors are planned as written: their delays are their meaning.
+void optimise(ir::Program& program);
+
+ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);
+
+}  // namespace etlc::opt

@@ -1,0 +1,146 @@
+// What a monitor does at every step, in order: the last form before code.
+// Takes: the graph. Gives: emit/ and the evaluator the same steps to print and to execute.
+// Keeps true: streams and readings stand in an order in which operands come first; each distance, stream and reading is
+// computed once however many monitors use it; the state is fixed here and does not depend on the trace.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check/model.hpp"
+#include "diag/diag.hpp"
+#include "etlmon/value.hpp"
+#include "ir/lower.hpp"
+#include "plan/automaton.hpp"
+
+namespace etlc::plan {
+
+using check::Index;
+using check::kNone;
+using etlmon::Key;
+using etlmon::Value;
+using ir::NodeId;
+using Slot = std::uint32_t;  ///< index of a stream
+
+// ---- streams: a robustness for one position after the other --------------------------------------------------------
+
+enum class StreamOp : std::uint8_t {
+    constant,        ///< `value`
+    predicate,       ///< of the model's predicates
+    flag,            ///< a bool input, by its index in the model
+    negation,        ///< of a predicate or flag
+    conjunction,     ///< min of the operands
+    disjunction,     ///< max of the operands
+    delay,           ///< the operand `length` steps ago: later by `length`, so that operands of different lag meet
+    shift,           ///< the operand `length` positions earlier; `value` where there is none
+    running_max,     ///< over all positions so far
+    running_min,
+    window_max,      ///< over the last `length` positions
+    window_min,
+    since,           ///< v = max(g, min(v, f))
+    trigger,         ///< v = min(g, max(v, f))
+    window_since,    ///< since, over the last `length` positions
+    window_trigger,
+    window_until,    ///< until, at the first of the last `length` positions
+    window_release,
+};
+
+struct Stream {
+    StreamOp op = StreamOp::constant;
+    std::vector<Slot> operands;
+    Index index = 0;           ///< predicate or flag
+    std::uint32_t length = 0;  ///< of delays, shifts and windows
+    Value value{};             ///< constant; shift: where there is no earlier position
+    std::uint32_t lag = 0;     ///< after step i the stream tells about position i - lag
+    NodeId node = kNone;       ///< the formula it is, for comments; kNone for the values in between
+};
+
+// ---- readings: what prefix monitors say about position 0 -----------------------------------------------------------
+
+/// A formula without future at the top: its value at step 0, for good.
+struct Latch {
+    Slot operand = 0;
+};
+
+/// F, G, U or R over operands without future: a max or min that grows while the window is open.
+struct Fold {
+    ir::Op op = ir::Op::eventually;
+    ir::Interval interval;
+    Slot left = kNone;    ///< of U and R
+    Slot right = 0;
+    Slot unseen = 0;      ///< lowest and highest unseen value of `right`
+};
+
+/// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.
+struct Machine {
+    struct State {
+        bool strong = false;        ///< owes an F or U
+        bool always_true = false;   ///< its register never leaves +inf and is not kept
+        Slot weak_unseen = kNone;   ///< lowest unseen value of what it owes weakly; kNone: owes nothing weakly
+        Slot strong_unseen = kNone; ///< highest unseen value of what it owes strongly
+    };
+    Automaton automaton;
+    std::vector<State> states;
+    std::vector<std::vector<Slot>> guards;  ///< per guard of the automaton, its literals as streams
+};
+
+struct Reading {
+    enum class Kind : std::uint8_t { latch, fold, machine, conjunction, disjunction };
+    Kind kind = Kind::latch;
+    NodeId node = 0;
+    Latch latch;
+    Fold fold;
+    Machine machine;
+    std::vector<std::uint32_t> operands;  ///< readings, of conjunction and disjunction
+};
+
+// ---- the plan ------------------------------------------------------------------------------------------------------
+
+struct Monitor {
+    std::string name;
+    bool sliding = false;
+    std::uint32_t horizon = 0;
+    std::uint32_t reading = kNone;  ///< prefix monitors
+    Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon
+    Index index = 0;                ///< of the model's monitors
+};
+
+/// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).
+struct Cost {
+    std::uint64_t state_bytes = 0;
+    std::uint64_t constant_bytes = 0;  ///< targets, weights and transition tables
+    std::uint64_t code_bytes = 0;      ///< estimated, targets aside
+    std::uint64_t operations = 0;      ///< min, max and comparisons of the temporal part
+    std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
+};
+
+struct Plan {
+    const check::Model* model = nullptr;
+    std::vector<Index> inputs;      ///< that some monitor depends on, in order of declaration
+    std::vector<Index> targets;
+    std::vector<Index> distances;
+    std::vector<Index> predicates;
+    std::vector<Stream> streams;
+    std::vector<Reading> readings;
+    std::vector<Monitor> monitors;
+    bool has_sliding = false;
+    bool counts_steps = false;      ///< some part needs the number of the step
+    Cost cost;
+    std::vector<Cost> monitor_costs;
+};
+
+struct Limits {
+    std::uint64_t state_bytes = 1U << 20U;
+    std::uint64_t code_bytes = 64U << 10U;
+    std::uint64_t operations = 1U << 20U;
+};
+
+/// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink);
+
+/// The plan as text: `--emit plan`.
+std::string print(const Plan& plan, const ir::Graph& graph);
+
+}  // namespace etlc::plan
