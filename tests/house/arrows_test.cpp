@@ -1,0 +1,147 @@
+// Data flows one way through the compiler, and so do its includes and its CMake targets.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <regex>
+#include <set>
+#include <string>
+
+#include "tests/house/tree.hpp"
+
+namespace etlc::house {
+namespace {
+
+using Names = std::set<std::string>;
+
+/// The arrows of docs/architecture.md: what a folder of compiler/ builds on. They are transitive; everyone also sees
+/// source and diag.
+const std::map<std::string, Names> kArrows = {
+    {"source", {}},
+    {"diag", {"source"}},
+    {"ast", {"source"}},
+    {"data", {"diag"}},
+    {"thresholds", {"data"}},
+    {"parse", {"ast", "diag"}},
+    {"check", {"ast", "data", "thresholds"}},
+    {"reference", {"check"}},
+    {"ir", {"check"}},
+    {"opt", {"ir"}},
+    {"plan", {"ir"}},
+    {"emit", {"plan"}},
+    {"calibrate", {"plan", "thresholds"}},
+    {"evaluate", {"calibrate"}},
+    {"driver", {"parse", "opt", "emit", "evaluate"}},
+};
+
+/// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
+const Names kBelowTheModel = {"reference", "ir", "opt", "plan", "emit", "calibrate", "evaluate"};
+
+/// The judge in tests shares no arithmetic with what it judges.
+const Names kWithoutRuntime = {"reference"};
+
+/// Libraries that one folder keeps to itself.
+const std::map<std::string, std::string> kOwners = {
+    {"antlr4", "parse"}, {"hdf5", "data"}, {"H5", "data"}, {"zip", "data"}, {"CLI", "driver"}};
+
+/// All that generated code may need of a C library.
+const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "math.h"};
+
+Names reachable(const std::string& folder) {
+    Names seen = {folder, "source"};
+    if (folder != "source" && folder != "ast") seen.insert("diag");
+    for (const std::string& next : kArrows.at(folder)) seen.merge(reachable(next));
+    return seen;
+}
+
+Names allowed(const std::string& folder) {
+    Names stages = reachable(folder);
+    if (kBelowTheModel.contains(folder)) stages.erase("ast");
+    return stages;
+}
+
+/// "ast" of "ast/ast.hpp" and of "antlr4-runtime.h"'s kind "antlr4".
+std::string first_word(const std::string& include) {
+    return include.substr(0, include.find_first_of("/.-_"));
+}
+
+std::string folder_of(const std::filesystem::path& file) {
+    return *std::next(file.begin());
+}
+
+/// stage -> the stages that its CMakeLists.txt links, with all that those link.
+Names linked(const std::string& folder) {
+    static const std::regex kDepends(R"(\bDEPENDS\b([^)]*))");
+    static const std::regex kWord(R"([A-Za-z0-9_:]+)");
+    const std::string text = content(std::filesystem::path("compiler") / folder / "CMakeLists.txt");
+    Names found = {folder};
+    for (std::sregex_iterator call(text.begin(), text.end(), kDepends); call != std::sregex_iterator(); ++call) {
+        const std::string list = (*call)[1];
+        for (std::sregex_iterator word(list.begin(), list.end(), kWord); word != std::sregex_iterator(); ++word) {
+            if (word->str() == "LIBRARIES" || word->str() == "SOURCES") break;
+            if (kArrows.contains(word->str())) found.merge(linked(word->str()));
+        }
+    }
+    return found;
+}
+
+TEST(Arrows, EveryFolderOfTheCompilerIsInTheTable) {
+    for (const auto& file : files("compiler")) {
+        if (std::distance(file.begin(), file.end()) < 3) continue;
+        EXPECT_TRUE(kArrows.contains(folder_of(file))) << file;
+    }
+}
+
+TEST(Arrows, StagesIncludeOnlyWhatTheyBuildOn) {
+    for (const auto& file : cpp_files("compiler")) {
+        const std::string folder = folder_of(file);
+        const Names stages = allowed(folder);
+        for (const std::string& include : includes(file)) {
+            const std::string to = first_word(include);
+            const bool of_a_folder = include.find('/') != std::string::npos;
+            if (of_a_folder && kArrows.contains(to)) {
+                EXPECT_TRUE(stages.contains(to)) << file << " includes " << include;
+            }
+            if (to == "etlmon") {
+                EXPECT_FALSE(kWithoutRuntime.contains(folder)) << file << " includes " << include;
+            }
+            if (const auto owner = kOwners.find(to); owner != kOwners.end()) {
+                EXPECT_EQ(folder, owner->second) << file << " includes " << include;
+            }
+            EXPECT_NE(to, "tests") << file << " includes " << include;
+        }
+    }
+}
+
+TEST(Arrows, TargetsLinkWhatTheirFilesInclude) {
+    for (const auto& file : cpp_files("compiler")) {
+        const std::string folder = folder_of(file);
+        const Names stages = linked(folder);
+        for (const std::string& include : includes(file)) {
+            const std::string to = first_word(include);
+            if (include.find('/') == std::string::npos || !kArrows.contains(to)) continue;
+            EXPECT_TRUE(stages.contains(to))
+                << file << " includes " << include << ", which the DEPENDS of compiler/" << folder << " do not give";
+        }
+    }
+}
+
+TEST(Arrows, TargetsLinkOnlyWhatTheyBuildOn) {
+    for (const auto& [folder, arrows] : kArrows) {
+        const Names stages = reachable(folder);
+        for (const std::string& to : linked(folder)) {
+            EXPECT_TRUE(stages.contains(to)) << "compiler/" << folder << " links " << to;
+        }
+    }
+}
+
+TEST(Arrows, TheRuntimeNeedsFiveHeadersOfC) {
+    for (const auto& file : cpp_files("runtime")) {
+        for (const std::string& include : includes(file)) {
+            EXPECT_TRUE(include.starts_with("etlmon/") || kFirmwareHeaders.contains(include))
+                << file << " includes " << include;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace etlc::house

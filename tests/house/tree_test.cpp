@@ -1,0 +1,68 @@
+// What holds for every file of the repository.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cctype>
+#include <regex>
+#include <string>
+
+#include "tests/house/tree.hpp"
+
+namespace etlc::house {
+namespace {
+
+/// Whether `text` holds the absolute path `path`, not merely a relative one that ends like it.
+bool names_path(const std::string& text, const std::string& path) {
+    for (std::size_t at = text.find(path); at != std::string::npos; at = text.find(path, at + 1)) {
+        const char before = at == 0 ? ' ' : text[at - 1];
+        if (std::isalnum(static_cast<unsigned char>(before)) == 0 &&
+            std::string("._-}$)").find(before) == std::string::npos)
+            return true;
+    }
+    return false;
+}
+
+TEST(Tree, SourcesAreShort) {
+    for (const char* folder : {"compiler", "runtime", "tests", "examples", "bench"}) {
+        for (const auto& file : cpp_files(folder)) {
+            const std::string text = content(file);
+            EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500) << file << " is perhaps two things";
+        }
+    }
+}
+
+TEST(Tree, NothingNamesTheMachineItWasWrittenOn) {
+    static const std::regex kHome(R"(/(home|Users)/[a-z]\w*/|/root/\.)");
+    for (const auto& file : files()) {
+        const std::string text = content(file);
+        EXPECT_FALSE(names_path(text, ETLC_SOURCE_DIR "/")) << file << " names the folder of this clone";
+        EXPECT_FALSE(names_path(text, ETLC_BINARY_DIR)) << file << " names the build folder";
+        std::smatch match;
+        const bool found = text.size() < 200'000 && std::regex_search(text, match, kHome);
+        EXPECT_FALSE(found) << file << " names " << match.str();
+    }
+}
+
+TEST(Tree, HeadersAreIncludedOnceAndSayWhatTheyAre) {
+    for (const char* folder : {"compiler", "runtime"}) {
+        for (const auto& file : cpp_files(folder)) {
+            if (file.extension() != ".hpp") continue;
+            const std::string text = content(file);
+            EXPECT_TRUE(text.starts_with("//") || text.starts_with("/*"))
+                << file << " does not open with what it takes, gives and keeps true";
+            EXPECT_NE(text.find("#pragma once"), std::string::npos) << file;
+        }
+    }
+}
+
+TEST(Tree, NamesSayWhatAThingIs) {
+    static const std::regex kVague("^(utils?|helpers?|common|managers?|misc)\\b");
+    for (const auto& file : files()) {
+        for (const auto& part : file) {
+            EXPECT_FALSE(std::regex_search(part.string(), kVague)) << file;
+        }
+    }
+}
+
+}  // namespace
+}  // namespace etlc::house

@@ -1,0 +1,52 @@
+#!/usr/bin/env bash
+# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: what etlc_add_monitor says to a wrong call.
+set -euo pipefail
+folder=$1 cmake=$2 cxx=$3
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+mkdir -p "$box/specs" "$box/other"
+touch "$box/main.cpp" "$box/specs/a.etl" "$box/other/a.etl"
+
+cat >"$box/CMakeLists.txt" <<END
+cmake_minimum_required(VERSION 3.20)
+project(calls LANGUAGES CXX)
+include($folder/EtlAddMonitor.cmake)
+add_executable(etlc::etlc IMPORTED)
+set_target_properties(etlc::etlc PROPERTIES IMPORTED_LOCATION $cmake)
+add_library(etlmon::etlmon INTERFACE IMPORTED)
+add_executable(robot main.cpp)
+add_library(headers INTERFACE)
+include(\${CALL})
+END
+
+failures=0
+# refused WORDS CALL: configuring with CALL must fail, and say WORDS (line breaks and indentation aside).
+refused() {
+    echo "$2" >"$box/call.cmake"
+    if "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
+        echo "FAILED: accepted: $2"; failures=1
+    elif ! tr -s ' \n' ' ' <"$box/log" | grep -qF -- "$1"; then
+        echo "FAILED: $2: does not say '$1':"; cat "$box/log"; failures=1
+    fi
+}
+
+refused "there is no target robto" "etlc_add_monitor(robto SPEC specs/a.etl)"
+refused "neither an executable nor a library" "etlc_add_monitor(headers SPEC specs/a.etl)"
+refused "neither an executable nor a library" "etlc_add_monitor(etlc::etlc SPEC specs/a.etl)"
+refused "SPEC is missing" "etlc_add_monitor(robot)"
+refused "unknown arguments: specs/a.etl" "etlc_add_monitor(robot specs/a.etl)"
+refused "unknown arguments: TRESHOLDS t.json" "etlc_add_monitor(robot SPEC specs/a.etl TRESHOLDS t.json)"
+refused "no value after: THRESHOLDS" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS)"
+refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" "etlc_add_monitor(robot SPEC specs/b.etl)"
+refused "SPEC specs: there is no such file" "etlc_add_monitor(robot SPEC specs)"
+refused "THRESHOLDS t.json: there is no such file" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
+refused "VALUES is robustness or boolean, not bool" "etlc_add_monitor(robot SPEC specs/a.etl VALUES bool)"
+refused "NAMESPACE a-b is not a C++ namespace" "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
+refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
+etlc_add_monitor(robot SPEC other/a.etl)"
+
+echo "etlc_add_monitor(robot SPEC specs/a.etl VALUES boolean NAMESPACE a::b STANDALONE)" >"$box/call.cmake"
+if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
+    echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
+fi
+exit $failures
