@@ -1,33 +1,57 @@
 #include "source/source.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace etlc::source {
+
+namespace {
+
+/// Code points are counted once per block, so that a position costs the same wherever it is in a line of megabytes.
+constexpr std::uint32_t kBlock = 1024;
+
+std::uint32_t count_code_points(std::string_view text) {
+    const auto begins_one = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
+    return static_cast<std::uint32_t>(std::count_if(text.begin(), text.end(), begins_one));
+}
+
+}  // namespace
 
 Span join(Span a, Span b) {
     return {std::min(a.begin, b.begin), std::max(a.end, b.end)};
 }
 
 File::File(std::string path, std::string text) : path_(std::move(path)), text_(std::move(text)) {
-    for (std::uint32_t i = 0; i < text_.size(); ++i)
-        if (text_[i] == '\n') line_begins_.push_back(i + 1);
+    // Offsets have 32 bits; whoever reads files refuses such a size long before.
+    if (text_.size() >= std::numeric_limits<std::uint32_t>::max())
+        text_.resize(std::numeric_limits<std::uint32_t>::max() - 1);
+    const std::string_view all = text_;
+    std::uint32_t code_points = 0;
+    for (std::uint32_t i = 0; i < all.size(); ++i)
+        if (all[i] == '\n') line_begins_.push_back(i + 1);
+    for (std::size_t i = 0; i < all.size(); i += kBlock) {
+        code_points += count_code_points(all.substr(i, kBlock));
+        code_points_before_.push_back(code_points);
+    }
 }
 
 std::string_view File::text(Span span) const {
     const std::string_view all = text_;
-    return all.substr(std::min<std::size_t>(span.begin, all.size()), span.end - span.begin);
+    const std::size_t begin = std::min<std::size_t>(span.begin, all.size());
+    return all.substr(begin, span.end > begin ? span.end - begin : 0);
+}
+
+std::uint32_t File::code_points_before(std::uint32_t offset) const {
+    const std::uint32_t block = offset / kBlock;
+    const std::string_view rest = std::string_view(text_).substr(block * kBlock, offset - block * kBlock);
+    return code_points_before_[block] + count_code_points(rest);
 }
 
 Position File::position(std::uint32_t offset) const {
     offset = std::min<std::uint32_t>(offset, static_cast<std::uint32_t>(text_.size()));
     const auto after = std::upper_bound(line_begins_.begin(), line_begins_.end(), offset);
     const auto line = static_cast<std::uint32_t>(after - line_begins_.begin());
-    Position result{line, 1};
-    for (std::uint32_t i = line_begins_[line - 1]; i < offset; ++i) {
-        const bool continuation_byte = (static_cast<unsigned char>(text_[i]) & 0xC0U) == 0x80U;
-        if (!continuation_byte) ++result.column;
-    }
-    return result;
+    return {line, 1 + code_points_before(offset) - code_points_before(line_begins_[line - 1])};
 }
 
 std::string_view File::line_text(std::uint32_t line) const {

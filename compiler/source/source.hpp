@@ -43,9 +43,12 @@ public:
     std::uint32_t line_begin(std::uint32_t line) const { return line_begins_[line - 1]; }
 
 private:
+    std::uint32_t code_points_before(std::uint32_t offset) const;
+
     std::string path_;
     std::string text_;
     std::vector<std::uint32_t> line_begins_{0};
+    std::vector<std::uint32_t> code_points_before_{0};  ///< entry i: in the first i blocks of 1024 bytes
 };
 
 }  // namespace etlc::source

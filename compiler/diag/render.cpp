@@ -1,0 +1,107 @@
+#include "diag/render.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "diag/source_view.hpp"
+
+namespace etlc::diag {
+
+namespace {
+
+/// Diagnostics shown in the text form; the summary counts them all.
+constexpr std::size_t kMaxShown = 200;
+
+struct Palette {
+    std::string_view bold, error, warning, note, caret, reset;
+};
+constexpr Palette kPlain{};
+constexpr Palette kColours{"\x1b[1m", "\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", "\x1b[1;32m", "\x1b[0m"};
+
+class TextRenderer {
+public:
+    TextRenderer(const source::File& spec, RenderOptions options)
+        : spec_(spec), options_(options), palette_(options.colour ? kColours : kPlain) {}
+
+    void add(const Diagnostic& diagnostic) {
+        const bool is_error = diagnostic.severity() == Severity::error || options_.warnings_as_errors;
+        const std::string_view colour = is_error ? palette_.error : palette_.warning;
+        const bool in_spec = diagnostic.file.empty();
+        headline(in_spec ? place(diagnostic.span) : place(diagnostic), is_error ? "error" : "warning", colour,
+                 fmt::format("{} [{}]", printable(diagnostic.message), info(diagnostic.code).code));
+        if (in_spec && diagnostic.span) source_lines(*diagnostic.span);
+        if (!in_spec && diagnostic.span) note({diagnostic.span, "named here"});
+        for (const Note& n : diagnostic.notes) note(n);
+    }
+
+    void add_summary(std::size_t errors, std::size_t warnings, std::size_t left_out) {
+        const auto count = [](std::size_t n, std::string_view what) {
+            return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
+        };
+        if (left_out > 0) text_ += fmt::format("({} more not shown)\n", left_out);
+        if (errors > 0) text_ += count(errors, "error");
+        if (errors > 0 && warnings > 0) text_ += ", ";
+        if (warnings > 0) text_ += count(warnings, "warning");
+        text_ += '\n';
+    }
+
+    std::string take() { return std::move(text_); }
+
+private:
+    std::string place(const std::optional<source::Span>& span) const {
+        const std::string path = printable(spec_.path());
+        if (!span) return path;
+        const source::Position at = spec_.position(span->begin);
+        return fmt::format("{}:{}:{}", path, at.line, at.column);
+    }
+
+    static std::string place(const Diagnostic& diagnostic) {
+        std::string result = printable(diagnostic.file);
+        if (diagnostic.line > 0) result += fmt::format(":{}", diagnostic.line);
+        if (diagnostic.line > 0 && diagnostic.column > 0) result += fmt::format(":{}", diagnostic.column);
+        return result;
+    }
+
+    void headline(const std::string& where, std::string_view kind, std::string_view colour, const std::string& words) {
+        text_ +=
+            fmt::format("{0}{1}:{5} {2}{3}:{5} {0}{4}{5}\n", palette_.bold, where, colour, kind, words, palette_.reset);
+    }
+
+    void source_lines(source::Span span) {
+        const SourceView shown = view(spec_, span);
+        text_ += fmt::format("{:5} | {}\n", spec_.position(span.begin).line, shown.text);
+        const std::size_t first = shown.carets.find('^');
+        text_ += fmt::format("      | {}{}{}{}\n", shown.carets.substr(0, first), palette_.caret,
+                             shown.carets.substr(first), palette_.reset);
+    }
+
+    void note(const Note& n) {
+        if (!n.span) {
+            text_ += fmt::format("      = {}note:{} {}\n", palette_.note, palette_.reset, printable(n.text));
+            return;
+        }
+        headline(place(n.span), "note", palette_.note, printable(n.text));
+        source_lines(*n.span);
+    }
+
+    const source::File& spec_;
+    RenderOptions options_;
+    const Palette& palette_;
+    std::string text_;
+};
+
+}  // namespace
+
+std::string render_text(const source::File& spec, const Sink& sink, RenderOptions options) {
+    const std::vector<Diagnostic> all = sink.sorted();
+    if (all.empty()) return {};
+    TextRenderer renderer(spec, options);
+    const std::size_t shown = std::min(all.size(), kMaxShown);
+    for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i]);
+    const std::size_t promoted = options.warnings_as_errors ? sink.warnings() : 0;
+    renderer.add_summary(sink.errors() + promoted, sink.warnings() - promoted, all.size() - shown);
+    return renderer.take();
+}
+
+}  // namespace etlc::diag
