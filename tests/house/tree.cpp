@@ -1,4 +1,4 @@
-#include "tests/house/tree.hpp"
+#include "tree.hpp"
 
 #include <algorithm>
 #include <fstream>

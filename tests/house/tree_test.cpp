@@ -6,7 +6,7 @@
 #include <regex>
 #include <string>
 
-#include "tests/house/tree.hpp"
+#include "tree.hpp"
 
 namespace etlc::house {
 namespace {
