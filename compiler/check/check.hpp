@@ -1,6 +1,7 @@
 // Syntax tree to typed spec.
-// Takes: the tree, and the files it loads (paths relative to the spec). Gives: the model, or nothing where there was an error.
-// Keeps true: all errors are reported in one go, each cause once; a broken declaration hides no other and causes no cascade.
+// Takes: the tree, and the files it loads (paths relative to the spec). Gives: the model, or nothing where there was an
+// error. Keeps true: all errors are reported in one go, each cause once; a broken declaration hides no other and causes
+// no cascade.
 #pragma once
 
 #include <optional>

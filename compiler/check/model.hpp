@@ -1,7 +1,7 @@
 // The typed spec: names resolved, numbers rounded, data loaded, everything checked.
-// Takes its form from check/check.cpp. Gives: reference/, ir/, calibrate/ and evaluate/ all they need; none of them sees the AST.
-// Keeps true: every index is in range; every formula is well-typed; a Formula's operands have smaller indices than itself
-// (the formulas are a DAG in topological order, a `let` is the node it names, not a copy).
+// Takes its form from check/check.cpp. Gives: reference/, ir/, calibrate/ and evaluate/ all they need; none of them
+// sees the AST. Keeps true: every index is in range; every formula is well-typed; a Formula's operands have smaller
+// indices than itself (the formulas are a DAG in topological order, a `let` is the node it names, not a copy).
 #pragma once
 
 #include <cstdint>
@@ -35,7 +35,7 @@ struct Input {
     float scale = 1.0F;           ///< i8: value = scale x integer
     Range range;                  ///< scalars; a sample outside counts as missing
     bool has_range = false;
-    std::uint32_t hold = 0;       ///< at most so many missing samples in a row are replaced by the last present one
+    std::uint32_t hold = 0;  ///< at most so many missing samples in a row are replaced by the last present one
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
@@ -60,27 +60,41 @@ enum class Aggregation : std::uint8_t { min, max, mean, kth };
 
 /// d aggregated over a target set: AGG DIST(point, target).
 struct Distance {
-    std::vector<Index> point;     ///< one embedding input, or the scalar inputs of a vector
+    std::vector<Index> point;  ///< one embedding input, or the scalar inputs of a vector
     bool point_is_vector = false;
     Index target = 0;
     Metric metric = Metric::l2;
     Aggregation aggregation = Aggregation::min;
-    std::uint32_t kth = 1;        ///< the n-th smallest, from 1, for Aggregation::kth
-    std::vector<float> weights;   ///< mahalanobis: D x D row-major symmetric positive definite, or its D diagonal elements
+    std::uint32_t kth = 1;  ///< the n-th smallest, from 1, for Aggregation::kth
+    std::vector<float>
+        weights;  ///< mahalanobis: D x D row-major symmetric positive definite, or its D diagonal elements
     bool weights_diagonal = false;
-    std::string weights_path;     ///< file the weights came from, for dependency files; empty: literal or a target
-    std::string text;             ///< canonical text, "min l2(z, goal_a)"
+    std::string weights_path;  ///< file the weights came from, for dependency files; empty: literal or a target
+    std::string text;          ///< canonical text, "min l2(z, goal_a)"
     Span span;
 };
 
 /// EXPR, evaluated in float32, each operation rounded once, in the order given.
 struct Expr {
-    enum class Kind : std::uint8_t { number, scalar, distance, negate, add, subtract, multiply, divide, abs, sqrt, min, max };
+    enum class Kind : std::uint8_t {
+        number,
+        scalar,
+        distance,
+        negate,
+        add,
+        subtract,
+        multiply,
+        divide,
+        abs,
+        sqrt,
+        min,
+        max
+    };
     Kind kind = Kind::number;
-    std::string text;         ///< number: its decimal text
-    double number = 0;        ///< the decimal text rounded to double: only truth formulas use it
-    float number32 = 0;       ///< the decimal text rounded once to float32
-    Index index = 0;          ///< scalar: input; distance: distance
+    std::string text;    ///< number: its decimal text
+    double number = 0;   ///< the decimal text rounded to double: only truth formulas use it
+    float number32 = 0;  ///< the decimal text rounded once to float32
+    Index index = 0;     ///< scalar: input; distance: distance
     std::vector<Expr> arguments;
     Span span;
 };
@@ -91,24 +105,25 @@ enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_condit
 
 struct Threshold {
     ThresholdOrigin origin = ThresholdOrigin::literal;
-    std::string text;         ///< literal: its decimal text; calibrated: "calibrated(conformal, alpha = 0.10)" as canonical text
-    std::string alpha;        ///< decimal text, where the method has one
-    double value64 = 0;       ///< the literal's text rounded to double: only truth formulas use it
-    float value = 0;          ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
+    std::string
+        text;  ///< literal: its decimal text; calibrated: "calibrated(conformal, alpha = 0.10)" as canonical text
+    std::string alpha;   ///< decimal text, where the method has one
+    double value64 = 0;  ///< the literal's text rounded to double: only truth formulas use it
+    float value = 0;     ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
     Span span;
 };
 
 /// Definition "Embedding Predicate": (Z_target, d, epsilon, CMP, a), or EXPR CMP epsilon in general.
 /// Robustness is epsilon - delta for <= and <, delta - epsilon for >= and >, one float32 subtraction.
 struct Predicate {
-    std::string name;         ///< empty for a comparison that stands in a formula
-    std::string text;         ///< canonical text without the threshold: "min l2(z, goal_a) <= "
+    std::string name;  ///< empty for a comparison that stands in a formula
+    std::string text;  ///< canonical text without the threshold: "min l2(z, goal_a) <= "
     Expr expression;
     Comparison comparison = Comparison::less_equal;
     Threshold threshold;
-    Range delta;              ///< of the expression, by interval arithmetic, rounded outward
-    Range robustness;         ///< of epsilon - delta or delta - epsilon, rounded outward
-    std::vector<Index> inputs;///< all inputs it reads, ascending
+    Range delta;                ///< of the expression, by interval arithmetic, rounded outward
+    Range robustness;           ///< of epsilon - delta or delta - epsilon, rounded outward
+    std::vector<Index> inputs;  ///< all inputs it reads, ascending
     Span span;
 
     bool upper_bound() const { return comparison == Comparison::less_equal || comparison == Comparison::less; }
@@ -125,15 +140,30 @@ inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval b
 struct Formula {
     /// The operators of the language after desugaring words; `next` and `previous` stay as written.
     enum class Kind : std::uint8_t {
-        constant_true, constant_false, predicate, boolean_input,
-        negation, conjunction, disjunction, implication, equivalence,
-        next, eventually, always, until, weak_until, release,
-        previous, once, historically, since,
+        constant_true,
+        constant_false,
+        predicate,
+        boolean_input,
+        negation,
+        conjunction,
+        disjunction,
+        implication,
+        equivalence,
+        next,
+        eventually,
+        always,
+        until,
+        weak_until,
+        release,
+        previous,
+        once,
+        historically,
+        since,
     };
     Kind kind = Kind::constant_true;
-    Index index = 0;                  ///< predicate or boolean_input
-    std::vector<Index> operands;      ///< formulas; conjunction and disjunction have two or more
-    std::uint32_t low = 0;            ///< interval, in steps; [1, 1] for next and previous
+    Index index = 0;              ///< predicate or boolean_input
+    std::vector<Index> operands;  ///< formulas; conjunction and disjunction have two or more
+    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next and previous
     std::uint32_t high = kUnbounded;
     Span span;
 };
@@ -142,13 +172,13 @@ struct Monitor {
     std::string name;
     Index formula = 0;
     bool sliding = false;
-    std::uint32_t horizon = 0;        ///< sliding: steps of delay; 0 otherwise
+    std::uint32_t horizon = 0;  ///< sliding: steps of delay; 0 otherwise
     Span span;
 };
 
 struct Truth {
     Index predicate = 0;
-    Index formula = 0;                ///< over recorded inputs; past operators only
+    Index formula = 0;  ///< over recorded inputs; past operators only
     Span span;
 };
 
@@ -159,13 +189,14 @@ struct Let {
 };
 
 struct Model {
-    std::string name;                 ///< of the spec
-    source::File file;                ///< for the lines that comments quote
-    double step_seconds = 0;          ///< 0: no rate was given
+    std::string name;         ///< of the spec
+    source::File file;        ///< for the lines that comments quote
+    double step_seconds = 0;  ///< 0: no rate was given
     std::vector<Input> inputs;
     std::vector<Target> targets;
     std::vector<Distance> distances;  ///< equal ones stand once
-    std::vector<Predicate> predicates;///< named ones first, in order of declaration, then those that stand in formulas
+    std::vector<Predicate>
+        predicates;  ///< named ones first, in order of declaration, then those that stand in formulas
     std::vector<Formula> formulas;
     std::vector<Let> lets;
     std::vector<Truth> truths;
@@ -173,7 +204,12 @@ struct Model {
     std::vector<std::string> dependencies;  ///< paths of every file loaded, for --depfile, sorted
 };
 
-/// The formula as canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)".
+/// The formula as canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)". Lets are written
+/// out, except in formulas of more than kMaxPrinted operators and atoms: there the names of lets stand below the top.
 std::string print(const Model& model, Index formula);
+inline constexpr std::uint64_t kMaxPrinted = 1000;
+
+/// The expression as canonical text: equal values of numbers are written alike.
+std::string print(const Model& model, const Expr& expression);
 
 }  // namespace etlc::check

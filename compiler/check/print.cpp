@@ -1,0 +1,230 @@
+// Canonical text of formulas and expressions: symbols, and parentheses only where the grammar needs them.
+#include <algorithm>
+#include <limits>
+#include <string_view>
+#include <unordered_map>
+
+#include "check/decimal.hpp"
+#include "check/model.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using Kind = Formula::Kind;
+
+/// From loosest to tightest, as in docs/language.md.
+enum Level : int { kIff = 1, kImplies, kOr, kAnd, kUntil, kPrefix, kAtom };
+
+struct Operator {
+    std::string_view symbol;
+    Level level;
+};
+
+Operator operator_of(Kind kind) {
+    switch (kind) {
+        case Kind::equivalence:
+            return {"<->", kIff};
+        case Kind::implication:
+            return {"->", kImplies};
+        case Kind::disjunction:
+            return {"||", kOr};
+        case Kind::conjunction:
+            return {"&&", kAnd};
+        case Kind::until:
+            return {"U", kUntil};
+        case Kind::weak_until:
+            return {"W", kUntil};
+        case Kind::release:
+            return {"R", kUntil};
+        case Kind::since:
+            return {"S", kUntil};
+        case Kind::negation:
+            return {"!", kPrefix};
+        case Kind::next:
+            return {"X", kPrefix};
+        case Kind::eventually:
+            return {"F", kPrefix};
+        case Kind::always:
+            return {"G", kPrefix};
+        case Kind::previous:
+            return {"Y", kPrefix};
+        case Kind::once:
+            return {"O", kPrefix};
+        case Kind::historically:
+            return {"H", kPrefix};
+        case Kind::constant_true:
+            return {"true", kAtom};
+        case Kind::constant_false:
+            return {"false", kAtom};
+        case Kind::predicate:
+        case Kind::boolean_input:
+            break;
+    }
+    return {"", kAtom};
+}
+
+/// Sizes of the formulas up to `formula` with every let written out, saturating.
+std::uint64_t written_out(const Model& model, Index formula) {
+    constexpr std::uint64_t kMany = std::numeric_limits<std::uint32_t>::max();
+    std::vector<std::uint64_t> size(formula + 1, 1);
+    for (Index i = 0; i <= formula; ++i)
+        for (const Index operand : model.formulas[i].operands) size[i] = std::min(kMany, size[i] + size[operand]);
+    return size[formula];
+}
+
+class FormulaPrinter {
+public:
+    FormulaPrinter(const Model& model, Index root) : model_(model), root_(root) {
+        if (written_out(model, root) <= kMaxPrinted) return;
+        for (const Let& let : model.lets)
+            if (let.formula != kNone) let_names_.try_emplace(let.formula, let.name);
+    }
+
+    std::string print() && {
+        write(root_, kIff);
+        return std::move(out_);
+    }
+
+private:
+    void write(Index index, int weakest) {
+        if (const auto let = let_names_.find(index); let != let_names_.end() && index != root_) {
+            out_ += let->second;
+            return;
+        }
+        const Formula& formula = model_.formulas[index];
+        const Operator op = operator_of(formula.kind);
+        const bool parentheses = op.level < weakest;
+        if (parentheses) out_ += '(';
+        if (op.level == kAtom) write_atom(formula, op);
+        if (op.level == kPrefix) write_prefix(formula, op);
+        if (op.level < kPrefix) write_infix(formula, op);
+        if (parentheses) out_ += ')';
+    }
+
+    void write_atom(const Formula& formula, const Operator& op) {
+        out_ += op.symbol;
+        if (formula.kind == Kind::boolean_input) out_ += model_.inputs[formula.index].name;
+        if (formula.kind != Kind::predicate) return;
+        const Predicate& predicate = model_.predicates[formula.index];
+        out_ += predicate.name.empty() ? predicate.text + predicate.threshold.text : predicate.name;
+    }
+
+    void write_prefix(const Formula& formula, const Operator& op) {
+        out_ += op.symbol;
+        write_interval(formula);
+        if (formula.kind != Kind::negation) out_ += ' ';
+        write(formula.operands[0], kPrefix);
+    }
+
+    void write_infix(const Formula& formula, const Operator& op) {
+        const bool left = op.level == kIff;
+        const bool right = op.level == kImplies || op.level == kUntil;
+        for (std::size_t i = 0; i < formula.operands.size(); ++i) {
+            if (i > 0) {
+                out_ += ' ';
+                out_ += op.symbol;
+                write_interval(formula);
+                out_ += ' ';
+            }
+            const bool first = i == 0;
+            const bool tighter = (right && first) || (left && !first);
+            write(formula.operands[i], op.level + (tighter ? 1 : 0));
+        }
+    }
+
+    void write_interval(const Formula& formula) {
+        if (formula.kind == Kind::next || formula.kind == Kind::previous) return;
+        if (formula.low == 0 && formula.high == kUnbounded) return;
+        const std::string high = formula.high == kUnbounded ? "inf" : std::to_string(formula.high);
+        out_ += '[' + std::to_string(formula.low) + ", " + high + ']';
+    }
+
+    const Model& model_;
+    Index root_;
+    std::unordered_map<Index, std::string> let_names_;
+    std::string out_;
+};
+
+// ---- expressions ---------------------------------------------------------------------------------------------------
+
+using ExprKind = Expr::Kind;
+enum ExprLevel : int { kSum = 1, kProduct, kNegation, kPrimary };
+
+void write(const Model& model, const Expr& expression, int weakest, std::string& out);
+
+void write_call(const Model& model, const Expr& expression, std::string_view function, std::string& out) {
+    out += function;
+    out += '(';
+    for (std::size_t i = 0; i < expression.arguments.size(); ++i) {
+        if (i > 0) out += ", ";
+        write(model, expression.arguments[i], kSum, out);
+    }
+    out += ')';
+}
+
+void write_binary(const Model& model, const Expr& expression, ExprLevel level, std::string_view symbol, int weakest,
+                  std::string& out) {
+    const bool parentheses = level < weakest;
+    if (parentheses) out += '(';
+    write(model, expression.arguments[0], level, out);
+    out += symbol;
+    write(model, expression.arguments[1], level + 1, out);
+    if (parentheses) out += ')';
+}
+
+void write(const Model& model, const Expr& expression, int weakest, std::string& out) {
+    switch (expression.kind) {
+        case ExprKind::number:
+            out += Decimal::parse(expression.text).text();
+            return;
+        case ExprKind::scalar:
+            out += model.inputs[expression.index].name;
+            return;
+        case ExprKind::distance:
+            out += model.distances[expression.index].text;
+            return;
+        case ExprKind::negate:
+            out += '-';
+            write(model, expression.arguments[0], kNegation, out);
+            return;
+        case ExprKind::add:
+            write_binary(model, expression, kSum, " + ", weakest, out);
+            return;
+        case ExprKind::subtract:
+            write_binary(model, expression, kSum, " - ", weakest, out);
+            return;
+        case ExprKind::multiply:
+            write_binary(model, expression, kProduct, " * ", weakest, out);
+            return;
+        case ExprKind::divide:
+            write_binary(model, expression, kProduct, " / ", weakest, out);
+            return;
+        case ExprKind::abs:
+            write_call(model, expression, "abs", out);
+            return;
+        case ExprKind::sqrt:
+            write_call(model, expression, "sqrt", out);
+            return;
+        case ExprKind::min:
+            write_call(model, expression, "min", out);
+            return;
+        case ExprKind::max:
+            write_call(model, expression, "max", out);
+            return;
+    }
+}
+
+}  // namespace
+
+std::string print(const Model& model, Index formula) {
+    return FormulaPrinter(model, formula).print();
+}
+
+std::string print(const Model& model, const Expr& expression) {
+    std::string out;
+    write(model, expression, kSum, out);
+    return out;
+}
+
+}  // namespace etlc::check
