@@ -1,0 +1,227 @@
+#include "plan/budget.hpp"
+
+#include <algorithm>
+#include <set>
+
+#include "etlmon/delay.hpp"
+#include "etlmon/verdict.hpp"
+#include "etlmon/window.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+constexpr std::uint64_t kValue = sizeof(Value);
+constexpr std::uint64_t kWord = sizeof(std::uint32_t);
+constexpr std::uint64_t kKeysPerValue = 2;
+
+// Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
+constexpr std::uint64_t kCodePerValueOperation = 24;
+constexpr std::uint64_t kCodePerWindow = 240;
+constexpr std::uint64_t kCodePerRing = 64;
+constexpr std::uint64_t kCodePerTable = 200;
+constexpr std::uint64_t kCodePerFold = 96;
+constexpr std::uint64_t kTransitionBytes = 2 * sizeof(std::uint16_t);
+
+Cost operator+(Cost a, const Cost& b) {
+    a.state_bytes += b.state_bytes;
+    a.constant_bytes += b.constant_bytes;
+    a.code_bytes += b.code_bytes;
+    a.operations += b.operations;
+    a.distance_operations += b.distance_operations;
+    return a;
+}
+
+Cost values(std::uint64_t kept, std::uint64_t combined) {
+    return {.state_bytes = kept * kValue,
+            .code_bytes = (kept + combined) * kCodePerValueOperation,
+            .operations = combined * kKeysPerValue};
+}
+
+Cost window_cost(std::uint32_t length, bool pairs) {
+    if (length == 1) return {};
+    using One = etlmon::Max<Value>;
+    using Two = etlmon::Since<Value>;
+    const std::uint64_t combined = etlmon::window_operations(length) * (pairs ? 3 : 1);
+    return {.state_bytes = pairs ? etlmon::window_bytes<Two>(length) : etlmon::window_bytes<One>(length),
+            .code_bytes = kCodePerWindow * (pairs ? 2 : 1),
+            .operations = combined * kKeysPerValue};
+}
+
+Cost ring_cost(std::uint32_t length) {
+    return {.state_bytes = etlmon::delay_bytes<Value>(length), .code_bytes = kCodePerRing};
+}
+
+Cost fold_cost(const Fold& fold) {
+    const bool binary = fold.left != kNone;
+    Cost cost = values(binary ? 2 : 1, binary ? 3 : 1);
+    cost.operations += 2 + 3;  // is the window open, does it reach past this step; the bounds
+    cost.code_bytes += kCodePerFold;
+    return cost;
+}
+
+/// Guards, transitions, joins, and two operations a state to read the bounds.
+Cost machine_cost(const Machine& machine) {
+    std::uint64_t combined = 2 * machine.states.size();
+    for (const auto& guard : machine.guards) combined += guard.empty() ? 0 : guard.size() - 1;
+    for (const Transition& t : machine.automaton.transitions)
+        combined += (t.guard != 0 && !machine.states[t.source].always_true ? 1 : 0) + 1;
+    if (unrolled(machine)) return values(registers(machine), combined);
+    Cost cost{.operations = combined * kKeysPerValue};
+    cost.state_bytes = 2 * machine.states.size() * kValue + kWord;
+    cost.code_bytes = kCodePerTable + machine.automaton.transitions.size() * kTransitionBytes +
+                      machine.states.size() * (sizeof(std::uint16_t) + 1) + machine.guards.size() * kCodePerValueOperation;
+    return cost;
+}
+
+Cost distance_cost(const check::Model& model, const check::Distance& distance) {
+    const check::Target& target = model.targets[distance.target];
+    const std::uint64_t elements = std::uint64_t{target.rows} * target.dimension;
+    const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
+    return {.constant_bytes = distance.weights.size() * sizeof(float),
+            .distance_operations = full ? elements * (1 + target.dimension) : elements};
+}
+
+Cost hold_cost(const check::Input& input) {
+    if (input.hold == 0) return {};
+    return {.state_bytes = (std::uint64_t{input.dimension} + 1) * kWord, .code_bytes = kCodePerRing, .operations = 1};
+}
+
+/// The parts of a plan that one monitor, or all of them, need.
+class Needs {
+public:
+    explicit Needs(const Plan& plan) : plan_(plan) {}
+
+    void stream(Slot slot) {
+        if (slot == kNone || !streams_.insert(slot).second) return;
+        const Stream& s = plan_.streams[slot];
+        if (s.op == StreamOp::predicate) predicate(s.index);
+        if (s.op == StreamOp::flag) inputs_.insert(s.index);
+        for (Slot operand : s.operands) stream(operand);
+    }
+
+    void reading(std::uint32_t index) {
+        if (!readings_.insert(index).second) return;
+        const Reading& r = plan_.readings[index];
+        for (std::uint32_t operand : r.operands) reading(operand);
+        if (r.kind == Reading::Kind::latch) stream(r.latch.operand);
+        if (r.kind == Reading::Kind::fold) {
+            for (Slot slot : {r.fold.left, r.fold.right, r.fold.unseen}) stream(slot);
+        }
+        for (const auto& guard : r.machine.guards)
+            for (Slot slot : guard) stream(slot);
+        for (const Machine::State& state : r.machine.states) {
+            stream(state.weak_unseen);
+            stream(state.strong_unseen);
+        }
+    }
+
+    void monitor(const Monitor& monitor) {
+        monitor.sliding ? stream(monitor.stream) : reading(monitor.reading);
+    }
+
+    Cost cost() const {
+        const check::Model& model = *plan_.model;
+        Cost sum;
+        for (Slot slot : streams_) sum = sum + cost_of(plan_, plan_.streams[slot]);
+        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_, plan_.readings[index]);
+        for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
+        for (Index d : distances_) sum = sum + distance_cost(model, model.distances[d]);
+        for (Index t : targets_) sum.constant_bytes += model.targets[t].values.size() * sizeof(float);
+        for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
+        return sum;
+    }
+
+private:
+    static Cost telemetry(const check::Predicate& predicate) {
+        if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
+        return {.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord, .code_bytes = kCodePerRing};
+    }
+
+    void predicate(Index index) {
+        if (!predicates_.insert(index).second) return;
+        const check::Predicate& p = plan_.model->predicates[index];
+        inputs_.insert(p.inputs.begin(), p.inputs.end());
+        expression(p.expression);
+    }
+
+    void expression(const check::Expr& e) {
+        if (e.kind == check::Expr::Kind::distance) {
+            distances_.insert(e.index);
+            targets_.insert(plan_.model->distances[e.index].target);
+        }
+        for (const check::Expr& argument : e.arguments) expression(argument);
+    }
+
+    const Plan& plan_;
+    std::set<Slot> streams_;
+    std::set<std::uint32_t> readings_;
+    std::set<Index> predicates_;
+    std::set<Index> distances_;
+    std::set<Index> targets_;
+    std::set<Index> inputs_;
+};
+
+}  // namespace
+
+std::size_t registers(const Machine& machine) {
+    return static_cast<std::size_t>(std::count_if(machine.states.begin(), machine.states.end(),
+                                                  [](const Machine::State& state) { return !state.always_true; }));
+}
+
+bool unrolled(const Machine& machine) {
+    return machine.states.size() <= kMaxUnrolledStates && machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
+}
+
+Cost cost_of(const Plan&, const Stream& stream) {
+    const std::size_t operands = stream.operands.size();
+    switch (stream.op) {
+        case StreamOp::constant:
+        case StreamOp::predicate:
+        case StreamOp::flag:
+        case StreamOp::negation: return {.code_bytes = kCodePerValueOperation};
+        case StreamOp::conjunction:
+        case StreamOp::disjunction: return values(0, operands - 1);
+        case StreamOp::delay:
+        case StreamOp::shift: return ring_cost(stream.length);
+        case StreamOp::running_max:
+        case StreamOp::running_min: return values(1, 1);
+        case StreamOp::since:
+        case StreamOp::trigger: return values(1, 2);
+        case StreamOp::window_max:
+        case StreamOp::window_min: return window_cost(stream.length, false);
+        case StreamOp::window_since:
+        case StreamOp::window_trigger:
+        case StreamOp::window_until:
+        case StreamOp::window_release: return window_cost(stream.length, true);
+    }
+    return {};
+}
+
+Cost cost_of(const Plan&, const Reading& reading) {
+    switch (reading.kind) {
+        case Reading::Kind::latch: return values(1, 0);
+        case Reading::Kind::fold: return fold_cost(reading.fold);
+        case Reading::Kind::machine: return machine_cost(reading.machine);
+        case Reading::Kind::conjunction:
+        case Reading::Kind::disjunction: return values(0, 2 * (reading.operands.size() - 1));
+    }
+    return {};
+}
+
+void add_costs(Plan& plan) {
+    Needs all(plan);
+    Cost fixed{.state_bytes = kWord};  // missing steps
+    if (plan.counts_steps) fixed.state_bytes += kWord;
+    if (plan.has_sliding) fixed.state_bytes += kWord;  // calls of finish()
+    for (const Monitor& monitor : plan.monitors) {
+        Needs own(plan);
+        own.monitor(monitor);
+        all.monitor(monitor);
+        plan.monitor_costs.push_back(own.cost());
+        if (plan.has_sliding && !monitor.sliding) fixed.state_bytes += sizeof(etlmon::Verdict);
+    }
+    plan.cost = all.cost() + fixed;
+}
+
+}  // namespace etlc::plan

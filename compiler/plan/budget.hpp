@@ -1,0 +1,24 @@
+// What a plan costs: bytes of state and constants, estimated code, operations of the worst step.
+// Takes: a plan. Gives: the figures of `--emit report` and of the generated header's table.
+// Keeps true: state_bytes is exactly the size of the generated class; operations count every min, max and comparison of
+// two keys that the worst step performs (a Value has two keys); code_bytes is an estimate.
+#pragma once
+
+#include "plan/plan.hpp"
+
+namespace etlc::plan {
+
+/// A state machine of more states is emitted as a constant table and one loop.
+inline constexpr std::size_t kMaxUnrolledStates = 32;
+inline constexpr std::size_t kMaxUnrolledTransitions = 160;
+bool unrolled(const Machine& machine);
+
+Cost cost_of(const Plan& plan, const Stream& stream);
+Cost cost_of(const Plan& plan, const Reading& reading);
+/// Fills in plan.cost and plan.monitor_costs.
+void add_costs(Plan& plan);
+
+/// Registers of a machine that are kept: all but the one that is always true.
+std::size_t registers(const Machine& machine);
+
+}  // namespace etlc::plan

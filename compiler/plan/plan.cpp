@@ -1,0 +1,183 @@
+#include "plan/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "plan/budget.hpp"
+#include "plan/readings.hpp"
+#include "plan/streams.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+/// What the limits allow a single automaton; the whole plan is weighed afterwards.
+AutomatonLimits automaton_limits(const Limits& limits) {
+    constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
+    AutomatonLimits result;
+    result.states = static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
+    result.transitions = static_cast<std::size_t>(std::min({limits.code_bytes / 4, limits.operations, kNumbered}) + 1);
+    return result;
+}
+
+class Planning {
+public:
+    Planning(ir::Program& program, const Limits& limits)
+        : program_(program),
+          streams_(program.graph, plan_.streams),
+          readings_(program.graph, streams_, plan_.readings, automaton_limits(limits)) {
+        plan_.model = &program.graph.model();
+    }
+
+    /// False where a monitor is too large; the sink then says which part.
+    bool add_monitor(Index index, diag::Sink& sink) {
+        const check::Monitor& source = plan_.model->monitors[index];
+        Monitor monitor{.name = source.name, .sliding = source.sliding, .horizon = source.horizon, .index = index};
+        if (source.sliding) {
+            plan_.has_sliding = true;
+            const Slot slot = streams_.of(program_.monitors[index]);
+            monitor.stream = streams_.delayed(slot, source.horizon - plan_.streams[slot].lag);
+        } else {
+            const std::size_t known = readings_.oversize().size();
+            const auto reading = readings_.of(program_.monitors[index]);
+            for (std::size_t i = known; i < readings_.oversize().size(); ++i) report(source, readings_.oversize()[i], sink);
+            if (!reading) return false;
+            monitor.reading = *reading;
+        }
+        plan_.monitors.push_back(std::move(monitor));
+        return true;
+    }
+
+    Plan finish() {
+        drop_idle_streams();
+        collect_inputs();
+        plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts);
+        add_costs(plan_);
+        return std::move(plan_);
+    }
+
+private:
+    static bool counts(const Reading& reading) {
+        if (reading.kind == Reading::Kind::latch) return true;
+        return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
+    }
+
+    void report(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, diag::Sink& sink) const {
+        const ir::Node& node = program_.graph[part.node];
+        sink.report(diag::Code::formula_too_large, node.span,
+                    fmt::format("monitor '{}' needs a state machine larger than the limits for '{}': building it stopped "
+                                "at {} states and {} transitions",
+                                monitor.name, program_.graph.text(part.node), part.reached.states, part.reached.transitions))
+            .note("shorter windows or fewer nested operators make it smaller; --max-state and --max-code move the limits");
+    }
+
+    /// Folding leaves streams behind that nothing reads.
+    void drop_idle_streams() {
+        std::vector<bool> used(plan_.streams.size(), false);
+        for_each_slot([&](Slot& slot) { used[slot] = true; });
+        for (Slot slot = static_cast<Slot>(plan_.streams.size()); slot-- > 0;)
+            if (used[slot])
+                for (Slot operand : plan_.streams[slot].operands) used[operand] = true;
+
+        std::vector<Slot> renumbered(plan_.streams.size(), kNone);
+        std::vector<Stream> kept;
+        for (Slot slot = 0; slot < plan_.streams.size(); ++slot) {
+            if (!used[slot]) continue;
+            renumbered[slot] = static_cast<Slot>(kept.size());
+            for (Slot& operand : plan_.streams[slot].operands) operand = renumbered[operand];
+            kept.push_back(std::move(plan_.streams[slot]));
+        }
+        plan_.streams = std::move(kept);
+        for_each_slot([&](Slot& slot) { slot = renumbered[slot]; });
+    }
+
+    /// Every place outside the streams that names one.
+    template <class Visit>
+    void for_each_slot(Visit visit) {
+        const auto visit_some = [&](Slot& slot) {
+            if (slot != kNone) visit(slot);
+        };
+        for (Reading& reading : plan_.readings) {
+            if (reading.kind == Reading::Kind::latch) visit(reading.latch.operand);
+            if (reading.kind == Reading::Kind::fold)
+                for (Slot* slot : {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}) visit_some(*slot);
+            for (auto& guard : reading.machine.guards)
+                for (Slot& slot : guard) visit(slot);
+            for (Machine::State& state : reading.machine.states) {
+                visit_some(state.weak_unseen);
+                visit_some(state.strong_unseen);
+            }
+        }
+        for (Monitor& monitor : plan_.monitors) visit_some(monitor.stream);
+    }
+
+    void collect_inputs() {
+        const check::Model& model = *plan_.model;
+        std::set<Index> inputs;
+        std::set<Index> predicates;
+        for (const Stream& stream : plan_.streams) {
+            if (stream.op == StreamOp::flag) inputs.insert(stream.index);
+            if (stream.op == StreamOp::predicate) predicates.insert(stream.index);
+        }
+        std::set<Index> distances;
+        for (Index p : predicates) {
+            inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
+            collect_distances(model.predicates[p].expression, distances);
+        }
+        std::set<Index> targets;
+        for (Index d : distances) targets.insert(model.distances[d].target);
+        plan_.inputs.assign(inputs.begin(), inputs.end());
+        plan_.predicates.assign(predicates.begin(), predicates.end());
+        plan_.distances.assign(distances.begin(), distances.end());
+        plan_.targets.assign(targets.begin(), targets.end());
+    }
+
+    static void collect_distances(const check::Expr& e, std::set<Index>& distances) {
+        if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
+        for (const check::Expr& argument : e.arguments) collect_distances(argument, distances);
+    }
+
+    ir::Program& program_;
+    Plan plan_;
+    StreamBuilder streams_;
+    ReadingBuilder readings_;
+};
+
+std::string figures(const Cost& cost) {
+    return fmt::format("{} bytes of state, {} bytes of code (estimated), {} operations a step", cost.state_bytes,
+                       cost.code_bytes, cost.operations);
+}
+
+bool exceeds(const Cost& cost, const Limits& limits) {
+    return cost.state_bytes > limits.state_bytes || cost.code_bytes > limits.code_bytes ||
+           cost.operations > limits.operations;
+}
+
+void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
+    if (!exceeds(plan.cost, limits)) return;
+    const check::Model& model = *plan.model;
+    auto& error = sink.report(diag::Code::over_budget, model.monitors.front().span,
+                              fmt::format("the monitor class needs {}; the limits are {}, {} and {}", figures(plan.cost),
+                                          limits.state_bytes, limits.code_bytes, limits.operations));
+    for (std::size_t m = 0; m < plan.monitors.size(); ++m)
+        error.note(model.monitors[plan.monitors[m].index].span,
+                   fmt::format("'{}' alone needs {}", plan.monitors[m].name, figures(plan.monitor_costs[m])));
+    error.note("--max-state, --max-code and --max-work move the limits");
+}
+
+}  // namespace
+
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink) {
+    Planning planning(program, limits);
+    bool complete = true;
+    for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
+    if (!complete) return std::nullopt;
+    Plan result = planning.finish();
+    check_budget(result, limits, sink);
+    if (sink.has_errors()) return std::nullopt;
+    return result;
+}
+
+}  // namespace etlc::plan

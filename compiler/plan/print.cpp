@@ -1,0 +1,124 @@
+// The plan as text, for --emit plan.
+#include <fmt/format.h>
+
+#include "plan/budget.hpp"
+#include "plan/plan.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+std::string key_text(Key key) {
+    return fmt::format("{}", etlmon::float_of(key));
+}
+
+std::string value_text(Value value) {
+    if (value.low == value.high) return key_text(value.low);
+    return fmt::format("[{}, {}]", key_text(value.low), key_text(value.high));
+}
+
+const char* name(StreamOp op) {
+    switch (op) {
+        case StreamOp::constant: return "constant";
+        case StreamOp::predicate: return "predicate";
+        case StreamOp::flag: return "flag";
+        case StreamOp::negation: return "not";
+        case StreamOp::conjunction: return "min";
+        case StreamOp::disjunction: return "max";
+        case StreamOp::delay: return "delay";
+        case StreamOp::shift: return "shift";
+        case StreamOp::running_max: return "running max";
+        case StreamOp::running_min: return "running min";
+        case StreamOp::window_max: return "window max";
+        case StreamOp::window_min: return "window min";
+        case StreamOp::since: return "since";
+        case StreamOp::trigger: return "trigger";
+        case StreamOp::window_since: return "window since";
+        case StreamOp::window_trigger: return "window trigger";
+        case StreamOp::window_until: return "window until";
+        case StreamOp::window_release: return "window release";
+    }
+    return "";
+}
+
+std::string slots(const std::vector<Slot>& operands) {
+    std::string text;
+    for (Slot slot : operands) text += fmt::format(" s{}", slot);
+    return text;
+}
+
+std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
+    const Stream& s = plan.streams[slot];
+    const check::Model& model = *plan.model;
+    std::string text = fmt::format("  s{} = {}", slot, name(s.op));
+    if (s.op == StreamOp::constant) text += " " + value_text(s.value);
+    if (s.op == StreamOp::predicate) text += " " + model.predicates[s.index].name;
+    if (s.op == StreamOp::flag) text += " " + model.inputs[s.index].name;
+    text += slots(s.operands);
+    if (s.length != 0) text += fmt::format(" over {}", s.length);
+    if (s.op == StreamOp::shift) text += " from " + value_text(s.value);
+    if (s.lag != 0) text += fmt::format(", {} steps late", s.lag);
+    if (s.node != kNone) text += fmt::format("  // {}", graph.text(s.node));
+    return text + "\n";
+}
+
+std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations) {
+    if (obligations.empty()) return "nothing owed";
+    std::string text = "owes ";
+    for (NodeId id : obligations) text += (text.size() > 5 ? ", " : "") + graph.text(id);
+    return text;
+}
+
+std::string machine_text(const Machine& machine, const ir::Graph& graph) {
+    const Automaton& automaton = machine.automaton;
+    std::string text = fmt::format("state machine of {} states, {} transitions, {}\n", automaton.states.size(),
+                                   automaton.transitions.size(), unrolled(machine) ? "unrolled" : "as a table");
+    for (std::size_t state = 0; state < automaton.states.size(); ++state) {
+        text += fmt::format("       q{}: {}{}\n", state, owed(graph, automaton.states[state]),
+                            machine.states[state].always_true ? ", always +inf" : "");
+        for (const Transition& t : automaton.transitions) {
+            if (t.target != state) continue;
+            text += fmt::format("           from q{}", t.source);
+            if (t.guard != 0) text += " where" + slots(machine.guards[t.guard]);
+            text += "\n";
+        }
+    }
+    return text;
+}
+
+std::string reading_text(const Reading& reading, const ir::Graph& graph) {
+    std::string text;
+    switch (reading.kind) {
+        case Reading::Kind::latch: return fmt::format("latch of s{} at step 0\n", reading.latch.operand);
+        case Reading::Kind::fold:
+            text = fmt::format("fold {} over", ir::info(reading.fold.op).symbol);
+            if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
+            return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
+        case Reading::Kind::machine: return machine_text(reading.machine, graph);
+        case Reading::Kind::conjunction:
+        case Reading::Kind::disjunction: break;
+    }
+    text = reading.kind == Reading::Kind::conjunction ? "min" : "max";
+    for (std::uint32_t operand : reading.operands) text += fmt::format(" r{}", operand);
+    return text + "\n";
+}
+
+}  // namespace
+
+std::string print(const Plan& plan, const ir::Graph& graph) {
+    std::string text = fmt::format("plan {}\nstreams\n", plan.model->name);
+    for (Slot slot = 0; slot < plan.streams.size(); ++slot) text += stream_text(plan, graph, slot);
+    if (!plan.readings.empty()) text += "readings\n";
+    for (std::size_t i = 0; i < plan.readings.size(); ++i)
+        text += fmt::format("  r{} = {}       // {}\n", i, reading_text(plan.readings[i], graph),
+                            graph.text(plan.readings[i].node));
+    text += "monitors\n";
+    for (const Monitor& monitor : plan.monitors) {
+        text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n", monitor.name, monitor.stream,
+                                              monitor.horizon)
+                                : fmt::format("  {} = r{}\n", monitor.name, monitor.reading);
+    }
+    return text;
+}
+
+}  // namespace etlc::plan

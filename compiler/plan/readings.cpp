@@ -1,0 +1,105 @@
+#include "plan/readings.hpp"
+
+#include <algorithm>
+
+namespace etlc::plan {
+
+using ir::Node;
+using ir::Op;
+
+namespace {
+
+
+/// The initial state's register stays at +inf where an unguarded loop keeps it there.
+bool loops_freely(const Automaton& automaton, std::uint32_t state) {
+    return std::any_of(automaton.transitions.begin(), automaton.transitions.end(), [&](const Transition& t) {
+        return t.source == state && t.target == state && t.guard == 0;
+    });
+}
+
+}  // namespace
+
+std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
+    if (const auto known = known_.find(id); known != known_.end()) return known->second;
+    const Node node = graph_[id];  // a copy: automata make the graph grow
+    std::optional<std::uint32_t> reading;
+    if (!node.has_future)
+        reading = latch(id);
+    else if (ir::info(node.op).arity == ir::Arity::many)
+        reading = combination(node, id);
+    else if (std::none_of(node.operands.begin(), node.operands.end(), [&](NodeId o) { return graph_[o].has_future; }))
+        reading = fold(node, id);
+    else
+        reading = machine(id);
+    if (reading) known_.emplace(id, *reading);
+    return reading;
+}
+
+std::uint32_t ReadingBuilder::add(Reading reading) {
+    readings_.push_back(std::move(reading));
+    return static_cast<std::uint32_t>(readings_.size() - 1);
+}
+
+std::uint32_t ReadingBuilder::latch(NodeId id) {
+    return add({.kind = Reading::Kind::latch, .node = id, .latch = {streams_.of(id)}});
+}
+
+std::uint32_t ReadingBuilder::fold(const Node& node, NodeId id) {
+    Fold fold{.op = node.op, .interval = node.interval};
+    if (node.operands.size() == 2) fold.left = streams_.of(node.operands[0]);
+    fold.right = streams_.of(node.operands.back());
+    fold.unseen = streams_.unseen(node.operands.back());
+    return add({.kind = Reading::Kind::fold, .node = id, .fold = fold});
+}
+
+/// The min or max of what its parts say; those without future share one latch.
+std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeId id) {
+    std::vector<NodeId> present;
+    std::vector<std::uint32_t> parts;
+    bool complete = true;
+    for (NodeId operand : node.operands) {
+        if (!graph_[operand].has_future) {
+            present.push_back(operand);
+            continue;
+        }
+        const auto part = of(operand);
+        complete = complete && part;
+        if (part) parts.push_back(*part);
+    }
+    if (!present.empty()) parts.push_back(*of(graph_.combine(node.op, std::move(present), node.span)));
+    if (!complete) return std::nullopt;
+    const auto kind = node.op == Op::conjunction ? Reading::Kind::conjunction : Reading::Kind::disjunction;
+    return add({.kind = kind, .node = id, .operands = std::move(parts)});
+}
+
+Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
+    std::vector<Slot> weak;
+    std::vector<Slot> strong;
+    for (NodeId obligation : obligations)
+        (is_strong(graph_[obligation].op) ? strong : weak).push_back(streams_.unseen(obligation));
+    Machine::State state{.strong = !strong.empty()};
+    if (!weak.empty()) state.weak_unseen = streams_.combine(StreamOp::conjunction, std::move(weak));
+    if (!strong.empty()) state.strong_unseen = streams_.combine(StreamOp::conjunction, std::move(strong));
+    return state;
+}
+
+std::optional<std::uint32_t> ReadingBuilder::machine(NodeId id) {
+    AutomatonSize reached;
+    auto automaton = build_automaton(graph_, id, limits_, reached);
+    if (!automaton) {
+        oversize_.push_back({id, reached});
+        return std::nullopt;
+    }
+    Reading reading{.kind = Reading::Kind::machine, .node = id};
+    for (const auto& obligations : automaton->states) reading.machine.states.push_back(state(obligations));
+    reading.machine.states[0].always_true = loops_freely(*automaton, 0);
+    for (const auto& literals : automaton->guards) {
+        std::vector<Slot> slots;
+        for (NodeId literal : literals) slots.push_back(streams_.of(literal));
+        reading.machine.guards.push_back(std::move(slots));
+    }
+    reading.machine.automaton = std::move(*automaton);
+    return add(std::move(reading));
+}
+
+}  // namespace etlc::plan

@@ -1,0 +1,44 @@
+// Prefix formulas as readings: the part of the plan that speaks about position 0.
+// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a latch, a fold, or the
+// automaton. Keeps true: equal readings stand once; a formula too large for the limits is reported, never approximated.
+#pragma once
+
+#include <map>
+#include <vector>
+
+#include "plan/streams.hpp"
+
+namespace etlc::plan {
+
+class ReadingBuilder {
+public:
+    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings, const AutomatonLimits& limits)
+        : graph_(graph), streams_(streams), readings_(readings), limits_(limits) {}
+
+    /// A sub-formula whose automaton would exceed the limits.
+    struct Oversize {
+        NodeId node = 0;
+        AutomatonSize reached;
+    };
+
+    /// The reading of a formula; nothing where a part is too large: then `oversize` names it.
+    std::optional<std::uint32_t> of(NodeId node);
+    const std::vector<Oversize>& oversize() const { return oversize_; }
+
+private:
+    std::optional<std::uint32_t> combination(const ir::Node& node, NodeId id);
+    std::optional<std::uint32_t> machine(NodeId id);
+    std::uint32_t latch(NodeId id);
+    std::uint32_t fold(const ir::Node& node, NodeId id);
+    std::uint32_t add(Reading reading);
+    Machine::State state(const std::vector<NodeId>& obligations);
+
+    ir::Graph& graph_;
+    StreamBuilder& streams_;
+    std::vector<Reading>& readings_;
+    AutomatonLimits limits_;
+    std::map<NodeId, std::uint32_t> known_;
+    std::vector<Oversize> oversize_;
+};
+
+}  // namespace etlc::plan

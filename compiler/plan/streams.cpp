@@ -1,0 +1,240 @@
+#include "plan/streams.hpp"
+
+#include <algorithm>
+#include <cassert>
+
+namespace etlc::plan {
+
+namespace {
+
+using etlmon::kBottom;
+using etlmon::kFalse;
+using etlmon::kTop;
+using etlmon::kTrue;
+using ir::Node;
+using ir::Op;
+
+constexpr Value kAnything{kBottom, kTop};
+
+Value outward(check::Range range) {
+    return {etlmon::key_of(range.low), etlmon::key_of(range.high)};
+}
+
+bool equal(Value a, Value b) {
+    return a.low == b.low && a.high == b.high;
+}
+
+}  // namespace
+
+bool seeks(Op op) {
+    return op == Op::eventually || op == Op::until || op == Op::once || op == Op::since;
+}
+
+Slot StreamBuilder::intern(Stream stream) {
+    Identity identity{stream.op,        stream.operands,   stream.index, stream.length,
+                      stream.value.low, stream.value.high, stream.lag};
+    const auto [entry, added] = interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
+    if (added)
+        streams_.push_back(std::move(stream));
+    else if (streams_[entry->second].node == kNone)
+        streams_[entry->second].node = stream.node;
+    return entry->second;
+}
+
+Slot StreamBuilder::constant(Value value) {
+    return intern({.op = StreamOp::constant, .value = value});
+}
+
+Slot StreamBuilder::of(NodeId id) {
+    if (const auto known = slots_.find(id); known != slots_.end()) return known->second;
+    const Node& node = graph_[id];
+    Slot slot = 0;
+    switch (node.op) {
+        case Op::constant_true: slot = constant(kTrue); break;
+        case Op::constant_false: slot = constant(kFalse); break;
+        case Op::predicate:
+        case Op::flag: slot = literal(node, id); break;
+        case Op::conjunction:
+        case Op::disjunction: slot = aligned_combination(node, id); break;
+        case Op::once:
+        case Op::historically: slot = past_unary(node, id); break;
+        case Op::since:
+        case Op::trigger: slot = past_binary(node, id); break;
+        case Op::eventually:
+        case Op::always: slot = future_unary(node, id); break;
+        case Op::until:
+        case Op::release: slot = future_binary(node, id); break;
+    }
+    slots_.emplace(id, slot);
+    return slot;
+}
+
+Slot StreamBuilder::literal(const Node& node, NodeId id) {
+    const StreamOp op = node.op == Op::predicate ? StreamOp::predicate : StreamOp::flag;
+    if (!node.negated) return intern({.op = op, .index = node.index, .node = id});
+    const Slot positive = intern({.op = op, .index = node.index});
+    return intern({.op = StreamOp::negation, .operands = {positive}, .node = id});
+}
+
+Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node) {
+    const bool conjunction = op == StreamOp::conjunction;
+    const Value neutral = conjunction ? kTrue : kFalse;
+    Value folded = neutral;
+    std::vector<Slot> kept;
+    std::uint32_t lag = 0;
+    for (Slot slot : operands) {
+        const Stream& stream = streams_[slot];
+        lag = std::max(lag, stream.lag);
+        if (stream.op == StreamOp::constant)
+            folded = conjunction ? min(folded, stream.value) : max(folded, stream.value);
+        else
+            kept.push_back(slot);
+    }
+    if (!equal(folded, neutral) || kept.empty()) kept.push_back(constant(folded));
+    std::sort(kept.begin(), kept.end());
+    kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
+    if (kept.size() == 1) return kept.front();
+    return intern({.op = op, .operands = std::move(kept), .lag = lag, .node = node});
+}
+
+Slot StreamBuilder::delayed(Slot slot, std::uint32_t steps) {
+    const Stream stream = streams_[slot];
+    if (steps == 0 || stream.op == StreamOp::constant) return slot;
+    return intern({.op = StreamOp::delay, .operands = {slot}, .length = steps, .lag = stream.lag + steps});
+}
+
+std::vector<Slot> StreamBuilder::align(const std::vector<NodeId>& nodes) {
+    std::vector<Slot> slots;
+    std::uint32_t lag = 0;
+    for (NodeId id : nodes) {
+        slots.push_back(of(id));
+        lag = std::max(lag, streams_[slots.back()].lag);
+    }
+    for (Slot& slot : slots) slot = delayed(slot, lag - streams_[slot].lag);
+    return slots;
+}
+
+Slot StreamBuilder::aligned_combination(const Node& node, NodeId id) {
+    const StreamOp op = node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction;
+    return combine(op, align(node.operands), id);
+}
+
+Slot StreamBuilder::running(StreamOp op, Slot slot, NodeId node) {
+    return intern({.op = op, .operands = {slot}, .lag = streams_[slot].lag, .node = node});
+}
+
+Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, Value before, NodeId node) {
+    if (steps == 0) return slot;
+    const std::uint32_t lag = streams_[slot].lag;
+    return intern({.op = StreamOp::shift, .operands = {slot}, .length = steps, .value = before, .lag = lag, .node = node});
+}
+
+Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t lag, NodeId node) {
+    return intern({.op = op, .operands = std::move(operands), .length = length, .lag = lag, .node = node});
+}
+
+/// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
+Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
+    const bool max = seeks(node.op);
+    const auto [low, high] = node.interval;
+    const Slot operand = of(node.operands[0]);
+    const NodeId inner = low == 0 ? id : kNone;
+    Slot slot = operand;
+    if (high == kUnbounded)
+        slot = running(max ? StreamOp::running_max : StreamOp::running_min, operand, inner);
+    else if (high > low)
+        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1, streams_[operand].lag,
+                      inner);
+    return shift(slot, low, max ? kFalse : kTrue, id);
+}
+
+/// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
+Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
+    const bool max = seeks(node.op);
+    const auto [low, high] = node.interval;
+    const std::vector<Slot> operands = align(node.operands);
+    const std::uint32_t lag = streams_[operands[0]].lag > streams_[operands[1]].lag ? streams_[operands[0]].lag
+                                                                                    : streams_[operands[1]].lag;
+    const NodeId inner = low == 0 ? id : kNone;
+    Slot slot = operands[1];
+    if (high == kUnbounded)
+        slot = intern({.op = max ? StreamOp::since : StreamOp::trigger, .operands = operands, .lag = lag, .node = inner});
+    else if (high > low)
+        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, inner);
+    if (low == 0) return slot;
+    const Slot earlier = shift(slot, low, max ? kFalse : kTrue, kNone);
+    const Slot held = low == 1 ? operands[0]
+                               : window(max ? StreamOp::window_min : StreamOp::window_max, {operands[0]}, low, lag, kNone);
+    return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {earlier, held}, id);
+}
+
+/// F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of one position still counts:
+/// where the trace ends before it there is no such position.
+Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
+    const auto [low, high] = node.interval;
+    const Slot operand = of(node.operands[0]);
+    const StreamOp op = seeks(node.op) ? StreamOp::window_max : StreamOp::window_min;
+    return window(op, {operand}, high - low + 1, streams_[operand].lag + high, id);
+}
+
+/// f U[a,b] g at k is (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual alike.
+Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
+    const bool max = seeks(node.op);
+    const auto [low, high] = node.interval;
+    const std::vector<Slot> operands = align(node.operands);
+    const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
+    const std::uint32_t length = high - low + 1;
+    const NodeId inner = low == 0 ? id : kNone;
+    const Slot until =
+        window(max ? StreamOp::window_until : StreamOp::window_release, operands, length, lag + high - low, inner);
+    if (low == 0) return until;
+    const Slot from_there = window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1, lag + high, kNone);
+    const Slot held = window(max ? StreamOp::window_min : StreamOp::window_max, {delayed(operands[0], length)}, low,
+                             lag + high, kNone);
+    return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {from_there, held}, id);
+}
+
+Slot StreamBuilder::unseen(NodeId id) {
+    if (const auto known = unseen_.find(id); known != unseen_.end()) return known->second;
+    const Node& node = graph_[id];
+    Slot slot = 0;
+    switch (node.op) {
+        case Op::constant_true: slot = constant(kTrue); break;
+        case Op::constant_false: slot = constant(kFalse); break;
+        case Op::flag: slot = constant(kAnything); break;
+        case Op::predicate: {
+            const Value range = outward(graph_.model().predicates[node.index].robustness);
+            slot = constant(node.negated ? negate(range) : range);
+            break;
+        }
+        case Op::conjunction:
+        case Op::disjunction: {
+            std::vector<Slot> parts;
+            for (NodeId operand : node.operands) parts.push_back(unseen(operand));
+            slot = combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction, std::move(parts));
+            break;
+        }
+        default: slot = unseen_temporal(node, id);
+    }
+    unseen_.emplace(id, slot);
+    return slot;
+}
+
+/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H and the dual of S: the
+/// other way round. What is known of the operand stays in sight of a past operator.
+Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
+    const bool max = seeks(node.op);
+    const StreamOp narrow = max ? StreamOp::conjunction : StreamOp::disjunction;
+    const StreamOp widen = max ? StreamOp::disjunction : StreamOp::conjunction;
+    const Slot operand = unseen(node.operands.back());
+    Slot slot = operand;
+    if (node.interval.low > 0) slot = combine(narrow, {operand, constant(kAnything)});  // one end gives way to infinity
+    if (ir::info(node.op).tense != ir::Tense::past) return slot;
+    const bool unary = ir::info(node.op).arity == ir::Arity::unary;
+    if (unary && node.interval == ir::Interval{}) return combine(widen, {slot, of(id)});
+    if (streams_[operand].op == StreamOp::constant) return slot;  // nothing known lies outside a constant range
+    const Slot known = running(max ? StreamOp::running_max : StreamOp::running_min, of(node.operands.back()), kNone);
+    return combine(widen, {slot, combine(narrow, {known, constant(kAnything)})});
+}
+
+}  // namespace etlc::plan

@@ -1,0 +1,55 @@
+// Formulas as streams: the part of the plan that runs at every step for every position.
+// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a formula without future
+// is known at once and a bounded future one as soon as its last sample is there.
+// Keeps true: equal streams stand once; operands stand before what uses them.
+#pragma once
+
+#include <map>
+#include <tuple>
+#include <vector>
+
+#include "plan/plan.hpp"
+
+namespace etlc::plan {
+
+class StreamBuilder {
+public:
+    StreamBuilder(const ir::Graph& graph, std::vector<Stream>& streams) : graph_(graph), streams_(streams) {}
+
+    /// The stream of rho(node, k, i) at k = i - lag, lag = the node's horizon, which is bounded.
+    Slot of(NodeId node);
+    /// The lowest and highest unseen value of a formula, as the definition "Bounds over every continuation" gives them
+    /// after this step; constant unless an unbounded past operator narrows them.
+    Slot unseen(NodeId node);
+    /// The min or max of streams of equal lag; constants are folded.
+    Slot combine(StreamOp op, std::vector<Slot> operands, NodeId node = kNone);
+    /// The same stream, later by `steps`.
+    Slot delayed(Slot slot, std::uint32_t steps);
+
+private:
+    Slot intern(Stream stream);
+    Slot constant(Value value);
+    Slot literal(const ir::Node& node, NodeId id);
+    Slot aligned_combination(const ir::Node& node, NodeId id);
+    Slot past_unary(const ir::Node& node, NodeId id);
+    Slot past_binary(const ir::Node& node, NodeId id);
+    Slot future_unary(const ir::Node& node, NodeId id);
+    Slot future_binary(const ir::Node& node, NodeId id);
+    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t lag, NodeId node);
+    Slot shift(Slot slot, std::uint32_t steps, Value before, NodeId node);
+    Slot running(StreamOp op, Slot slot, NodeId node);
+    std::vector<Slot> align(const std::vector<NodeId>& nodes);
+    Slot unseen_temporal(const ir::Node& node, NodeId id);
+
+    const ir::Graph& graph_;
+    std::vector<Stream>& streams_;
+    std::map<NodeId, Slot> slots_;
+    std::map<NodeId, Slot> unseen_;
+    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t>;
+    std::map<Identity, Slot> interned_;
+};
+
+/// A max over positions (F, U, O, S), false over no position; the others are mins, true over none.
+bool seeks(ir::Op op);
+
+}  // namespace etlc::plan
