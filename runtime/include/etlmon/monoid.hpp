@@ -11,7 +11,7 @@ namespace etlmon {
 
 /// Greatest value of the segment: O over the last N, F over the next N.
 template <class V>
-struct Max {
+struct Greatest {
   using Element = V;
   static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
   static constexpr Element combine(Element older, Element newer) noexcept { return max(older, newer); }
@@ -19,7 +19,7 @@ struct Max {
 
 /// Least value of the segment: H over the last N, G over the next N.
 template <class V>
-struct Min {
+struct Least {
   using Element = V;
   static constexpr Element identity() noexcept { return Lattice<V>::top(); }
   static constexpr Element combine(Element older, Element newer) noexcept { return min(older, newer); }
