@@ -1,6 +1,7 @@
 // Recorded traces and episodes, read a step at a time.
 // Takes: the columns wanted and a file (.npz or .csv). Gives: one sample a step, missing ones marked.
-// Keeps true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a buffer is held).
+// Keeps true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a buffer is held,
+// a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp).
 #pragma once
 
 #include <cstdint>
@@ -36,7 +37,9 @@ public:
     virtual std::uint64_t length() const { return 0; }
 };
 
-/// Opens a trace. Every channel must be there; extra columns and arrays are ignored.
+/// Opens a trace. Every channel must be there; extra columns and arrays are ignored, but not elements of a vector
+/// beyond its width. Shapes in .npz: T or T x 1 for scalars and bools, T x D for vectors (T too where D is 1).
+/// Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file` (data/file.hpp) adds it.
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);
 
 }  // namespace etlc::data

@@ -1,0 +1,143 @@
+#include "data/archive.hpp"
+
+#include <fmt/format.h>
+#include <zip.h>
+
+#include <algorithm>
+#include <optional>
+
+#include "data/file.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::data {
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+constexpr std::string_view kEnding = ".npy";
+
+Failure malformed(std::string message) {
+    return {Code::malformed_archive, std::move(message)};
+}
+
+/// A libzip error code in words.
+std::string words(int code) {
+    zip_error_t error;
+    zip_error_init_with_code(&error, code);
+    std::string result = zip_error_strerror(&error);
+    zip_error_fini(&error);
+    if (!result.empty() && result[0] >= 'A' && result[0] <= 'Z') result[0] = static_cast<char>(result[0] - 'A' + 'a');
+    return result;
+}
+
+Failure damaged(int code) {
+    if (code == ZIP_ER_NOZIP) return malformed("is no .npz file: not a zip archive");
+    return malformed(fmt::format("archive is damaged: {}", words(code)));
+}
+
+/// A member being unpacked; it keeps its archive open.
+class Member final : public ByteSource {
+public:
+    Member(std::shared_ptr<zip> archive, zip_file_t* file, std::uint64_t size)
+        : archive_(std::move(archive)), file_(file), size_(size) {}
+    Member(const Member&) = delete;
+    Member& operator=(const Member&) = delete;
+    ~Member() override { zip_fclose(file_); }
+
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        std::size_t got = 0;
+        while (got < n) {
+            const zip_int64_t more = zip_fread(file_, to + got, n - got);
+            if (more < 0) return damaged(zip_error_code_zip(zip_file_get_error(file_)));
+            if (more == 0) break;
+            got += static_cast<std::size_t>(more);
+        }
+        return got;
+    }
+    std::uint64_t size() const override { return size_; }
+
+private:
+    std::shared_ptr<zip> archive_;
+    zip_file_t* file_;
+    std::uint64_t size_;
+};
+
+zip_t* open_file_archive(const std::string& path, int& code) {
+    return zip_open(path.c_str(), ZIP_RDONLY, &code);
+}
+
+zip_t* open_memory_archive(std::string_view bytes, int& code) {
+    zip_error_t error;
+    zip_error_init(&error);
+    zip_t* handle = nullptr;
+    if (zip_source_t* source = zip_source_buffer_create(bytes.data(), bytes.size(), 0, &error)) {
+        handle = zip_open_from_source(source, ZIP_RDONLY, &error);
+        if (handle == nullptr) zip_source_free(source);
+    }
+    code = zip_error_code_zip(&error);
+    zip_error_fini(&error);
+    return handle;
+}
+
+std::optional<Failure> check_method(const zip_stat_t& status) {
+    if (status.encryption_method != ZIP_EM_NONE) return malformed("is encrypted, expected plain members");
+    if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE)
+        return malformed(
+            fmt::format("is packed by zip method {}, expected 0 (stored) or 8 (deflated)", status.comp_method));
+    return {};
+}
+
+}  // namespace
+
+Archive::Archive(std::shared_ptr<zip> handle) : handle_(std::move(handle)) {
+    const zip_int64_t n = zip_get_num_entries(handle_.get(), 0);
+    for (zip_int64_t i = 0; i < n; ++i) {
+        const auto index = static_cast<zip_uint64_t>(i);
+        const char* name = zip_get_name(handle_.get(), index, 0);
+        if (name == nullptr || !std::string_view(name).ends_with(kEnding)) continue;
+        const std::string_view all = name;
+        keys_.emplace_back(all.substr(0, all.size() - kEnding.size()));
+        indices_.push_back(index);
+    }
+}
+
+diag::Result<Archive> Archive::open(const ArchivePlace& place) {
+    if (!place.in_memory)
+        if (auto why = why_unreadable(place.path)) return Failure{Code::unreadable_data_file, *why};
+    int code = ZIP_ER_OK;
+    zip_t* handle = place.in_memory ? open_memory_archive(place.bytes, code) : open_file_archive(place.path, code);
+    if (handle == nullptr) return damaged(code);
+    return Archive(std::shared_ptr<zip>(handle, zip_discard));
+}
+
+Failure Archive::missing(const std::string& key) const {
+    if (keys_.empty()) return {Code::no_such_array, fmt::format("holds no arrays, expected {}", quoted(key))};
+    std::string message = fmt::format("has no array {}; it holds {}", quoted(key), listed(keys_));
+    constexpr std::size_t kCandidates = 1000;  // a distance is computed to each
+    std::vector<std::string> candidates = keys_;
+    candidates.resize(std::min(candidates.size(), kCandidates));
+    if (auto nearest = diag::nearest_name(key, candidates))
+        message += fmt::format("; did you mean {}?", quoted(*nearest));
+    return {Code::no_such_array, message};
+}
+
+diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key) const {
+    const auto found = std::find(keys_.begin(), keys_.end(), key);
+    if (found == keys_.end()) return missing(key);
+    if (std::find(found + 1, keys_.end(), key) != keys_.end())
+        return Failure{Code::no_such_array, fmt::format("holds two arrays named {}", quoted(key))};
+    const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
+    zip_stat_t status;
+    const auto in_array = [&](const Failure& failure) {
+        return Failure{failure.code, fmt::format("array {}: {}", quoted(key), failure.message)};
+    };
+    if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
+        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))));
+    if (auto failure = check_method(status)) return in_array(*failure);
+    zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
+    if (file == nullptr) return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))));
+    return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
+}
+
+}  // namespace etlc::data

@@ -1,0 +1,58 @@
+#include <fmt/format.h>
+
+#include "data/archive.hpp"
+#include "data/array.hpp"
+#include "data/npy.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::data {
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+/// The key asked for; without one, the only key there is.
+diag::Result<std::string> choose(const Archive& archive, const std::string& key) {
+    if (!key.empty()) return key;
+    if (archive.keys().empty()) return Failure{Code::no_such_array, "holds no arrays"};
+    if (archive.keys().size() > 1)
+        return Failure{Code::no_such_array, fmt::format("holds {} arrays, {}; expected the key of one of them",
+                                                        archive.keys().size(), listed(archive.keys()))};
+    return archive.keys().front();
+}
+
+diag::Result<Array> read_from(const ArchivePlace& place, const std::string& key) {
+    const auto archive = Archive::open(place);
+    if (!archive) return located(archive.failure(), place.path);
+    const auto chosen = choose(*archive, key);
+    if (!chosen) return located(chosen.failure(), place.path);
+    const auto member = archive->member(*chosen);
+    if (!member) return located(member.failure(), place.path);
+    auto array = read_npy_from(**member);
+    if (!array) return located(array.failure(), fmt::format("{}: array {}", place.path, quoted(*chosen)));
+    return array;
+}
+
+}  // namespace
+
+diag::Result<Array> read_npz(const std::string& path, const std::string& key) {
+    return read_from({path, {}, false}, key);
+}
+
+diag::Result<Array> parse_npz(std::string_view bytes, const std::string& name, const std::string& key) {
+    return read_from({name, bytes, true}, key);
+}
+
+diag::Result<Array> read_array(const std::string& path, const std::string& key) {
+    if (path.ends_with(".npz")) return read_npz(path, key);
+    if (!path.ends_with(".npy"))
+        return Failure{Code::unknown_data_format,
+                       fmt::format("{}: unknown kind of data file, expected .npy or .npz", path)};
+    if (!key.empty())
+        return Failure{
+            Code::key_without_archive,
+            fmt::format("{}: the key {} has no meaning for an .npy file, which holds one array", path, quoted(key))};
+    return read_npy(path);
+}
+
+}  // namespace etlc::data
