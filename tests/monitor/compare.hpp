@@ -1,0 +1,37 @@
+// Holds what a monitor said to what the reference says.
+// Takes: the spec, the reference's run and an observed one. Gives: the first mismatch as text.
+// Keeps true: robustness and status must agree; the bounds must be at least as tight as the definition's and hold for
+// every later step; `final` must follow from the bounds. Nothing is excused but what lies within the rounding bound.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "check/model.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+/// A run as a monitor shows it: robustness_high is not observable, telemetry only of the predicates that it computes.
+struct Observed {
+    struct Predicate {
+        bool computed = false;
+        double delta = 0;  ///< NaN: unknown
+        std::optional<std::uint32_t> nearest;
+    };
+    std::vector<std::vector<reference::Verdict>> verdicts;
+    std::vector<std::vector<reference::Verdict>> finish;
+    std::vector<std::vector<Predicate>> telemetry;
+    std::uint32_t missing_steps = 0;
+};
+
+struct Comparison {
+    /// Bound on |observed - expected| / max(1, |expected|). 0 where all arithmetic is exact in float32.
+    double rounding = 0;
+};
+
+std::optional<std::string> first_mismatch(const check::Model& model, const reference::Run& expected,
+                                          const Observed& observed, const Comparison& comparison);
+
+}  // namespace etlc::tests

@@ -1,0 +1,17 @@
+// Spec text to typed spec, for tests.
+// Takes: the text. Gives: the model; a spec with errors fails the current test with its diagnostics.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "check/model.hpp"
+
+namespace etlc::tests {
+
+std::optional<check::Model> load(const std::string& text, const std::string& path = "test.etl");
+
+/// The bytes of a file; fails the current test where it cannot be read.
+std::string read_text(const std::string& path);
+
+}  // namespace etlc::tests

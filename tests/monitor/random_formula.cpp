@@ -1,0 +1,121 @@
+#include "random_formula.hpp"
+
+#include <fmt/format.h>
+
+#include <utility>
+
+namespace etlc::tests {
+
+std::string RandomFormula::inside(const Piece& piece, Level outer) {
+    const bool needed = piece.level <= outer && !(outer == prefix && piece.level == prefix);
+    return needed || random_.chance(0.1) ? "(" + piece.text + ")" : piece.text;
+}
+
+RandomFormula::Piece RandomFormula::unary(const std::string& word, const std::string& interval, const Piece& operand) {
+    return {word + interval + " " + inside(operand, prefix), prefix};
+}
+
+RandomFormula::Piece RandomFormula::binary(const Piece& left, const std::string& word, const std::string& interval,
+                                           const Piece& right, Level level) {
+    return {inside(left, level) + " " + word + interval + " " + inside(right, level), level};
+}
+
+std::string RandomFormula::bounded_interval() {
+    const int high = random_.between(0, shape_.window);
+    return fmt::format("[{}, {}]", random_.between(0, high), high);
+}
+
+std::string RandomFormula::future_interval() {
+    if (shape_.bounded && (!shape_.unbounded || random_.chance(0.6))) return bounded_interval();
+    return random_.chance(0.7) ? "" : random_.chance(0.5) ? "[1, inf]" : "[2, inf]";
+}
+
+std::string RandomFormula::past_interval() {
+    if (random_.chance(0.5)) return bounded_interval();
+    return random_.chance(0.6) ? "" : "[1, inf]";
+}
+
+RandomFormula::Piece RandomFormula::leaf() {
+    if (random_.chance(0.04)) return {random_.word({"true", "false"}), atom};
+    if (random_.chance(0.12)) return {"(" + comparison_() + ")", atom};
+    return {random_.pick(atoms_), atom};
+}
+
+RandomFormula::Piece RandomFormula::connective(int depth, Allowed allowed) {
+    const auto operand = [&] { return grow(depth - 1, allowed); };
+    const Piece left = operand();
+    switch (random_.between(0, 9)) {
+        case 0:
+        case 1:
+        case 2:
+            return binary(left, random_.word({"&&", "and"}), "", operand(), conjunction);
+        case 3:
+        case 4:
+        case 5:
+            return binary(left, random_.word({"||", "or"}), "", operand(), disjunction);
+        case 6:
+            return binary(left, random_.word({"->", "implies"}), "", operand(), implies);
+        case 7:
+            return binary(left, random_.word({"<->", "iff"}), "", operand(), iff);
+        default:
+            return unary(random_.word({"!", "not"}), "", left);
+    }
+}
+
+RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
+    if (!shape_.nested) allowed = {false, false};
+    const Piece operand = grow(depth - 1, allowed);
+    switch (random_.between(0, 7)) {
+        case 0:
+        case 1:
+            return unary(random_.word({"F", "eventually"}), future_interval(), operand);
+        case 2:
+        case 3:
+            return unary(random_.word({"G", "always"}), future_interval(), operand);
+        case 4:
+            return binary(operand, random_.word({"U", "until"}), future_interval(), grow(depth - 1, allowed), until);
+        case 5:
+            return binary(operand, random_.word({"R", "release"}), future_interval(), grow(depth - 1, allowed), until);
+        case 6:
+            if (shape_.unbounded)
+                return binary(operand, random_.word({"W", "weak_until"}), "", grow(depth - 1, allowed), until);
+            [[fallthrough]];
+        default:
+            return unary(random_.word({"X", "next"}), "", operand);
+    }
+}
+
+RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
+    if (!shape_.nested) allowed = {false, false};
+    if (!shape_.past_over_future) allowed.future = false;
+    const Piece operand = grow(depth - 1, allowed);
+    switch (random_.between(0, 5)) {
+        case 0:
+        case 1:
+            return unary(random_.word({"O", "once"}), past_interval(), operand);
+        case 2:
+            return unary(random_.word({"H", "historically"}), past_interval(), operand);
+        case 3:
+        case 4:
+            return binary(operand, random_.word({"S", "since"}), past_interval(), grow(depth - 1, allowed), until);
+        default:
+            return unary(random_.word({"Y", "previous"}), "", operand);
+    }
+}
+
+RandomFormula::Piece RandomFormula::named(Piece piece) {
+    const std::string name = fmt::format("part{}", let_count_++);
+    lets_ += fmt::format("let {} = {};\n", name, piece.text);
+    return {name, atom};
+}
+
+RandomFormula::Piece RandomFormula::grow(int depth, Allowed allowed) {
+    if (depth <= 0 || random_.chance(0.08)) return leaf();
+    const double die = random_.uniform();
+    Piece piece = allowed.future && die < 0.5  ? future(depth, allowed)
+                  : allowed.past && die < 0.65 ? past(depth, allowed)
+                                               : connective(depth, allowed);
+    return random_.chance(0.07) ? named(std::move(piece)) : piece;
+}
+
+}  // namespace etlc::tests

@@ -1,0 +1,67 @@
+// Random formulas as text, with symbols or words, brackets where the grammar needs them and sometimes where not.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "random.hpp"
+
+namespace etlc::tests {
+
+struct FormulaShape {
+    int depth = 2;
+    int window = 4;
+    bool nested = true;             ///< temporal operators below temporal operators
+    bool bounded = true;            ///< future operators with an upper bound
+    bool unbounded = true;          ///< future operators without one
+    bool past_over_future = false;  ///< else past operators see only the past and the present
+};
+
+class RandomFormula {
+public:
+    RandomFormula(Random& random, std::vector<std::string> atoms, std::function<std::string()> comparison,
+                  FormulaShape shape)
+        : random_(random), atoms_(std::move(atoms)), comparison_(std::move(comparison)), shape_(shape) {}
+
+    std::string make() { return grow(shape_.depth, {true, true}).text; }
+    /// The lets that the formulas made since the last call refer to.
+    std::string take_lets() { return std::exchange(lets_, {}); }
+
+private:
+    /// Binding strength, loosest first.
+    enum Level { iff, implies, disjunction, conjunction, until, prefix, atom };
+    struct Piece {
+        std::string text;
+        Level level;
+    };
+    struct Allowed {
+        bool future;
+        bool past;
+    };
+
+    Random& random_;
+    std::vector<std::string> atoms_;
+    std::function<std::string()> comparison_;
+    FormulaShape shape_;
+    std::string lets_;
+    int let_count_ = 0;
+
+    Piece grow(int depth, Allowed allowed);
+    Piece leaf();
+    Piece connective(int depth, Allowed allowed);
+    Piece future(int depth, Allowed allowed);
+    Piece past(int depth, Allowed allowed);
+    Piece named(Piece piece);
+    Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
+    Piece binary(const Piece& left, const std::string& word, const std::string& interval, const Piece& right,
+                 Level level);
+    /// In brackets unless it binds tighter than `outer`.
+    std::string inside(const Piece& piece, Level outer);
+    std::string bounded_interval();
+    std::string future_interval();
+    std::string past_interval();
+};
+
+}  // namespace etlc::tests

@@ -1,0 +1,176 @@
+#include "random_spec.hpp"
+
+#include <fmt/format.h>
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "random.hpp"
+#include "random_formula.hpp"
+
+namespace etlc::tests {
+namespace {
+
+/// Declarations that formulas are built on.
+class Declarations {
+public:
+    Declarations(Random& random, bool exact) : random_(random), exact_(exact) {}
+
+    std::string text() {
+        std::string result;
+        for (const char* name : {"x", "y"}) result += scalar(name);
+        result += fmt::format("input on : bool{};\n", hold());
+        dimension_ = random_.between(1, 5);
+        result += fmt::format("input v : {}{};\n", embedding(), hold());
+        for (const char* name : {"near", "far"}) result += target(name, dimension_);
+        result += target("spots", 2);
+        const int count = random_.between(4, 6);
+        for (int n = 0; n < count; ++n) {
+            atoms_.push_back(fmt::format("p{}", n));
+            result += fmt::format("predicate p{} = {};\n", n, predicate());
+        }
+        atoms_.emplace_back("on");
+        return result;
+    }
+
+    const std::vector<std::string>& atoms() const { return atoms_; }
+
+    /// A comparison that stands in a formula.
+    std::string comparison() { return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3)); }
+
+private:
+    Random& random_;
+    bool exact_;
+    int dimension_ = 1;
+    std::map<std::string, int> rows_;  // of each target
+    std::vector<std::string> atoms_;
+
+    std::string hold() { return random_.chance(0.3) ? fmt::format(" hold {}", random_.between(1, 3)) : ""; }
+    std::string number(int low, int high) { return fmt::format("{}", random_.grid(low, high, 0.25)); }
+    std::string compare() { return random_.word({"<=", "<", ">=", ">"}); }
+
+    std::string scalar(const char* name) {
+        const char* range = random_.chance(0.6) ? " in [-4, 4]" : random_.chance(0.3) ? " in [-3.5, inf]" : "";
+        return fmt::format("input {} : f32{}{};\n", name, range, hold());
+    }
+
+    std::string embedding() {
+        const int kind = random_.between(0, 3);
+        if (kind == 0) return fmt::format("f16[{}]", dimension_);
+        if (kind == 1) return fmt::format("i8[{}] scale 0.25", dimension_);
+        return fmt::format("f32[{}]", dimension_);
+    }
+
+    /// Rows are 1, 2 or 4, so that their mean is exact.
+    std::string target(const char* name, int columns) {
+        std::string rows;
+        const int count = 1 << random_.between(0, 2);
+        rows_[name] = count;
+        for (int row = 0; row < count; ++row) {
+            std::string values;
+            // A row must not be zero under cosine and angular: the first element is not.
+            for (int n = 0; n < columns; ++n) values += (n > 0 ? ", " : "") + (n > 0 ? number(-3, 3) : number(1, 3));
+            rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
+        }
+        return fmt::format("target {} = [{}];\n", name, rows);
+    }
+
+    std::string weights(int columns) {
+        std::string rows;
+        const bool diagonal = random_.chance(0.5);
+        for (int row = 0; row < columns; ++row) {
+            if (diagonal) {
+                rows += (row > 0 ? ", " : "") + number(1, 4);
+                continue;
+            }
+            std::string values;  // symmetric and diagonally dominant
+            for (int n = 0; n < columns; ++n)
+                values += (n > 0 ? ", " : "") + std::string(n == row ? "2" : (n + row) % 2 == 0 ? "0.25" : "-0.25");
+            rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
+        }
+        return fmt::format("mahalanobis([{}])", rows);
+    }
+
+    std::string metric(int columns) {
+        if (exact_) return random_.word({"l1", "linf", "l2sq"});
+        const std::string name = random_.word({"l1", "linf", "l2sq", "l2", "l2", "cosine", "angular", "mahalanobis"});
+        return name == "mahalanobis" ? weights(columns) : name;
+    }
+
+    std::string aggregation(const std::string& target) {
+        const std::string word = random_.word({"min", "min", "max", "mean", "kth"});
+        return word == "kth" ? fmt::format("kth({})", random_.between(1, rows_[target])) : word;
+    }
+
+    std::string distance() {
+        if (random_.chance(0.3)) return fmt::format("{} {}([x, y], spots)", aggregation("spots"), metric(2));
+        const std::string target = random_.word({"near", "far"});
+        return fmt::format("{} {}(v, {})", aggregation(target), metric(dimension_), target);
+    }
+
+    std::string scalar_term() {
+        if (random_.chance(0.3)) return random_.word({"x", "y"});
+        switch (random_.between(0, exact_ ? 5 : 7)) {
+            case 0:
+                return fmt::format("{} * {}", number(-2, 2), random_.word({"x", "y"}));
+            case 1:
+                return "abs(x - y)";
+            case 2:
+                return fmt::format("max(x, y, {})", number(-2, 2));
+            case 3:
+                return "min(x, -y)";
+            case 4:
+                return "(x + y) / 2";
+            case 5:
+                return "-x";
+            case 6:
+                return "sqrt(abs(y))";
+            default:
+                return "x / (abs(y) + 0.5)";
+        }
+    }
+
+    std::string expression(int terms) {
+        std::string result = scalar_term();
+        for (int n = 1; n < terms; ++n) result += random_.word({" + ", " - "}) + scalar_term();
+        return result;
+    }
+
+    std::string predicate() {
+        const int kind = random_.between(0, 9);
+        if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
+        if (kind < 7) return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
+        return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
+    }
+};
+
+FormulaShape formula_shape(const SpecShape& shape) {
+    using Formulas = SpecShape::Formulas;
+    FormulaShape result;
+    result.depth = shape.depth;
+    result.window = shape.window;
+    result.nested = shape.formulas != Formulas::unnested;
+    result.bounded = shape.formulas != Formulas::unbounded_nesting;
+    result.unbounded = shape.formulas != Formulas::sliding;
+    result.past_over_future = shape.formulas == Formulas::sliding;
+    return result;
+}
+
+}  // namespace
+
+std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
+    Random random(seed);
+    Declarations declarations(random, shape.exact);
+    std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
+    RandomFormula formula(
+        random, declarations.atoms(), [&] { return declarations.comparison(); }, formula_shape(shape));
+    const char* kind = shape.formulas == SpecShape::Formulas::sliding ? "sliding monitor" : "monitor";
+    for (int n = 0; n < shape.monitors; ++n) {
+        const std::string text = formula.make();
+        result += formula.take_lets() + fmt::format("{} m{} = {};\n", kind, n, text);
+    }
+    return result;
+}
+
+}  // namespace etlc::tests
