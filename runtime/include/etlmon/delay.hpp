@@ -39,11 +39,13 @@ class Delay {
   V values_[N];
 };
 
+/// Bytes of a cursor and the values that follow it, up to the next cursor.
+constexpr uint32_t storage_bytes(uint32_t values) noexcept { return (4 + values + 3) / 4 * 4; }
+
 /// sizeof(Delay<V, n>).
 template <class V>
 constexpr uint32_t delay_bytes(uint32_t n) noexcept {
-  constexpr uint32_t cursor = sizeof(uint32_t);
-  return (cursor + n * static_cast<uint32_t>(sizeof(V)) + cursor - 1) / cursor * cursor;
+  return storage_bytes(n * static_cast<uint32_t>(sizeof(V)));
 }
 
 }  // namespace etlmon

@@ -1,8 +1,14 @@
 // What a window aggregates: the temporal operators as associative combinations of neighbouring segments of a stream.
-// Takes: elements of two adjacent segments, the older first. Gives: the element of their union, and that of no segment.
-// Keeps true: combine is associative, identity is neutral on both sides, and the segments may overlap as long as
-// neither contains the other's outer end: combine(of [a, c], of [b, d]) is the element of [a, d] for a <= b <= c + 1, c
-// <= d. SPDX-License-Identifier: MIT
+// Takes: elements of two segments, the older first. Gives: the element of their union, and that of the empty segment.
+// Keeps true: combine is associative and identity neutral. Segments may overlap (kMayOverlap): for a <= b <= c + 1 and
+// c <= d, combine(element of [a, c], element of [b, d]) is that of [a, d]; what the overlap counts twice is absorbed.
+// kNewestLast says which of (older, middle), newest and older, (middle, newest) costs less; the result is the same.
+//
+// The pending half of G(p -> F[0,w] q) on a prefix, the min over the last w positions k of max(!p(k), q over [k, now]),
+// is Trigger over w elements {max(!p, q), q}, whose guard q settles all older positions at once. It needs no window
+// where the positions before are settled each by its own window: the unbounded z = max(min(z, !p), q) then differs
+// only in the terms of settled positions, and these are not below what they were settled at.
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/value.hpp"
@@ -13,6 +19,8 @@ namespace etlmon {
 template <class V>
 struct Greatest {
   using Element = V;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
   static constexpr Element combine(Element older, Element newer) noexcept { return max(older, newer); }
 };
@@ -21,6 +29,8 @@ struct Greatest {
 template <class V>
 struct Least {
   using Element = V;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::top(); }
   static constexpr Element combine(Element older, Element newer) noexcept { return min(older, newer); }
 };
@@ -36,6 +46,8 @@ struct Span {
 template <class V>
 struct Since {
   using Element = Span<V>;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max(min(older.value, newer.guard), newer.value), min(older.guard, newer.guard)};
@@ -46,6 +58,8 @@ struct Since {
 template <class V>
 struct Trigger {
   using Element = Span<V>;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min(max(older.value, newer.guard), newer.value), max(older.guard, newer.guard)};
@@ -56,6 +70,8 @@ struct Trigger {
 template <class V>
 struct Until {
   using Element = Span<V>;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {max(older.value, min(older.guard, newer.value)), min(older.guard, newer.guard)};
@@ -66,10 +82,22 @@ struct Until {
 template <class V>
 struct Release {
   using Element = Span<V>;
+  static constexpr bool kMayOverlap = true;
+  static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
     return {min(older.value, max(older.guard, newer.value)), max(older.guard, newer.guard)};
   }
 };
+
+/// The two ends of an element over pairs of keys. The ends never meet: no combination negates.
+constexpr Key low_of(Value v) noexcept { return v.low; }
+constexpr Key high_of(Value v) noexcept { return v.high; }
+constexpr Value pair_of(Key low, Key high) noexcept { return {low, high}; }
+constexpr Span<Key> low_of(Span<Value> s) noexcept { return {s.value.low, s.guard.low}; }
+constexpr Span<Key> high_of(Span<Value> s) noexcept { return {s.value.high, s.guard.high}; }
+constexpr Span<Value> pair_of(Span<Key> low, Span<Key> high) noexcept {
+  return {{low.value, high.value}, {low.guard, high.guard}};
+}
 
 }  // namespace etlmon

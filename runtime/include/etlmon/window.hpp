@@ -1,32 +1,29 @@
 // Sliding aggregates: the combination of the last N elements of a stream, for any monoid, in constant time a step.
-// Takes: one element a step. Gives: combine(oldest, ..., newest) over the last N, elements before the first being
-// identity. Keeps true: at most window_operations(N) combinations in any step, whatever the history; N + 2 elements of
-// state.
+// Takes: one element a step. Gives: combine(oldest, ..., newest) over the last N; identity stands before the first.
+// Keeps true: at most window_operations(N) combinations in any step, whatever the history; state N + 2 elements.
 //
-// The method cuts the stream into blocks of N / 2, so that the window is always
-//     a suffix of the oldest block  |  the middle block, whole  |  a prefix of the newest block.
-// The suffix is read from a table, the other two are running totals, and the table for the middle block, which is the
-// next oldest, is built in place from its end while the newest block fills, one entry a step: complete when it is due.
-// As the oldest block is given up from its front at the pace at which the newest grows, these two share their slots.
-// (van Herk's and Gil and Werman's suffix and prefix tables, with half-blocks so that no step ever builds a whole
-// table.)
-//
-// The pending half of G(p -> F[0,w] q) on a prefix, min over the last w positions k of max(!p(k), max of q over [k,
-// now]), is Window<Trigger<V>, w> over elements {max(!p, q), q}: the guard is q, which settles every older position at
-// once. SPDX-License-Identifier: MIT
+// The method cuts the stream into blocks of N / 2 (rounded down), so that the window is always
+//     a suffix of the oldest block  |  the middle block, whole  |  a prefix of the newest block
+// and, where N is odd, the newest block may be whole too. The suffix is read from a table, the other two are running
+// totals. The table for the middle block, which is the next oldest, is built in place from its end while the newest
+// block fills, one entry a step: it is complete when it is due. The oldest block is given up from its front at the pace
+// at which the newest grows, so these two share their slots, and the next entry to build mirrors the next slot to fill.
+// (Suffix and prefix tables: van Herk 1992, Gil and Werman 1993; half-blocks keep a step from building a whole table.)
+// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <stdint.h>
 
+#include "etlmon/delay.hpp"
 #include "etlmon/monoid.hpp"
 
 namespace etlmon {
 
-/// Elements of storage that a window over the last n >= 1 needs: two totals and the blocks.
+/// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
 constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{1}) + 2; }
 
-/// The most combinations that any step of a window over the last n >= 1 performs.
-constexpr uint32_t window_operations(uint32_t n) noexcept { return n < 5 ? n - 1 : 4; }
+/// The most combinations that any step of a window over the last n >= 1 performs. Long runs reach it.
+constexpr uint32_t window_operations(uint32_t n) noexcept { return n == 1 ? 0 : n < 4 ? n : 4; }
 
 /// Empties a window: storage of window_elements(n).
 template <class Monoid>
@@ -35,46 +32,43 @@ void window_reset(typename Monoid::Element* storage, uint32_t& cursor, uint32_t 
   for (uint32_t i = 0; i < window_elements(n); ++i) storage[i] = Monoid::identity();
 }
 
+/// oldest, middle and newest of a window together, in the order that is cheaper.
+template <class Monoid>
+constexpr typename Monoid::Element window_total(typename Monoid::Element oldest, typename Monoid::Element middle,
+                                                typename Monoid::Element newest) noexcept {
+  return Monoid::kNewestLast ? Monoid::combine(Monoid::combine(oldest, middle), newest)
+                             : Monoid::combine(oldest, Monoid::combine(middle, newest));
+}
+
 /// One step of a window over the last n >= 1 elements: the combination of those, this one included.
-/// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring where the step begins.
+/// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring that this step fills.
 template <class Monoid>
 typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n,
                                      typename Monoid::Element element) noexcept {
   using Element = typename Monoid::Element;
   if (n == 1) return element;
+  const bool odd = n % 2 != 0;
   const uint32_t slots = n & ~uint32_t{1};
-  const uint32_t block = n / 2;
   Element& middle = storage[0];
   Element& newest = storage[1];
   Element* ring = storage + 2;
-  uint32_t at = cursor;
 
-  if (n % 2 == 0) {
-    const Element total = at == 0 || at == block ? element : Monoid::combine(newest, element);
-    ring[at] = element;
-    at = at + 1 == slots ? 0 : at + 1;
-    cursor = at;
-    if (at == 0 || at == block) {
-      middle = total;
-      return Monoid::combine(ring[at], total);
-    }
-    newest = total;
-    ring[slots - 1 - at] = Monoid::combine(ring[slots - 1 - at], ring[slots - at]);
-    return Monoid::combine(ring[at], Monoid::combine(middle, total));
-  }
-  Element total = element;
-  Element inner = newest;
-  if (at == 0 || at == block) {
-    middle = inner;
+  const Element total = Monoid::combine(newest, element);
+  Element aggregate = total;
+  if (odd) aggregate = window_total<Monoid>(ring[cursor], middle, total);  // the slot's suffix, before it is filled
+  ring[cursor] = element;
+  uint32_t next = cursor + 1;
+  if (next == slots / 2 || next == slots) {  // the newest block is full: every block is one older from here
+    if (next == slots) next = 0;
+    middle = total;
+    newest = Monoid::identity();
+    if (!odd) aggregate = Monoid::combine(ring[next], total);
   } else {
-    ring[slots - 1 - at] = Monoid::combine(ring[slots - 1 - at], ring[slots - at]);
-    total = Monoid::combine(inner, element);
-    inner = middle;
+    newest = total;
+    ring[slots - 1 - next] = Monoid::combine(ring[slots - 1 - next], ring[slots - next]);
+    if (!odd) aggregate = window_total<Monoid>(ring[next], middle, total);
   }
-  newest = total;
-  const Element aggregate = Monoid::combine(ring[at], Monoid::combine(inner, total));
-  ring[at] = element;
-  cursor = at + 1 == slots ? 0 : at + 1;
+  cursor = next;
   return aggregate;
 }
 
@@ -98,12 +92,62 @@ class Window {
   Element storage_[window_elements(N)];
 };
 
+/// Over pairs of keys: the lows and the highs never meet, and as two windows they stay in scalar registers, where one
+/// window over pairs makes compilers pack and unpack them (1.5 to 2 times slower on x86-64).
+template <template <class> class Operator, uint32_t N>
+class Window<Operator<Value>, N> {
+ public:
+  using Element = typename Operator<Value>::Element;
+
+  void reset() noexcept {
+    low_.reset();
+    high_.reset();
+  }
+
+  Element push(Element element) noexcept { return pair_of(low_.push(low_of(element)), high_.push(high_of(element))); }
+
+ private:
+  Window<Operator<Key>, N> low_;
+  Window<Operator<Key>, N> high_;
+};
+
+/// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one combination and a delay by
+/// N - M instead of a second window, where several windows watch one signal. Only for operators whose segments may
+/// overlap.
+template <class Monoid, uint32_t M, uint32_t N>
+class Widening {
+  static_assert(M < N && N - M <= M, "the two shorter windows must meet");
+  static_assert(Monoid::kMayOverlap, "an element that both windows hold would count twice");
+
+ public:
+  using Element = typename Monoid::Element;
+
+  /// Forgets all elements; time proportional to N - M.
+  void reset() noexcept { past_.reset(Monoid::identity()); }
+
+  /// Takes this step's aggregate of the last M, gives that of the last N.
+  Element push(Element aggregate) noexcept { return Monoid::combine(past_.push(aggregate), aggregate); }
+
+ private:
+  Delay<Element, N - M> past_;
+};
+
+template <class Monoid>
+struct WindowBytes {
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    return storage_bytes(window_elements(n) * static_cast<uint32_t>(sizeof(typename Monoid::Element)));
+  }
+};
+
+template <template <class> class Operator>
+struct WindowBytes<Operator<Value>> {
+  static constexpr uint32_t of(uint32_t n) noexcept { return 2 * WindowBytes<Operator<Key>>::of(n); }
+};
+
 /// sizeof(Window<Monoid, n>).
 template <class Monoid>
 constexpr uint32_t window_bytes(uint32_t n) noexcept {
-  constexpr uint32_t cursor = sizeof(uint32_t);
-  const uint32_t storage = window_elements(n) * static_cast<uint32_t>(sizeof(typename Monoid::Element));
-  return (cursor + storage + cursor - 1) / cursor * cursor;
+  return WindowBytes<Monoid>::of(n);
 }
 
 }  // namespace etlmon
