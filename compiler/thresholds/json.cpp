@@ -1,0 +1,157 @@
+#include "thresholds/json.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <unordered_set>
+
+#include "data/quote.hpp"
+#include "source/source.hpp"
+
+namespace etlc::thresholds {
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+/// Builds the tree from nlohmann's events. Returning false stops the parser.
+class Builder {
+public:
+    Builder(const std::string& text, std::uint64_t max_values) : text_(text), values_left_(max_values) {}
+
+    bool null() { return add({}) != nullptr; }
+    bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
+    bool number_integer(std::int64_t value) { return leaf(Json::Kind::number, std::to_string(value)); }
+    bool number_unsigned(std::uint64_t value) { return leaf(Json::Kind::number, std::to_string(value)); }
+    bool number_float(double, const std::string& written) { return leaf(Json::Kind::number, written); }
+    bool string(std::string& value) { return leaf(Json::Kind::string, std::move(value)); }
+    bool binary(nlohmann::json::binary_t&) { return false; }  // JSON text has none
+
+    bool start_object(std::size_t) { return open(Json::Kind::object); }
+    bool start_array(std::size_t) { return open(Json::Kind::array); }
+    bool end_object() { return close(); }
+    bool end_array() { return close(); }
+
+    bool key(std::string& name) {
+        if (!seen_.back().insert(name).second) {
+            failure_ =
+                Failure{Code::invalid_thresholds, fmt::format("key {} stands twice in one object", data::quoted(name))};
+            return false;
+        }
+        open_.back()->keys.push_back(std::move(name));
+        return true;
+    }
+
+    bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::json::exception& error) {
+        constexpr int kNumberOverflow = 406;
+        const bool overflow = error.id == kNumberOverflow;
+        const bool at_end = position > text_.size();
+        std::string what = at_end ? "its end" : data::quoted(last_token);
+        if (overflow) what = "a number that no double holds";
+        const source::Position place = place_of(position);
+        failure_ = Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what), place.line,
+                           place.column};
+        return false;
+    }
+
+    std::optional<Failure> failure() const { return failure_; }
+    Json take() { return std::move(root_); }
+
+private:
+    bool leaf(Json::Kind kind, std::string text) {
+        Json json;
+        json.kind = kind;
+        json.text = std::move(text);
+        return add(std::move(json)) != nullptr;
+    }
+
+    bool open(Json::Kind kind) {
+        if (open_.size() == kMaxJsonDepth) {
+            failure_ = Failure{Code::malformed_thresholds, fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
+            return false;
+        }
+        Json json;
+        json.kind = kind;
+        Json* added = add(std::move(json));
+        if (added == nullptr) return false;
+        open_.push_back(added);
+        seen_.emplace_back();
+        return true;
+    }
+
+    bool close() {
+        open_.pop_back();
+        seen_.pop_back();
+        return true;
+    }
+
+    /// Pointers to open arrays and objects stay good: only the innermost one grows.
+    Json* add(Json json) {
+        if (values_left_ == 0) {
+            failure_ = Failure{Code::malformed_thresholds, "holds more values than are read"};
+            return nullptr;
+        }
+        --values_left_;
+        if (open_.empty()) {
+            root_ = std::move(json);
+            return &root_;
+        }
+        auto& items = open_.back()->items;
+        items.push_back(std::move(json));
+        return &items.back();
+    }
+
+    source::Position place_of(std::size_t position) const {
+        const std::string_view before = std::string_view(text_).substr(0, position > 0 ? position - 1 : 0);
+        const auto lines = std::count(before.begin(), before.end(), '\n');
+        const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
+        const auto continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
+        const std::string_view line = before.substr(line_begin);
+        const auto columns = static_cast<std::size_t>(line.end() - line.begin()) -
+                             static_cast<std::size_t>(std::count_if(line.begin(), line.end(), continuation));
+        return {static_cast<std::uint32_t>(lines + 1), static_cast<std::uint32_t>(columns + 1)};
+    }
+
+    const std::string& text_;
+    std::uint64_t values_left_;
+    Json root_;
+    std::vector<Json*> open_;
+    std::vector<std::unordered_set<std::string>> seen_;  ///< keys of each open object
+    std::optional<Failure> failure_;
+};
+
+}  // namespace
+
+const Json* Json::find(const std::string& key) const {
+    const auto found = std::find(keys.begin(), keys.end(), key);
+    return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
+}
+
+diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values) {
+    Builder builder(text, max_values);
+    nlohmann::json::sax_parse(text, &builder);
+    if (auto failure = builder.failure()) return *failure;
+    return builder.take();
+}
+
+std::string describe(const Json& json) {
+    switch (json.kind) {
+        case Json::Kind::null:
+            return "null";
+        case Json::Kind::boolean:
+            return json.text;
+        case Json::Kind::number:
+            return data::quoted(json.text);
+        case Json::Kind::string:
+            return fmt::format("the text {}", data::quoted(json.text));
+        case Json::Kind::array:
+            return "an array";
+        case Json::Kind::object:
+            return "an object";
+    }
+    return "nothing";
+}
+
+}  // namespace etlc::thresholds

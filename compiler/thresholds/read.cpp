@@ -1,0 +1,220 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "data/file.hpp"
+#include "data/number.hpp"
+#include "data/quote.hpp"
+#include "thresholds/json.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::thresholds {
+namespace {
+
+using data::quoted;
+using diag::Code;
+using diag::Failure;
+
+bool is_hash(const std::string& text) {
+    const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+    return text.size() == 16 && std::all_of(text.begin(), text.end(), hex);
+}
+
+/// Tree to File. The first thing wrong stays in `failure_`; what follows it is not looked at.
+class Reader {
+public:
+    diag::Result<File> read(const Json& root, const std::string& path) {
+        File file;
+        file.path = path;
+        if (root.kind != Json::Kind::object) {
+            fail("", root, "an object");
+            return *failure_;
+        }
+        check_format(root);
+        check_keys(root, "", {"format", "spec", "predicates", "monitors", "episodes", "etlc"});
+        file.spec = text(root, "", "spec");
+        file.etlc = text(root, "", "etlc");
+        entries(root, "predicates", "predicate", file.predicates);
+        if (root.find("monitors") != nullptr) entries(root, "monitors", "formula", file.monitors);
+        if (root.find("episodes") != nullptr) file.episodes = episodes(root);
+        if (failure_) return *failure_;
+        return file;
+    }
+
+private:
+    void check_format(const Json& root) {
+        const Json* format = member(root, "", "format", Json::Kind::number, "1");
+        if (format != nullptr && format->text != "1")
+            failure_ =
+                Failure{Code::unknown_thresholds_format,
+                        fmt::format("'format' is {}, expected 1, the one this version reads", quoted(format->text))};
+    }
+
+    /// `what` is the key of the canonical text: "predicate" or "formula".
+    void entries(const Json& root, const std::string& key, const std::string& what,
+                 std::map<std::string, Entry>& result) {
+        const Json* object = member(root, "", key, Json::Kind::object, "an object");
+        for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i) {
+            const std::string& name = object->keys[i];
+            result.emplace(name, entry(object->items[i], fmt::format("{}.{}", key, name), what));
+        }
+    }
+
+    Entry entry(const Json& json, const std::string& path, const std::string& what) {
+        Entry result;
+        if (json.kind != Json::Kind::object) {
+            fail(path, json, "an object");
+            return result;
+        }
+        result.method = method(json, path);
+        const bool ranked = result.method != "f1";
+        check_keys(json, path, {"method", "alpha", "epsilon", "n", "k", "scores", what, "truth", "targets"});
+        if (ranked || json.find("alpha") != nullptr) result.alpha = alpha(json, path, ranked);
+        result.epsilon = epsilon(json, path);
+        result.n = count(json, path, "n");
+        result.k = count(json, path, "k");
+        if (!failure_ && ranked != (result.k > 0))
+            fail(path + ".k", *json.find("k"), ranked ? "a rank from 1" : "0 for f1");
+        if (result.k > result.n) fail(path + ".k", *json.find("k"), fmt::format("at most n, which is {}", result.n));
+        result.scores = scores(json, path);
+        result.predicate = text(json, path, what);
+        result.truth = text(json, path, "truth");
+        result.targets = targets(json, path);
+        return result;
+    }
+
+    std::string method(const Json& json, const std::string& path) {
+        const std::string value = text(json, path, "method");
+        const bool known = value == "f1" || value == "conformal" || value == "class_conditional";
+        if (!failure_ && !known)
+            fail(path + ".method", *json.find("method"), "'f1', 'conformal' or 'class_conditional'");
+        return value;
+    }
+
+    std::string alpha(const Json& json, const std::string& path, bool ranked) {
+        const std::string expected = ranked ? "a number between 0 and 1" : "no such key for f1";
+        const Json* value = member(json, path, "alpha", Json::Kind::number, expected);
+        if (value == nullptr) return {};
+        const double number = data::parse_number(value->text).value_or(0);
+        if (!ranked || !(number > 0 && number < 1)) fail(path + ".alpha", *value, expected);
+        return value->text;
+    }
+
+    float epsilon(const Json& json, const std::string& path) {
+        const std::string expected = "a finite float32";
+        const Json* value = member(json, path, "epsilon", Json::Kind::number, expected);
+        if (value == nullptr) return 0;
+        float result = 0;
+        const std::string& digits = value->text;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result);
+        if (error != std::errc() || end != digits.data() + digits.size()) fail(path + ".epsilon", *value, expected);
+        return result;
+    }
+
+    std::uint64_t count(const Json& json, const std::string& path, const std::string& key) {
+        const std::string expected = "a whole number";
+        const Json* value = member(json, path, key, Json::Kind::number, expected);
+        if (value == nullptr) return 0;
+        std::uint64_t result = 0;
+        const std::string& digits = value->text;
+        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result);
+        if (error != std::errc() || end != digits.data() + digits.size()) fail(path + "." + key, *value, expected);
+        return result;
+    }
+
+    std::vector<double> scores(const Json& json, const std::string& path) {
+        const Json* array = member(json, path, "scores", Json::Kind::array, "an array of numbers");
+        std::vector<double> result;
+        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
+            const Json& item = array->items[i];
+            const bool infinite = item.kind == Json::Kind::string && (item.text == "inf" || item.text == "-inf");
+            if (item.kind != Json::Kind::number && !infinite)
+                fail(fmt::format("{}.scores[{}]", path, i), item, "a number, 'inf' or '-inf'");
+            else
+                result.push_back(data::parse_number(item.text).value_or(0));
+        }
+        return result;
+    }
+
+    std::map<std::string, std::string> targets(const Json& json, const std::string& path) {
+        const Json* object = member(json, path, "targets", Json::Kind::object, "an object");
+        std::map<std::string, std::string> result;
+        for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i)
+            result[object->keys[i]] = hash(object->items[i], fmt::format("{}.targets.{}", path, object->keys[i]));
+        return result;
+    }
+
+    std::vector<std::string> episodes(const Json& root) {
+        const Json* array = member(root, "", "episodes", Json::Kind::array, "an array of content hashes");
+        std::vector<std::string> result;
+        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i)
+            result.push_back(hash(array->items[i], fmt::format("episodes[{}]", i)));
+        return result;
+    }
+
+    std::string hash(const Json& json, const std::string& path) {
+        if (json.kind != Json::Kind::string || !is_hash(json.text)) fail(path, json, "a content hash of 16 hex digits");
+        return json.text;
+    }
+
+    std::string text(const Json& object, const std::string& path, const std::string& key) {
+        const Json* value = member(object, path, key, Json::Kind::string, "a text");
+        return value != nullptr ? value->text : std::string();
+    }
+
+    /// The value of a key that has to be there and of this kind; null, after a failure, where it is not.
+    const Json* member(const Json& object, const std::string& path, const std::string& key, Json::Kind kind,
+                       const std::string& expected) {
+        if (failure_) return nullptr;
+        const std::string place = path.empty() ? key : path + "." + key;
+        const Json* value = object.find(key);
+        if (value == nullptr) {
+            failure_ = Failure{Code::invalid_thresholds,
+                               fmt::format("key {} is missing, expected {}", quoted(place), expected)};
+            return nullptr;
+        }
+        if (value->kind == kind) return value;
+        fail(place, *value, expected);
+        return nullptr;
+    }
+
+    void check_keys(const Json& object, const std::string& path, const std::vector<std::string>& known) {
+        for (const std::string& key : object.keys) {
+            if (failure_) return;
+            if (std::find(known.begin(), known.end(), key) != known.end()) continue;
+            std::string message = fmt::format("unknown key {}", quoted(path.empty() ? key : path + "." + key));
+            if (auto nearest = diag::nearest_name(key, known))
+                message += fmt::format("; did you mean {}?", quoted(*nearest));
+            failure_ = Failure{Code::invalid_thresholds, message};
+        }
+    }
+
+    void fail(const std::string& place, const Json& found, const std::string& expected) {
+        if (failure_) return;
+        const std::string subject = place.empty() ? "the file" : quoted(place);
+        failure_ =
+            Failure{Code::invalid_thresholds, fmt::format("{} is {}, expected {}", subject, describe(found), expected)};
+    }
+
+    std::optional<Failure> failure_;
+};
+
+}  // namespace
+
+diag::Result<File> read(const std::string& path) {
+    auto bytes = data::read_file(path, kMaxFileBytes, Code::unreadable_thresholds);
+    if (!bytes) return bytes.failure();
+    return parse(*bytes, path);
+}
+
+diag::Result<File> parse(const std::string& json, const std::string& path) {
+    auto root = parse_json(json, kMaxValues);
+    if (!root) return root.failure();
+    return Reader().read(*root, path);
+}
+
+}  // namespace etlc::thresholds

@@ -1,0 +1,87 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::thresholds {
+namespace {
+
+/// The shortest decimal text that reads back to the same bits; infinities as text, which JSON has no number for.
+template <class Number>
+std::string number(Number value) {
+    if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
+    std::array<char, 64> buffer;
+    const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
+    return {buffer.data(), end};
+}
+
+std::string text(const std::string& value) {
+    return nlohmann::json(value).dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+}
+
+std::string scores(const std::vector<double>& values) {
+    std::string result = "[";
+    for (const double value : values) {
+        if (result.size() > 1) result += ", ";
+        result += number(value);
+    }
+    return result + "]";
+}
+
+/// `{ members }`, one a line; each is a key and a value that is already JSON.
+std::string object(const std::map<std::string, std::string>& members, std::size_t indent) {
+    if (members.empty()) return "{}";
+    std::string result = "{";
+    for (const auto& [key, value] : members)
+        result += fmt::format("{}\n{:{}}{}: {}", result.size() > 1 ? "," : "", "", indent + 2, text(key), value);
+    return result + fmt::format("\n{:{}}}}", "", indent);
+}
+
+std::string entry(const Entry& entry, const std::string& what) {
+    std::map<std::string, std::string> targets;
+    for (const auto& [name, hash] : entry.targets) targets[name] = text(hash);
+    std::string result = "{\n";
+    const auto line = [&](const std::string& key, const std::string& value, const char* end) {
+        result += fmt::format("      \"{}\": {}{}\n", key, value, end);
+    };
+    line("method", text(entry.method), ",");
+    if (!entry.alpha.empty()) line("alpha", entry.alpha, ",");
+    line("epsilon", number(entry.epsilon), ",");
+    line("n", std::to_string(entry.n), ",");
+    line("k", std::to_string(entry.k), ",");
+    line("scores", scores(entry.scores), ",");
+    line(what, text(entry.predicate), ",");
+    line("truth", text(entry.truth), ",");
+    line("targets", object(targets, 6), "");
+    return result + "    }";
+}
+
+std::string entries(const std::map<std::string, Entry>& all, const std::string& what) {
+    std::map<std::string, std::string> members;
+    for (const auto& [name, one] : all) members[name] = entry(one, what);
+    return object(members, 2);
+}
+
+std::string episodes(const std::vector<std::string>& hashes) {
+    if (hashes.empty()) return "[]";
+    std::string result = "[";
+    for (const std::string& hash : hashes)
+        result += fmt::format("{}\n    {}", result.size() > 1 ? "," : "", text(hash));
+    return result + "\n  ]";
+}
+
+}  // namespace
+
+std::string write(const File& file) {
+    return fmt::format(
+        "{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": {},\n  \"monitors\": {},\n  \"episodes\": {},\n"
+        "  \"etlc\": {}\n}}\n",
+        text(file.spec), entries(file.predicates, "predicate"), entries(file.monitors, "formula"),
+        episodes(file.episodes), text(file.etlc));
+}
+
+}  // namespace etlc::thresholds
