@@ -1,0 +1,74 @@
+// From the values of K rows to one: min, max, mean, the n-th smallest; and which row is nearest.
+// Takes: rows' values in ascending row order, each a float that is not negative (+inf where it overflowed). Gives: the
+// aggregate and the index of the nearest row, the lowest on ties. Keeps true: values are compared as the integers of
+// their bits, whose order is theirs; work per row is bounded (Kth: n moves), no heap. SPDX-License-Identifier: MIT
+#pragma once
+
+#include "etlmon/bits.hpp"
+
+namespace etlmon {
+
+/// What a predicate's distance was: telemetry, and where its robustness comes from.
+struct Measured {
+  float delta;       ///< the aggregated distance; NaN where it is unknown: a zero vector under cosine or angular
+  uint32_t nearest;  ///< row of the nearest target, the lowest on ties; 0 where delta is unknown
+};
+
+namespace detail {
+
+/// The nearest row so far.
+struct Nearest {
+  uint32_t least = 0xffffffffu;  ///< bits of its value; no value is that large
+  uint32_t row = 0;
+
+  ETLMON_INLINE void add(uint32_t bits, uint32_t at) noexcept {
+    row = bits < least ? at : row;
+    least = bits < least ? bits : least;
+  }
+};
+
+/// Keeps the n smallest values, ascending, in `values`, of which `count` are there.
+ETLMON_INLINE void keep_smallest(float* values, uint32_t n, uint32_t& count, uint32_t bits) noexcept {
+  if (count == n && bits >= observe(values[n - 1])) return;
+  uint32_t at = count < n ? count++ : n - 1;
+  for (; at > 0 && bits < observe(values[at - 1]); --at) values[at] = values[at - 1];
+  values[at] = from_bits(bits);
+}
+
+}  // namespace detail
+
+/// The distance of the nearest target.
+struct Min {
+  static constexpr bool kOfDistances = false;  ///< order statistics work on values: one finish() for all rows
+  ETLMON_INLINE void add(uint32_t) noexcept {}
+  ETLMON_INLINE uint32_t result(const detail::Nearest& nearest) const noexcept { return nearest.least; }
+};
+
+/// The distance of the farthest target.
+struct Max {
+  static constexpr bool kOfDistances = false;
+  ETLMON_INLINE void add(uint32_t bits) noexcept { greatest = bits > greatest ? bits : greatest; }
+  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept { return greatest; }
+  uint32_t greatest = 0;
+};
+
+/// The arithmetic mean of the distances, added in row order.
+struct Mean {
+  static constexpr bool kOfDistances = true;
+  ETLMON_INLINE void add(float distance) noexcept { sum += distance; }
+  ETLMON_INLINE float result(uint32_t rows) const noexcept { return sum / static_cast<float>(rows); }
+  float sum = 0.0f;
+};
+
+/// The n-th smallest distance, from 1; n known to the compiler.
+template <uint32_t N>
+struct Kth {
+  static constexpr bool kOfDistances = false;
+  static_assert(N >= 1, "the n-th smallest counts from 1");
+  ETLMON_INLINE void add(uint32_t bits) noexcept { detail::keep_smallest(values, N, count, bits); }
+  ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept { return detail::observe(values[N - 1]); }
+  float values[N] = {};
+  uint32_t count = 0;
+};
+
+}  // namespace etlmon

@@ -1,0 +1,114 @@
+// Floats whose bits decide: what is NaN, infinite or missing, whatever -ffast-math lets a compiler assume.
+// Takes: floats from memory or fresh from arithmetic. Gives: exact answers from bits, one rounding per operation, sqrt.
+// Keeps true: no decision rests on a floating-point comparison that -ffinite-math-only may fold away. Functions that
+// may see a NaN or an infinity are inlined always or take references: clang marks float parameters of others "never
+// NaN" there. Builtins are called by name so that -ffreestanding, which makes memcpy a plain function, still gets
+// single moves. SPDX-License-Identifier: MIT
+#pragma once
+
+#include <float.h>
+#include <math.h>
+#include <stddef.h>
+#include <stdint.h>
+#include <string.h>
+
+#if defined(__GNUC__)
+#define ETLMON_INLINE inline __attribute__((always_inline))
+#define ETLMON_COLD __attribute__((noinline, cold))
+#else
+#define ETLMON_INLINE inline
+#define ETLMON_COLD
+#endif
+
+namespace etlmon {
+
+/// What a sample that is not there looks like: a quiet NaN.
+#if defined(__has_builtin)
+#if __has_builtin(__builtin_bit_cast)
+#define ETLMON_HAS_BIT_CAST 1
+#endif
+#endif
+#if defined(ETLMON_HAS_BIT_CAST)
+constexpr float kMissing = __builtin_bit_cast(float, 0x7fc00000u);
+#elif defined(__GNUC__)
+constexpr float kMissing = __builtin_nanf("");
+#else
+constexpr float kMissing = NAN;
+#endif
+
+namespace detail {
+
+constexpr uint32_t kSignBit = 0x80000000u;
+constexpr uint32_t kInfinityBits = 0x7f800000u;
+constexpr uint32_t kMissingBits = 0x7fc00000u;
+
+ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept {
+#if defined(__GNUC__)
+  __builtin_memcpy(to, from, bytes);
+#else
+  memcpy(to, from, bytes);
+#endif
+}
+
+/// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler is kept from seeing
+/// where the bits come from: it must not conclude from the arithmetic what they cannot be.
+ETLMON_INLINE uint32_t observe(const float& x) noexcept {
+  uint32_t bits = 0;
+  copy_bytes(&bits, &x, sizeof bits);
+#if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+  __asm__("" : "+r"(bits));
+#endif
+  return bits;
+}
+
+ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
+  float x = 0.0f;
+  copy_bytes(&x, &bits, sizeof x);
+  return x;
+}
+
+/// An integer that orders floats by value, given their bits; -0 and +0 are one; not for NaN.
+ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
+  const int32_t magnitude = static_cast<int32_t>(bits & ~kSignBit);
+  return (bits & kSignBit) != 0 ? -magnitude : magnitude;
+}
+
+/// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed finite.
+ETLMON_INLINE float rounded(float x) noexcept {
+#if defined(__GNUC__) && defined(__SSE__)
+  __asm__("" : "+x"(x));
+#elif defined(__GNUC__) && defined(__aarch64__)
+  __asm__("" : "+w"(x));
+#elif defined(__GNUC__) && defined(__arm__) && defined(__ARM_FP)
+  __asm__("" : "+t"(x));
+#elif defined(__GNUC__) && defined(__riscv_flen)
+  __asm__("" : "+f"(x));
+#elif defined(__GNUC__)
+  __asm__("" : "+m"(x));
+#else
+  volatile float kept = x;
+  x = kept;
+#endif
+  return x;
+}
+
+/// sqrt of a finite float that is not negative.
+ETLMON_INLINE float square_root(float x) noexcept {
+#if defined(__GNUC__)
+  return __builtin_sqrtf(x);
+#else
+  return sqrtf(x);
+#endif
+}
+
+}  // namespace detail
+
+ETLMON_INLINE bool is_nan(const float& x) noexcept {
+  return (detail::observe(x) & ~detail::kSignBit) > detail::kInfinityBits;
+}
+
+ETLMON_INLINE bool is_finite(const float& x) noexcept {
+  return (detail::observe(x) & ~detail::kSignBit) < detail::kInfinityBits;
+}
+
+}  // namespace etlmon

@@ -1,0 +1,154 @@
+// The same distances where squares leave the range of float32: huge, tiny, or exactly zero.
+// Takes: what kernel.hpp takes. Gives: distances computed from differences scaled by a power of two, one row at a time.
+// Keeps true: a distance that float32 can represent does not overflow on the way, a tiny one does not vanish on the
+// way, and a vector of zeros has no direction. Kept out of line: it is one short scalar loop for every K and D.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "etlmon/aggregate.hpp"
+#include "etlmon/distances.hpp"
+
+namespace etlmon {
+namespace detail {
+
+/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 / down.
+struct PowerOfTwo {
+  float down, up;
+};
+
+ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
+  uint32_t exponent = bits_of_x >> 23;
+  exponent = exponent < 1 ? 1 : exponent > 253 ? 253 : exponent;
+  return {from_bits((254 - exponent) << 23), from_bits(exponent << 23)};
+}
+
+ETLMON_INLINE uint32_t greatest_magnitude(const float* x, uint32_t n) noexcept {
+  uint32_t greatest = 0;
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t bits = observe(x[i]) & ~kSignBit;
+    greatest = bits > greatest ? bits : greatest;
+  }
+  return greatest;
+}
+
+/// Bits of sqrt((z - g)^T W (z - g)); W the identity, a diagonal, or full. With s = sqrt(diag W) and a = s (z - g),
+/// every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element bounds every term.
+template <class Metric>
+class RescaledRoot {
+ public:
+  RescaledRoot(const float* z, const float* weights, uint32_t dimension) noexcept
+      : z_(z), weights_(weights), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+
+  uint32_t row(const float* g) const noexcept {
+    constexpr uint32_t kQuarterOfMost = 0x7e800000u;  // 2^126: differences of larger elements may overflow
+    const uint32_t size_z = greatest_magnitude(z_, dimension_), size_g = greatest_magnitude(g, dimension_);
+    const float half = size_z >= kQuarterOfMost || size_g >= kQuarterOfMost ? 0.5f : 1.0f;
+
+    uint32_t greatest = 0;
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      const uint32_t bits = observe(rounded(difference(g, i, half) * stretch(i))) & ~kSignBit;
+      greatest = bits > greatest ? bits : greatest;
+    }
+    if (greatest == 0 || greatest >= kInfinityBits) return greatest;
+
+    const PowerOfTwo power = power_of_two(greatest);
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      const float a = rounded(rounded(difference(g, i, half) * stretch(i)) * power.down);
+      sum += a * (Metric::kQuadratic ? weighted(g, i, half, power.down) : a);
+    }
+    const float square = sum > 0.0f ? sum : 0.0f;
+    return observe(rounded(rounded(square_root(square) * power.up) / half));
+  }
+
+ private:
+  float difference(const float* g, uint32_t i, float half) const noexcept {
+    return rounded(rounded(z_[i] * half) - rounded(g[i] * half));
+  }
+  float stretch(uint32_t i) const noexcept {
+    if (Metric::kQuadratic) return square_root(weights_[static_cast<size_t>(i) * dimension_ + i]);
+    if (Metric::kWeighted) return square_root(weights_[i]);
+    return 1.0f;
+  }
+  /// Element i of W (z - g) / s_i, scaled.
+  float weighted(const float* g, uint32_t i, float half, float down) const noexcept {
+    const float* row = weights_ + static_cast<size_t>(i) * dimension_;
+    const float s = stretch(i);
+    if (!(s > 0.0f)) return 0.0f;
+    float sum = 0.0f;
+    for (uint32_t j = 0; j < dimension_; ++j) {
+      sum += rounded(rounded(row[j] / s) * rounded(difference(g, j, half) * down));
+    }
+    return sum;
+  }
+
+  const float* z_;
+  const float* weights_;
+  uint32_t dimension_;
+};
+
+/// Bits of cosine and angular for a z whose squared length is out of range: z is scaled first, then to length 1.
+template <class Metric>
+class RescaledDirection {
+ public:
+  RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {
+    const uint32_t greatest = greatest_magnitude(z, dimension);
+    down_ = power_of_two(greatest).down;
+    float square = 0.0f;
+    for (uint32_t i = 0; i < dimension; ++i) {
+      const float x = rounded(z[i] * down_);
+      square += x * x;
+    }
+    known_ = (observe(square) & kInfinityBits) != 0;  // zero also where the denormals of z were flushed to zero
+    point_.scale = known_ ? 1.0f / square_root(square) : 0.0f;
+  }
+  bool known() const noexcept { return known_; }
+
+  uint32_t row(const float* g) const noexcept {
+    typename Metric::template Partial<float> sums{};
+    for (uint32_t i = 0; i < dimension_; ++i) Metric::add(sums, point_, rounded(z_[i] * down_), g[i], 0.0f);
+    return observe(Metric::finish(Metric::row(sums)));
+  }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+  float down_ = 1.0f;
+  bool known_ = false;
+  UnitPoint point_{};
+};
+
+template <class Metric, bool Direction = Metric::kDirection>
+struct Rescaled {
+  using Type = RescaledRoot<Metric>;
+};
+template <class Metric>
+struct Rescaled<Metric, true> {
+  using Type = RescaledDirection<Metric>;
+};
+
+template <class Metric, class Aggregation>
+ETLMON_COLD Measured measure_rescaled(const float* z, const float* targets, const float* weights, uint32_t rows,
+                                      uint32_t dimension, Aggregation aggregation) noexcept {
+  const typename Rescaled<Metric>::Type distance(z, weights, dimension);
+  if (!distance.known()) return {from_bits(kMissingBits), 0};
+  Nearest nearest;
+  for (uint32_t row = 0; row < rows; ++row) {
+    const uint32_t bits = distance.row(targets + static_cast<size_t>(row) * dimension);
+    nearest.add(bits, row);
+    if constexpr (Aggregation::kOfDistances) {
+      aggregation.add(rounded(from_bits(bits) / static_cast<float>(rows)));  // so that the sum cannot overflow
+    } else {
+      aggregation.add(bits);
+    }
+  }
+  if constexpr (Aggregation::kOfDistances) {
+    return {from_bits(observe(aggregation.result(1))), nearest.row};
+  } else {
+    return {from_bits(aggregation.result(nearest)), nearest.row};
+  }
+}
+
+}  // namespace detail
+}  // namespace etlmon

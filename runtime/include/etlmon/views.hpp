@@ -1,0 +1,143 @@
+// What a user hands to Monitor::step: views of embeddings, flags, and the test of what counts as present.
+// Takes: arrays whose size the compiler checks, bools, floats. Gives: Vector, Flag, kMissing, present(...).
+// Keeps true: a default-constructed input is missing; a sample with an element that is not finite, or a scalar outside
+// its range, counts as missing, decided by bits; a view owns nothing and must not outlive what it views.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "etlmon/bits.hpp"
+#include "etlmon/pack.hpp"
+
+namespace etlmon {
+
+namespace detail {
+
+template <class A, class B>
+struct Same {
+  static constexpr bool value = false;
+};
+template <class A>
+struct Same<A, A> {
+  static constexpr bool value = true;
+};
+template <bool Condition>
+struct If {};
+template <>
+struct If<true> {
+  using type = int;
+};
+template <class A>
+const A& some() noexcept;
+
+// How many elements a container type always has: std::array by the size() of a constant, std::span by its extent.
+template <class A, size_t N = A{}.size()>
+constexpr size_t fixed_size(int, int) noexcept {
+  return N;
+}
+template <class A, size_t N = A::extent>
+constexpr size_t fixed_size(int, long) noexcept {
+  return N;
+}
+
+template <class T>
+void reads(const T*) noexcept;
+template <class T, class A>
+using ReadsAs = decltype(reads<T>(some<A>().data()));
+
+}  // namespace detail
+
+/// A view of D contiguous elements: float, uint16_t (the IEEE bits of a float16) or int8_t. Default: missing.
+template <class T, size_t D>
+class Vector {
+ public:
+  constexpr Vector() noexcept = default;
+  constexpr Vector(const T (&elements)[D]) noexcept : data_(elements) {}
+
+  /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler, which must be D.
+  template <class A, class = detail::ReadsAs<T, A>, typename detail::If<detail::fixed_size<A>(0, 0) == D>::type = 0>
+  constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
+  /// A temporary array would be gone before step() reads it.
+  template <class A, class = detail::ReadsAs<T, A>, class = decltype(A{}.size())>
+  Vector(const A&&) = delete;
+
+  /// D elements at `elements`, which nothing checks; nullptr is a missing sample.
+  static constexpr Vector unchecked(const T* elements) noexcept {
+    Vector view;
+    view.data_ = elements;
+    return view;
+  }
+
+  constexpr bool present() const noexcept { return data_ != nullptr; }
+  constexpr const T* data() const noexcept { return data_; }
+
+ private:
+  const T* data_ = nullptr;
+};
+
+/// A bool that may be missing. Only a bool converts to it: an int or a pointer is more often a mistake than a flag.
+class Flag {
+ public:
+  constexpr Flag() noexcept = default;
+  template <class B, typename detail::If<detail::Same<B, bool>::value>::type = 0>
+  constexpr Flag(B on) noexcept : state_(on ? kOn : kOff) {}
+
+  constexpr bool present() const noexcept { return state_ != kNone; }
+  constexpr bool value() const noexcept { return state_ == kOn; }  ///< false where it is missing
+
+ private:
+  static constexpr uint8_t kOff = 0, kOn = 1, kNone = 2;
+  uint8_t state_ = kNone;
+};
+
+/// Every one of n floats is finite.
+ETLMON_INLINE bool finite(const float* x, size_t n) noexcept {
+  bool all = true;
+  size_t single = 0;
+#if defined(ETLMON_HAS_PACKS)
+  single = n - n % 4;
+  detail::PackBits worst{};
+  for (size_t i = 0; i < single; i += 4) {
+    detail::PackBits bits;
+    detail::copy_bytes(&bits, x + i, sizeof bits);
+    worst |= (bits & 0x7fffffff) > 0x7f7fffff;
+  }
+  all = (worst[0] | worst[1] | worst[2] | worst[3]) == 0;
+#endif
+  for (size_t i = single; i < n; ++i) {
+    uint32_t bits = 0;
+    detail::copy_bytes(&bits, x + i, sizeof bits);
+    all &= (bits & ~detail::kSignBit) < detail::kInfinityBits;
+  }
+  return all;
+}
+
+/// Every one of n float16, given as their IEEE bits, is finite.
+ETLMON_INLINE bool finite(const uint16_t* x, size_t n) noexcept {
+  uint32_t worst = 0;
+  for (size_t i = 0; i < n; ++i) {
+    // Adding one to the exponent field carries into bit 15 exactly where all its bits are set.
+    worst |= (x[i] & 0x7c00u) + 0x0400u;
+  }
+  return (worst & 0x8000u) == 0;
+}
+
+ETLMON_INLINE constexpr bool finite(const int8_t*, size_t) noexcept { return true; }
+
+/// The embedding is there and all of it is finite.
+template <class T, size_t D>
+ETLMON_INLINE bool present(const Vector<T, D>& x) noexcept {
+  return x.present() && finite(x.data(), D);
+}
+
+ETLMON_INLINE constexpr bool present(const Flag& x) noexcept { return x.present(); }
+
+/// The scalar is there: finite.
+ETLMON_INLINE bool present_scalar(const float& x) noexcept { return is_finite(x); }
+
+/// The scalar is there: finite and in [low, high]; either bound may be infinite.
+ETLMON_INLINE bool present_scalar(const float& x, const float& low, const float& high) noexcept {
+  const int32_t at = detail::ordered(detail::observe(x));
+  return is_finite(x) && detail::ordered(detail::observe(low)) <= at && at <= detail::ordered(detail::observe(high));
+}
+
+}  // namespace etlmon
