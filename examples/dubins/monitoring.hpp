@@ -1,0 +1,44 @@
+// One drive as the generated monitor saw it, beside the truth.
+// Takes: an episode and the encoder. Gives: per step the embedding, the distances, and what the monitors said and
+// should have said. Keeps true: the truth comes from the car's position alone, not from anything that the monitor
+// computed.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+#include <vector>
+
+#include "encoder.hpp"
+#include "episode.hpp"
+
+namespace demo {
+
+inline constexpr std::array<std::string_view, 3> kPredicates{"at_a", "at_b", "near_c"};
+inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid", "sequential"};
+inline constexpr std::array<float, 3> kThresholds{0.244F, 0.227F, 0.703F};  ///< the literals of dubins.etl
+
+struct Claim {
+    bool satisfied = false;
+    bool final = false;  ///< whatever follows, the verdict stays
+    float robustness = 0;
+};
+
+struct Step {
+    Embedding embedding;
+    std::array<float, kPredicates.size()> distances;
+    std::array<bool, kPredicates.size()> seen;       ///< the predicates
+    std::array<bool, kPredicates.size()> true_now;   ///< what they are meant to mean
+    std::array<Claim, kMonitors.size()> claims;      ///< the monitors' verdicts on the steps so far
+    std::array<bool, kMonitors.size()> true_so_far;  ///< the same formulas over the truth
+};
+
+struct Recording {
+    Episode episode;
+    std::vector<Step> steps;
+};
+
+/// Photographs, encodes and monitors a drive, step by step.
+Recording monitor_drive(Episode episode, const Encoder& encoder);
+
+}  // namespace demo
