@@ -40,7 +40,7 @@ Cost values(std::uint64_t kept, std::uint64_t combined) {
 
 Cost window_cost(std::uint32_t length, bool pairs) {
     if (length == 1) return {};
-    using One = etlmon::Max<Value>;
+    using One = etlmon::Greatest<Value>;
     using Two = etlmon::Since<Value>;
     const std::uint64_t combined = etlmon::window_operations(length) * (pairs ? 3 : 1);
     return {.state_bytes = pairs ? etlmon::window_bytes<Two>(length) : etlmon::window_bytes<One>(length),

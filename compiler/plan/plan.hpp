@@ -19,6 +19,7 @@ namespace etlc::plan {
 
 using check::Index;
 using check::kNone;
+using check::kUnbounded;
 using etlmon::Key;
 using etlmon::Value;
 using ir::NodeId;

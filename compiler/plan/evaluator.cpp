@@ -1,0 +1,327 @@
+#include "plan/evaluator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "etlmon/delay.hpp"
+#include "etlmon/predicate.hpp"
+#include "etlmon/window.hpp"
+
+namespace etlc::plan {
+
+using etlmon::kBottom;
+using etlmon::kFalse;
+using etlmon::kTop;
+using etlmon::kTrue;
+
+namespace {
+
+constexpr Value kAnything{kBottom, kTop};
+
+Value key_range(check::Range range) {
+    return {etlmon::key_of(range.low), etlmon::key_of(range.high)};
+}
+
+std::uint32_t saturating_increment(std::uint32_t x) {
+    return x == std::numeric_limits<std::uint32_t>::max() ? x : x + 1;
+}
+
+bool over_pairs(StreamOp op) {
+    return op == StreamOp::window_since || op == StreamOp::window_trigger || op == StreamOp::window_until ||
+           op == StreamOp::window_release;
+}
+
+}  // namespace
+
+Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
+    prepare_distances();
+    inputs_.resize(model_.inputs.size());
+    held_.resize(model_.inputs.size());
+    distances_.resize(model_.distances.size());
+    measured_.resize(model_.predicates.size());
+    literals_.resize(model_.predicates.size(), kAnything);
+    flags_.resize(model_.inputs.size(), kAnything);
+    streams_.resize(plan.streams.size());
+    stream_states_.resize(plan.streams.size());
+    readings_.resize(plan.readings.size());
+    reading_states_.resize(plan.readings.size());
+    verdicts_.resize(plan.monitors.size());
+    reset();
+}
+
+void Evaluator::reset() {
+    for (Held& held : held_) held = {};
+    for (Slot slot = 0; slot < plan_.streams.size(); ++slot) reset_stream(plan_.streams[slot], stream_states_[slot]);
+    for (std::size_t i = 0; i < plan_.readings.size(); ++i) reset_reading(plan_.readings[i], reading_states_[i]);
+    std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
+    std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
+    steps_ = 0;
+    started_ = false;
+    finished_ = 0;
+    missing_steps_ = 0;
+}
+
+const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& samples) {
+    if (started_) steps_ = saturating_increment(steps_);
+    started_ = true;
+    take_inputs(samples);
+    measure_distances();
+    measure_predicates();
+    advance_streams();
+    advance_readings();
+    judge();
+    return verdicts_;
+}
+
+const std::vector<etlmon::Verdict>& Evaluator::finish() {
+    if (started_) steps_ = saturating_increment(steps_);
+    started_ = true;
+    finished_ = saturating_increment(finished_);
+    advance_streams();
+    judge();
+    return verdicts_;
+}
+
+// ---- inputs, distances, predicates
+
+bool Evaluator::usable(const check::Input& input, const Sample& sample) const {
+    if (!sample.present || sample.values.empty()) return false;
+    const bool finite = std::all_of(sample.values.begin(), sample.values.end(), [](float x) { return std::isfinite(x); });
+    if (!finite) return false;
+    if (input.type != check::InputType::scalar) return true;
+    return input.range.low <= sample.values[0] && sample.values[0] <= input.range.high;
+}
+
+/// `hold N`: the last present sample stands in for at most N missing ones in a row.
+void Evaluator::take_inputs(const std::vector<Sample>& samples) {
+    for (Index i : plan_.inputs) {
+        const check::Input& input = model_.inputs[i];
+        Held& held = held_[i];
+        if (usable(input, samples[i])) {
+            held.values = samples[i].values;
+            held.age = 0;
+            inputs_[i] = held.values.data();
+        } else {
+            const bool stands_in = !held.values.empty() && held.age < input.hold;
+            held.age = saturating_increment(held.age);
+            inputs_[i] = stands_in ? held.values.data() : nullptr;
+        }
+        if (input.type == check::InputType::boolean)
+            flags_[i] = inputs_[i] == nullptr ? kAnything : inputs_[i][0] != 0 ? kTrue : kFalse;
+    }
+}
+
+void Evaluator::measure_predicates() {
+    bool missing = false;
+    for (const Stream& stream : plan_.streams)
+        if (stream.op == StreamOp::flag) missing |= etlmon::unknown(flags_[stream.index]);
+    for (Index p : plan_.predicates) {
+        const check::Predicate& predicate = model_.predicates[p];
+        const bool present = std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
+                                         [&](Index input) { return inputs_[input] != nullptr; });
+        etlmon::Measured measured{etlmon::kMissing, 0};
+        if (present && predicate.plain_distance()) measured = distances_[predicate.expression.index];
+        if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
+        measured_[p] = measured;
+        const Value range = key_range(predicate.robustness);
+        literals_[p] = predicate.upper_bound() ? etlmon::at_most(measured.delta, predicate.threshold.value, range)
+                                               : etlmon::at_least(measured.delta, predicate.threshold.value, range);
+        missing |= std::isnan(measured.delta);
+    }
+    if (missing) missing_steps_ = saturating_increment(missing_steps_);
+}
+
+// ---- streams
+
+/// An operand whose position lies before the trace or after its end counts as nothing.
+Value Evaluator::operand(const Stream& stream, std::size_t i, Value where_none) const {
+    return exists(operand_lag(stream)) ? streams_[stream.operands[i]] : where_none;
+}
+
+std::uint32_t Evaluator::operand_lag(const Stream& stream) const {
+    std::uint32_t lag = 0;
+    for (Slot slot : stream.operands) lag = std::max(lag, plan_.streams[slot].lag);
+    return lag;
+}
+
+void Evaluator::advance_streams() {
+    for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
+        streams_[slot] = advance(plan_.streams[slot], stream_states_[slot]);
+}
+
+namespace {
+
+template <class Monoid>
+Value push(std::vector<Value>& values, std::uint32_t& cursor, std::uint32_t length, Value value) {
+    return etlmon::window_push<Monoid>(values.data(), cursor, length, value);
+}
+
+}  // namespace
+
+Value Evaluator::advance_window(const Stream& stream, StreamState& state) const {
+    const std::uint32_t n = stream.length;
+    const auto pair = [&](Value no_value, Value no_guard) {
+        return etlmon::Span<Value>{operand(stream, 1, no_value), operand(stream, 0, no_guard)};
+    };
+    switch (stream.op) {
+        case StreamOp::window_max:
+            return push<etlmon::Greatest<Value>>(state.values, state.cursor, n, operand(stream, 0, kFalse));
+        case StreamOp::window_min:
+            return push<etlmon::Least<Value>>(state.values, state.cursor, n, operand(stream, 0, kTrue));
+        case StreamOp::window_since:
+            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue)).value;
+        case StreamOp::window_trigger:
+            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse)).value;
+        case StreamOp::window_until:
+            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue)).value;
+        default:
+            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse)).value;
+    }
+}
+
+Value Evaluator::advance(const Stream& stream, StreamState& state) const {
+    const auto at = [&](std::size_t i) { return streams_[stream.operands[i]]; };
+    switch (stream.op) {
+        case StreamOp::constant: return stream.value;
+        case StreamOp::predicate: return literals_[stream.index];
+        case StreamOp::flag: return flags_[stream.index];
+        case StreamOp::negation: return negate(at(0));
+        case StreamOp::conjunction: {
+            Value value = kTrue;
+            for (Slot slot : stream.operands) value = min(value, streams_[slot]);
+            return value;
+        }
+        case StreamOp::disjunction: {
+            Value value = kFalse;
+            for (Slot slot : stream.operands) value = max(value, streams_[slot]);
+            return value;
+        }
+        case StreamOp::delay: return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
+        case StreamOp::shift:
+            return etlmon::delay_push(state.values.data(), state.cursor, stream.length, operand(stream, 0, stream.value));
+        case StreamOp::running_max: return state.values[0] = max(state.values[0], operand(stream, 0, kFalse));
+        case StreamOp::running_min: return state.values[0] = min(state.values[0], operand(stream, 0, kTrue));
+        case StreamOp::since:
+            return state.values[0] = max(operand(stream, 1, kFalse), min(state.values[0], operand(stream, 0, kTrue)));
+        case StreamOp::trigger:
+            return state.values[0] = min(operand(stream, 1, kTrue), max(state.values[0], operand(stream, 0, kFalse)));
+        default: return advance_window(stream, state);
+    }
+}
+
+void Evaluator::reset_stream(const Stream& stream, StreamState& state) {
+    state.cursor = 0;
+    switch (stream.op) {
+        case StreamOp::delay: state.values.assign(stream.length, kFalse); break;
+        case StreamOp::shift: state.values.assign(stream.length, stream.value); break;
+        case StreamOp::running_max:
+        case StreamOp::since: state.values.assign(1, kFalse); break;
+        case StreamOp::running_min:
+        case StreamOp::trigger: state.values.assign(1, kTrue); break;
+        case StreamOp::window_max: state.values.assign(etlmon::window_elements(stream.length), kFalse); break;
+        case StreamOp::window_min: state.values.assign(etlmon::window_elements(stream.length), kTrue); break;
+        case StreamOp::window_since:
+        case StreamOp::window_until:
+            state.pairs.assign(etlmon::window_elements(stream.length), etlmon::Until<Value>::identity());
+            break;
+        case StreamOp::window_trigger:
+        case StreamOp::window_release:
+            state.pairs.assign(etlmon::window_elements(stream.length), etlmon::Release<Value>::identity());
+            break;
+        default: break;
+    }
+}
+
+// ---- readings
+
+void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
+    switch (reading.kind) {
+        case Reading::Kind::latch: state.registers.assign(1, kFalse); break;
+        case Reading::Kind::fold:
+            state.registers = seeks(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
+            break;
+        case Reading::Kind::machine:
+            state.registers.assign(reading.machine.states.size(), kFalse);
+            state.next = state.registers;
+            state.registers[0] = kTrue;
+            state.table = make_table(reading.machine);
+            state.guards.assign(reading.machine.guards.size(), kTrue);
+            state.weak.assign(state.table.weak.size() + 1, kTop);
+            state.strong.assign(state.table.strong.size() + 1, kTop);
+            break;
+        default: break;
+    }
+}
+
+void Evaluator::advance_readings() {
+    for (std::size_t i = 0; i < plan_.readings.size(); ++i)
+        readings_[i] = advance(plan_.readings[i], reading_states_[i]);
+}
+
+etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) const {
+    switch (reading.kind) {
+        case Reading::Kind::latch:
+            if (steps_ == 0) state.registers[0] = streams_[reading.latch.operand];
+            return etlmon::settled(state.registers[0]);
+        case Reading::Kind::fold: return advance_fold(reading.fold, state);
+        case Reading::Kind::machine: return advance_machine(reading.machine, state);
+        default: break;
+    }
+    etlmon::Reading result = readings_[reading.operands[0]];
+    for (std::uint32_t operand : reading.operands) {
+        const etlmon::Reading& other = readings_[operand];
+        result = reading.kind == Reading::Kind::conjunction ? min(result, other) : max(result, other);
+    }
+    return result;
+}
+
+/// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left side before now.
+etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
+    const bool max_of = seeks(fold.op);
+    const bool open = fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
+    const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
+    Value& best = state.registers[0];
+    Value& guard = state.registers[1];
+    const Value right = streams_[fold.right];
+    if (open) best = max_of ? max(best, min(guard, right)) : min(best, max(guard, right));
+    if (fold.left != kNone) guard = max_of ? min(guard, streams_[fold.left]) : max(guard, streams_[fold.left]);
+    etlmon::Reading reading = etlmon::settled(best);
+    if (!reaches_past) return reading;
+    const Value unseen = streams_[fold.unseen];
+    if (max_of)
+        reading.upper = max(reading.upper, min(guard.high, unseen.high));
+    else
+        reading.lower = min(reading.lower, max(guard.low, unseen.low));
+    return reading;
+}
+
+etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState& state) const {
+    const auto low = [&](Slot slot) { return streams_[slot].low; };
+    const auto high = [&](Slot slot) { return streams_[slot].high; };
+    const Table& table = state.table;
+    for (std::size_t g = 0; g < machine.guards.size(); ++g) {
+        state.guards[g] = kTrue;
+        for (Slot slot : machine.guards[g]) state.guards[g] = min(state.guards[g], streams_[slot]);
+    }
+    std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1, low);
+    std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);
+
+    const auto states = static_cast<std::uint32_t>(machine.states.size());
+    etlmon::machine_advance(state.registers.data(), state.next.data(), states, table.transitions.data(), table.ends.data(),
+                            state.guards.data());
+    std::swap(state.registers, state.next);
+    return etlmon::machine_read(state.registers.data(), states, table.owed.data(), state.weak.data(), state.strong.data());
+}
+
+void Evaluator::judge() {
+    for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
+        const Monitor& monitor = plan_.monitors[m];
+        if (monitor.sliding)
+            verdicts_[m] = exists(monitor.horizon) ? etlmon::sliding_verdict(streams_[monitor.stream]) : etlmon::Verdict{};
+        else if (finished_ == 0)
+            verdicts_[m] = etlmon::prefix_verdict(readings_[monitor.reading]);
+    }
+}
+
+}  // namespace etlc::plan

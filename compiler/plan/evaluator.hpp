@@ -1,0 +1,96 @@
+// The plan, executed: what `etlc run` and calibration step.
+// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the generated class gives, from
+// the same runtime code. Keeps true: constant memory, work per step independent of history.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "etlmon/kernel.hpp"
+#include "etlmon/reading.hpp"
+#include "etlmon/verdict.hpp"
+#include "plan/inputs.hpp"
+#include "plan/plan.hpp"
+#include "plan/table.hpp"
+
+namespace etlc::plan {
+
+class Evaluator {
+public:
+    explicit Evaluator(const Plan& plan);
+
+    void reset();
+    /// One time step; `samples` by index of the model's inputs (those that no monitor depends on are not looked at).
+    /// The verdicts are by index of plan.monitors and good until the next call.
+    const std::vector<etlmon::Verdict>& step(const std::vector<Sample>& samples);
+    /// The trace has ended: sliding monitors report one of their last positions per call, prefix monitors their last verdict.
+    const std::vector<etlmon::Verdict>& finish();
+
+    /// delta of the last step, by index of the model's predicates; NaN where it was unknown.
+    float distance(Index predicate) const { return measured_[predicate].delta; }
+    /// Row of the nearest target; plain distances only.
+    std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
+    std::uint32_t missing_steps() const { return missing_steps_; }
+
+private:
+    struct Held {
+        std::vector<float> values;  ///< empty: nothing to hold
+        std::uint32_t age = 0;
+    };
+    struct StreamState {
+        std::vector<Value> values;
+        std::vector<etlmon::Since<Value>::Element> pairs;
+        std::uint32_t cursor = 0;
+    };
+    struct ReadingState {
+        std::vector<Value> registers;  ///< latch and fold: 1 or 2; machine: one a state
+        std::vector<Value> next;       ///< machine: the registers being made
+        Table table;
+        std::vector<Value> guards;
+        std::vector<Key> weak;         ///< this step's keys of the table's lists
+        std::vector<Key> strong;
+    };
+
+    void prepare_distances();
+    static void reset_stream(const Stream& stream, StreamState& state);
+    static void reset_reading(const Reading& reading, ReadingState& state);
+    void take_inputs(const std::vector<Sample>& samples);
+    bool usable(const check::Input& input, const Sample& sample) const;
+    void measure_distances();
+    void measure_predicates();
+    float expression(const check::Expr& e) const;
+    void advance_streams();
+    Value advance(const Stream& stream, StreamState& state) const;
+    Value advance_window(const Stream& stream, StreamState& state) const;
+    Value operand(const Stream& stream, std::size_t i, Value where_none) const;
+    std::uint32_t operand_lag(const Stream& stream) const;
+    bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }
+    void advance_readings();
+    etlmon::Reading advance(const Reading& reading, ReadingState& state) const;
+    etlmon::Reading advance_fold(const Fold& fold, ReadingState& state) const;
+    etlmon::Reading advance_machine(const Machine& machine, ReadingState& state) const;
+    void judge();
+
+    const Plan& plan_;
+    const check::Model& model_;
+    std::vector<std::vector<float>> points_;      ///< per distance: scratch for vectors of scalars
+    std::vector<std::vector<float>> prepared_;    ///< per target and distance: rows as the kernels want them
+    std::vector<const float*> inputs_;            ///< per input of the model: this step's values; null: missing
+    std::vector<Held> held_;
+    std::vector<etlmon::Measured> distances_;
+    std::vector<etlmon::Measured> measured_;
+    std::vector<float> scratch_;
+    std::vector<Value> literals_;                 ///< per predicate
+    std::vector<Value> flags_;                    ///< per input
+    std::vector<Value> streams_;
+    std::vector<StreamState> stream_states_;
+    std::vector<etlmon::Reading> readings_;
+    std::vector<ReadingState> reading_states_;
+    std::vector<etlmon::Verdict> verdicts_;
+    std::uint32_t steps_ = 0;                     ///< index of the current step, calls of finish() included; saturates
+    bool started_ = false;
+    std::uint32_t finished_ = 0;                  ///< calls of finish()
+    std::uint32_t missing_steps_ = 0;
+};
+
+}  // namespace etlc::plan

@@ -1,0 +1,34 @@
+// `hold N`: the last present sample of an input stands in for missing ones.
+// Takes: this step's sample, or nothing. Gives: the sample to use, or nothing. Keeps true: at most N missing samples in a
+// row are replaced; before the first present one there is nothing to hold.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <stdint.h>
+
+namespace etlmon {
+
+/// D elements of T (float, or uint32_t for a flag), held for at most N steps in a row.
+template <class T, uint32_t D, uint32_t N>
+class Hold {
+ public:
+  void reset() noexcept { age_ = N; }
+
+  /// `sample`: D elements, or nullptr where it is missing. The result is good until the next call.
+  const T* take(const T* sample) noexcept {
+    if (sample != nullptr) {
+      for (uint32_t i = 0; i < D; ++i) values_[i] = sample[i];
+      age_ = 0;
+      return sample;
+    }
+    if (age_ == N) return nullptr;
+    ++age_;
+    return values_;
+  }
+
+ private:
+  T values_[D];
+  uint32_t age_;  ///< missing samples in a row since the held one; N: nothing to hold any more
+};
+
+}  // namespace etlmon

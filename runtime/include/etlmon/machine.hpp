@@ -1,0 +1,75 @@
+// A weighted state machine over (max, min), as constant tables and one loop.
+// Takes: the guards' values at this step. Gives: the reading of the formula. Keeps true: next[t] is the max over the
+// transitions into t of min(now[source], guard), so that the max over the states that owe nothing is rho on the prefix;
+// the work is the same at every step: one min and one max a transition.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <stdint.h>
+
+#include "etlmon/reading.hpp"
+
+namespace etlmon {
+
+struct Transition {
+  uint16_t source;
+  uint16_t guard;
+};
+
+/// What a state is worth where the prefix ends: indices into this step's lists of keys.
+struct Owed {
+  uint16_t weak;    ///< lowest unseen value of what it owes weakly; kStrongly: it owes something that must still come
+  uint16_t strong;  ///< highest unseen value of what it owes strongly; 0 is kTop: nothing
+};
+constexpr uint16_t kStrongly = 0xffff;
+
+/// The transitions into state t end at ends[t]; those of t follow those of t - 1.
+template <class V>
+void machine_advance(const V* now, V* next, uint32_t states, const Transition* transitions, const uint32_t* ends,
+                     const V* guards) noexcept {
+  uint32_t at = 0;
+  for (uint32_t target = 0; target < states; ++target) {
+    V best = Lattice<V>::bottom();
+    for (; at < ends[target]; ++at) best = max(best, min(now[transitions[at].source], guards[transitions[at].guard]));
+    next[target] = best;
+  }
+}
+
+/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper: any
+/// state, what it owes strongly is worth its highest unseen value.
+inline Reading machine_read(const Value* now, uint32_t states, const Owed* owed, const Key* weak,
+                            const Key* strong) noexcept {
+  Reading reading{kFalse, kBottom, kBottom};
+  for (uint32_t q = 0; q < states; ++q) {
+    reading.upper = max(reading.upper, min(now[q].high, strong[owed[q].strong]));
+    if (owed[q].weak == kStrongly) continue;
+    reading.rho = max(reading.rho, now[q]);
+    reading.lower = max(reading.lower, min(now[q].low, weak[owed[q].weak]));
+  }
+  return reading;
+}
+
+/// The registers of a machine with its tables elsewhere; state 0 is the initial one.
+template <uint32_t States>
+class Machine {
+ public:
+  void reset() noexcept {
+    turn_ = 0;
+    for (uint32_t q = 0; q < States; ++q) registers_[0][q] = q == 0 ? kTrue : kFalse;
+  }
+
+  void advance(const Transition* transitions, const uint32_t* ends, const Value* guards) noexcept {
+    machine_advance(registers_[turn_], registers_[1 - turn_], States, transitions, ends, guards);
+    turn_ = 1 - turn_;
+  }
+
+  Reading read(const Owed* owed, const Key* weak, const Key* strong) const noexcept {
+    return machine_read(registers_[turn_], States, owed, weak, strong);
+  }
+
+ private:
+  Value registers_[2][States];
+  uint32_t turn_;
+};
+
+}  // namespace etlmon

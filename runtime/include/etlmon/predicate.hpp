@@ -1,0 +1,37 @@
+// From what was measured to robustness: the comparison of a predicate.
+// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; the range of the robustness.
+// Gives: epsilon - delta or delta - epsilon as a value; the whole range where delta is unknown.
+// Keeps true: one float32 subtraction; a NaN is found by its bits and never becomes a verdict.
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "etlmon/bits.hpp"
+#include "etlmon/value.hpp"
+#include "etlmon/views.hpp"
+
+namespace etlmon {
+
+/// delta <= epsilon and delta < epsilon (Definition "Embedding Predicate").
+ETLMON_INLINE Value at_most(const float& delta, const float& epsilon, Value range) noexcept {
+  if (is_nan(delta)) return range;
+  const Key robustness = key_of(detail::rounded(epsilon - delta));
+  return {robustness, robustness};
+}
+
+/// delta >= epsilon and delta > epsilon.
+ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value range) noexcept {
+  if (is_nan(delta)) return range;
+  const Key robustness = key_of(detail::rounded(delta - epsilon));
+  return {robustness, robustness};
+}
+
+/// A bool input: true is +inf, false is -inf, missing is anything in between.
+ETLMON_INLINE Value value_of(Flag flag) noexcept {
+  if (!flag.present()) return {kBottom, kTop};
+  return flag.value() ? kTrue : kFalse;
+}
+
+/// Some sample behind the value was missing.
+constexpr bool unknown(Value value) noexcept { return value.low != value.high; }
+
+}  // namespace etlmon
