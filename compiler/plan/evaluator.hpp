@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "etlmon/kernel.hpp"
+#include "etlmon/monoid.hpp"
 #include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
 #include "plan/inputs.hpp"
