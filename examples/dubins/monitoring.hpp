@@ -16,7 +16,7 @@ namespace demo {
 
 inline constexpr std::array<std::string_view, 3> kPredicates{"at_a", "at_b", "near_c"};
 inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid", "sequential"};
-inline constexpr std::array<float, 3> kThresholds{0.244F, 0.227F, 0.703F};  ///< the literals of dubins.etl
+inline constexpr std::array<float, 3> kThresholds{0.243F, 0.223F, 0.732F};  ///< the literals of dubins.etl
 
 struct Claim {
     bool satisfied = false;

@@ -1,5 +1,6 @@
 #include "time_field.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace demo {
@@ -43,7 +44,9 @@ TimeField::TimeField(const std::function<bool(const Car&)>& reached, const std::
             }
         }
     }
+    // In place and in alternating order (Gauss-Seidel), so that times spread far in one sweep.
     for (int sweep = 0; sweep < kMaxSweeps && relax(moves) > kSettled; ++sweep) {
+        std::reverse(open_.begin(), open_.end());
     }
 }
 
