@@ -74,17 +74,21 @@ void Report::add(const Recording& recording) {
 }
 
 void Report::summary() const {
-    fmt::print("\n{}\n", painted(fmt::format("{:<12}{:>16}{:>15}{:>15}{:>17}", "monitor", "drives agree", "truly yes",
-                                             "false yes", "missed yes") +
+    fmt::print(
+        "\n{}\n",
+        painted("yes, no: the verdict on the whole drive; the time: when it became final; <>: the truth is the other",
+                Colour::faint, colour_));
+    fmt::print("\n{}\n", painted(fmt::format("{:<12}{:>16}{:>17}{:>17}{:>17}", "monitor", "drives agree",
+                                             "truly satisfied", "false positives", "false negatives") +
                                      fmt::format("{:>15}", "steps agree"),
                                  Colour::faint, colour_));
     for (std::size_t m = 0; m < kMonitors.size(); ++m) {
         const Score& end = at_end_[m];
-        fmt::print("{:<12}{:>16}{:>15}{:>15}{:>17}{:>13.2f} %\n", kMonitors[m],
+        fmt::print("{:<12}{:>16}{:>17}{:>17}{:>17}{:>13.2f} %\n", kMonitors[m],
                    fmt::format("{} of {}", end.true_positives + end.true_negatives, end.total()), end.positives(),
                    end.false_positives, end.false_negatives, 100 * at_steps_[m].agreement());
     }
-    fmt::print("\n{}\n", painted(fmt::format("{:<12}{:>16}{:>15}{:>15}{:>17}{:>15}", "predicate", "frames inside", "F1",
+    fmt::print("\n{}\n", painted(fmt::format("{:<12}{:>16}{:>17}{:>17}{:>17}{:>15}", "predicate", "frames inside", "F1",
                                              "precision", "recall", "frames agree"),
                                  Colour::faint, colour_));
     for (std::size_t p = 0; p < kPredicates.size(); ++p) {
