@@ -58,6 +58,20 @@ std::vector<std::string> columns(const check::Input& input) {
     return result;
 }
 
+/// Files hold the integers of an i8 embedding, the reference takes its real values.
+double unit(const check::Input& input) {
+    return input.type == InputType::i8 ? static_cast<double>(input.scale) : 1.0;
+}
+
+std::vector<double> real_values(const check::Input& input, std::vector<double> numbers) {
+    for (double& number : numbers) number *= unit(input);
+    return numbers;
+}
+
+double recorded(const check::Input& input, double value) {
+    return value / unit(input);
+}
+
 }  // namespace
 
 reference::Trace random_trace(const check::Model& model, std::uint64_t seed, const TraceShape& shape) {
@@ -88,7 +102,7 @@ std::string to_csv(const check::Model& model, const reference::Trace& trace) {
         for (std::size_t n = 0; n < model.inputs.size(); ++n)
             for (std::uint32_t element = 0; element < model.inputs[n].dimension; ++element) {
                 if (n + element > 0) line += ',';
-                if (!step[n].empty()) line += fmt::format("{:.17g}", step[n][element]);
+                if (!step[n].empty()) line += fmt::format("{:.17g}", recorded(model.inputs[n], step[n][element]));
             }
         result += line + '\n';
     }
@@ -115,7 +129,7 @@ reference::Trace read_csv(const check::Model& model, const std::string& path) {
         if (!more || !*more) return result;
         reference::Step step;
         for (std::size_t n = 0; n < channels.size(); ++n)
-            step.push_back(sample.present[n] ? sample.values[n] : std::vector<double>{});
+            step.push_back(sample.present[n] ? real_values(model.inputs[n], sample.values[n]) : std::vector<double>{});
         result.push_back(std::move(step));
     }
 }

@@ -22,10 +22,10 @@ struct TraceShape {
 
 reference::Trace random_trace(const check::Model& model, std::uint64_t seed, const TraceShape& shape);
 
-/// With a header; an empty cell is a missing sample.
+/// As `etlc run` reads it: with a header, an empty cell is a missing sample, i8 embeddings hold integers.
 std::string to_csv(const check::Model& model, const reference::Trace& trace);
 
-/// A trace of that form, as `etlc run` reads it. Fails the current test where the file cannot be read.
+/// A trace of that form. Fails the current test where the file cannot be read.
 reference::Trace read_csv(const check::Model& model, const std::string& path);
 
 }  // namespace etlc::tests

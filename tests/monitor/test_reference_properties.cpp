@@ -15,6 +15,7 @@ namespace {
 
 using namespace etlc;
 using namespace etlc::tests;
+using reference::evaluate;
 using reference::Trace;
 using reference::Verdict;
 using Formulas = SpecShape::Formulas;

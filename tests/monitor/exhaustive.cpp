@@ -1,0 +1,166 @@
+#include "exhaustive.hpp"
+
+#include <fmt/format.h>
+
+namespace etlc::tests {
+namespace {
+
+using Formulas = std::vector<std::string>;
+
+const Formulas kConnectives = {"p",       "!p",         "p && q",          "p || q",     "p -> q",
+                               "p <-> q", "!(p <-> q)", "!(p && q || !q)", "p && !p",    "p || !p",
+                               "true",    "false",      "p && true",       "q || false", "p -> false"};
+
+const Formulas kBounded = {"[0, 0]", "[0, 2]", "[1, 1]", "[1, 3]", "[2, 2]", "[2, 4]"};
+const Formulas kUnbounded = {"", "[1, inf]", "[2, inf]"};
+
+Formulas with(const Formulas& intervals, const std::string& before, const std::string& after) {
+    Formulas result;
+    for (const std::string& interval : intervals) result.push_back(before + interval + after);
+    return result;
+}
+
+void append(Formulas& all, const Formulas& more) {
+    all.insert(all.end(), more.begin(), more.end());
+}
+
+/// Every operator that takes an interval, with each of `intervals`, and negated.
+void append_operators(Formulas& all, const Formulas& intervals, const Formulas& unary, const Formulas& binary) {
+    for (const std::string& op : unary) append(all, with(intervals, op, " p"));
+    for (const std::string& op : binary) append(all, with(intervals, "p " + op, " q"));
+    for (const std::string& op : binary) append(all, with({intervals.back()}, "!(p " + op, " q)"));
+}
+
+const Formulas kWithoutInterval = {"X p", "!X p", "X X q", "Y p", "!Y p", "Y Y q"};
+const Formulas kWeakUntil = {"p W q", "!(p W q)", "(p && q) W !p"};
+
+const Formulas kUnboundedNestings = {
+    "F (p && F q)",
+    "F (p && F (q && F p))",
+    "G (p -> F q)",
+    "G (p || G q)",
+    "F G p",
+    "G F p",
+    "F (p && G q)",
+    "G (p -> q U p)",
+    "(F p) U q",
+    "p U F q",
+    "p U G q",
+    "(G p) R q",
+    "p R (F q)",
+    "(p U q) U p",
+    "p U (q U p)",
+    "p W F q",
+    "G (p W q)",
+    "F (p R q)",
+    "F p && G q",
+    "F p || G q",
+    "F p <-> G q",
+    "!(F p && G (q -> F p))",
+    "F[1, inf] (p && G[1, inf] q)",
+    "X (p U q)",
+    "p U X q",
+    "G (p -> X q)",
+    "F (p && X q)",
+    "G (!p || X F q)",
+    "(p W q) W p",
+    "F (p <-> F q)",
+};
+
+const Formulas kBoundedNestings = {
+    "F[0, 2] G[0, 1] p",        "G[0, 1] F[1, 2] p",       "G (p -> F[0, 2] q)", "F (p && G[1, 2] q)",
+    "(p U[0, 2] q) U p",        "p U[1, 2] (q R[0, 1] p)", "G[1, 3] (p -> X q)", "X X X p",
+    "F[0, 1] (p && F[0, 1] q)", "G (q R[0, 2] p)",         "!X F[1, 2] p",       "F[1, 2] p && G[0, 3] q",
+};
+
+const Formulas kOverThePast = {
+    "G (p -> O q)",
+    "F (p && H q)",
+    "F (p S q)",
+    "G Y p",
+    "G (O[0, 2] p)",
+    "F (H[1, 2] q)",
+    "G (p S[0, 2] q)",
+    "G !(p S[1, 3] q)",
+    "F (p && Y q)",
+    "p U O q",
+    "G[1, inf] (q -> H[1, inf] p)",
+    "F[1, 3] O[1, inf] p",
+    "X O p",
+    "G (p || !O[2, 3] q)",
+    "F H p",
+    "G O p",
+};
+
+const Formulas kSlidingNestings = {
+    "F[0, 2] G[0, 1] p",
+    "G[0, 1] F[1, 2] p",
+    "p U[0, 2] (q R[1, 2] p)",
+    "O F[0, 2] p",
+    "H[0, 2] X q",
+    "(F[0, 1] p) S q",
+    "p S[0, 2] (X q)",
+    "!((G[0, 1] p) S[1, 2] X q)",
+    "Y X p",
+    "X Y p",
+    "O[1, 2] p && X q",
+    "p -> F[0, 3] q",
+    "X p <-> Y q",
+    "G[1, 2] (p -> O q)",
+    "F[0, 2] (p S q)",
+    "H p || G[0, 2] q",
+};
+
+std::string spec(const std::string& name, const std::string& kind, const Formulas& formulas) {
+    std::string result = fmt::format(
+        "spec {};\n"
+        "input x : f32 in [-4, 4];\n"
+        "input y : f32 in [-8, 8];\n"
+        "predicate p = x >= 0;\n"
+        "predicate q = y > 0;\n",
+        name);
+    for (std::size_t n = 0; n < formulas.size(); ++n) result += fmt::format("{} m{} = {};\n", kind, n, formulas[n]);
+    return result;
+}
+
+}  // namespace
+
+std::string exhaustive_spec() {
+    Formulas formulas = kConnectives;
+    append(formulas, kWithoutInterval);
+    for (const Formulas* intervals : {&kBounded, &kUnbounded})
+        append_operators(formulas, *intervals, {"F", "G", "O", "H"}, {"U", "R", "S"});
+    for (const Formulas* more : {&kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
+        append(formulas, *more);
+    return spec("exhaustive", "monitor", formulas);
+}
+
+std::string exhaustive_sliding_spec() {
+    Formulas formulas = kConnectives;
+    append(formulas, kWithoutInterval);
+    append_operators(formulas, kBounded, {"F", "G", "O", "H"}, {"U", "R", "S"});
+    append_operators(formulas, kUnbounded, {"O", "H"}, {"S"});
+    append(formulas, kSlidingNestings);
+    return spec("exhaustive_sliding", "sliding monitor", formulas);
+}
+
+AllTraces::AllTraces(std::size_t steps, bool gaps) : steps_(steps), values_(gaps ? 3 : 2) {
+    for (std::size_t n = 0; n < 2 * steps; ++n) size_ *= values_;
+}
+
+reference::Trace AllTraces::operator[](std::size_t number) const {
+    const auto sample = [&](std::vector<double> values) {
+        const std::size_t choice = number % values_;
+        number /= values_;
+        return choice == 2 ? std::vector<double>{} : std::vector<double>{values[choice]};
+    };
+    reference::Trace trace;
+    for (std::size_t n = 0; n < steps_; ++n) {
+        auto x = sample({-1, 2});
+        auto y = sample({-2, 1});
+        trace.push_back({std::move(x), std::move(y)});
+    }
+    return trace;
+}
+
+}  // namespace etlc::tests

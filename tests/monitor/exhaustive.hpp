@@ -1,0 +1,33 @@
+// Every operator over every short trace.
+// Gives: a spec with a monitor for each operator and interval, each Boolean connective and the usual nestings over two
+// predicates p and q; and all traces of a length over the values that matter. Keeps true: p and q have values of
+// different size, so that a verdict tells which of them decided it.
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+/// Prefix monitors m0, m1, ... over p = x >= 0 and q = y > 0.
+std::string exhaustive_spec();
+/// Sliding monitors, with bounded futures and past operators over them.
+std::string exhaustive_sliding_spec();
+
+/// All traces of `steps` steps over x in {-1, 2} and y in {-2, 1}: 4^steps; with `gaps` either may be missing: 9^steps.
+class AllTraces {
+public:
+    AllTraces(std::size_t steps, bool gaps);
+    std::size_t size() const { return size_; }
+    reference::Trace operator[](std::size_t number) const;
+
+private:
+    std::size_t steps_;
+    std::size_t values_;
+    std::size_t size_ = 1;
+};
+
+}  // namespace etlc::tests

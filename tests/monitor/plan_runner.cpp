@@ -1,0 +1,83 @@
+#include "plan_runner.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "ir/lower.hpp"
+#include "opt/opt.hpp"
+
+namespace etlc::tests {
+namespace {
+
+std::vector<plan::Sample> samples_of(const reference::Step& step) {
+    std::vector<plan::Sample> samples;
+    for (const std::vector<double>& values : step) {
+        plan::Sample sample;
+        sample.present = !values.empty();
+        for (const double value : values) sample.values.push_back(static_cast<float>(value));
+        samples.push_back(std::move(sample));
+    }
+    return samples;
+}
+
+}  // namespace
+
+reference::Verdict observed(const etlmon::Verdict& verdict) {
+    using reference::Status;
+    reference::Verdict result;
+    if (!verdict.decided()) {
+        result.final = verdict.final();
+        return result;
+    }
+    result.status = verdict.satisfied() ? Status::satisfied : verdict.violated() ? Status::violated : Status::unknown;
+    result.final = verdict.final();
+    result.lower = verdict.lower;
+    result.robustness = verdict.robustness;
+    result.robustness_high = std::numeric_limits<double>::quiet_NaN();
+    result.upper = verdict.upper;
+    return result;
+}
+
+PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits) : model_(model) {
+    ir::Program program = ir::lower(model);
+    opt::optimise(program);
+    diag::Sink sink;
+    plan_ = plan::plan(program, limits, sink);
+    for (const diag::Diagnostic& diagnostic : sink.sorted())
+        if (diagnostic.severity() == diag::Severity::error)
+            refusal_ += std::string(refusal_.empty() ? "" : " ") + std::string(diag::info(diagnostic.code).code);
+    if (plan_) evaluator_.emplace(*plan_);
+}
+
+Observed PlanRunner::run(const reference::Trace& trace) {
+    Observed result;
+    evaluator_->reset();
+    for (const reference::Step& step : trace) {
+        result.verdicts.push_back(verdicts(evaluator_->step(samples_of(step))));
+        result.telemetry.push_back(telemetry());
+    }
+    result.missing_steps = evaluator_->missing_steps();
+    std::uint32_t calls = 0;
+    for (const plan::Monitor& monitor : plan_->monitors) calls = std::max(calls, monitor.sliding ? monitor.horizon : 0);
+    for (std::uint32_t call = 0; call < calls && !trace.empty(); ++call)
+        result.finish.push_back(verdicts(evaluator_->finish()));
+    return result;
+}
+
+std::vector<reference::Verdict> PlanRunner::verdicts(const std::vector<etlmon::Verdict>& from) const {
+    std::vector<reference::Verdict> result(model_.monitors.size());
+    for (std::size_t n = 0; n < from.size(); ++n) result[plan_->monitors[n].index] = observed(from[n]);
+    return result;
+}
+
+std::vector<Observed::Predicate> PlanRunner::telemetry() const {
+    std::vector<Observed::Predicate> result(model_.predicates.size());
+    for (const plan::Index index : plan_->predicates) {
+        result[index].computed = true;
+        result[index].delta = static_cast<double>(evaluator_->distance(index));
+        if (model_.predicates[index].plain_distance()) result[index].nearest = evaluator_->nearest(index);
+    }
+    return result;
+}
+
+}  // namespace etlc::tests

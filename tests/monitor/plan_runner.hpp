@@ -1,0 +1,39 @@
+// The plan's evaluator as a system under test.
+// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent of each other.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "check/model.hpp"
+#include "compare.hpp"
+#include "plan/evaluator.hpp"
+#include "plan/plan.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+class PlanRunner {
+public:
+    /// The model must outlive the runner. `limits` as `etlc` takes them.
+    explicit PlanRunner(const check::Model& model, const plan::Limits& limits = {});
+
+    /// Empty where the spec was planned; else the codes of the errors, separated by spaces.
+    const std::string& refusal() const { return refusal_; }
+    /// A run from reset to the last call of finish().
+    Observed run(const reference::Trace& trace);
+
+private:
+    const check::Model& model_;
+    std::optional<plan::Plan> plan_;
+    std::optional<plan::Evaluator> evaluator_;
+    std::string refusal_;
+
+    std::vector<reference::Verdict> verdicts(const std::vector<etlmon::Verdict>& from) const;
+    std::vector<Observed::Predicate> telemetry() const;
+};
+
+/// A verdict of the runtime in the reference's terms.
+reference::Verdict observed(const etlmon::Verdict& verdict);
+
+}  // namespace etlc::tests

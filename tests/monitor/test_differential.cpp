@@ -1,0 +1,98 @@
+// The plan's evaluator, which `etlc run` steps, held to the reference: every operator on all short traces, and random
+// specs on random traces.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "compare.hpp"
+#include "exhaustive.hpp"
+#include "loading.hpp"
+#include "plan_runner.hpp"
+#include "random_spec.hpp"
+#include "random_trace.hpp"
+#include "reference/reference.hpp"
+
+namespace {
+
+using namespace etlc;
+using namespace etlc::tests;
+using Formulas = SpecShape::Formulas;
+
+/// Above what any spec here needs: all operators at once are more than one monitor class should hold.
+constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
+
+/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
+constexpr double kRounding = 1e-5;
+
+void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace, double rounding) {
+    const auto mismatch = first_mismatch(model, reference::evaluate(model, trace), runner.run(trace), {rounding});
+    ASSERT_FALSE(mismatch) << *mismatch << "\n" << model.file.text() << "\n" << to_csv(model, trace);
+}
+
+void expect_agreement_on_all(const std::string& spec, std::size_t steps, bool gaps) {
+    const auto model = load(spec);
+    ASSERT_TRUE(model);
+    PlanRunner runner(*model, kRoomy);
+    ASSERT_EQ(runner.refusal(), "");
+    const AllTraces traces(steps, gaps);
+    for (std::size_t n = 0; n < traces.size(); ++n) {
+        expect_agreement(*model, runner, traces[n], 0);
+        if (testing::Test::HasFatalFailure()) return;
+    }
+}
+
+// The prefixes of a trace of six steps are the shorter traces.
+TEST(PlanExhaustive, PrefixMonitors) {
+    expect_agreement_on_all(exhaustive_spec(), 6, false);
+}
+TEST(PlanExhaustive, PrefixMonitorsWithGaps) {
+    expect_agreement_on_all(exhaustive_spec(), 4, true);
+}
+
+// For sliding monitors the end of the trace matters too.
+TEST(PlanExhaustive, SlidingMonitors) {
+    for (std::size_t steps = 1; steps <= 6; ++steps) expect_agreement_on_all(exhaustive_sliding_spec(), steps, false);
+}
+TEST(PlanExhaustive, SlidingMonitorsWithGaps) {
+    for (std::size_t steps = 1; steps <= 4; ++steps) expect_agreement_on_all(exhaustive_sliding_spec(), steps, true);
+}
+
+struct RandomCase {
+    const char* name;
+    SpecShape shape;
+    int specs;
+};
+
+class PlanRandom : public testing::TestWithParam<RandomCase> {};
+
+TEST_P(PlanRandom, AgreesWithTheReference) {
+    const RandomCase& random = GetParam();
+    for (int n = 0; n < random.specs; ++n) {
+        const auto model = load(random_spec(n, random.shape));
+        ASSERT_TRUE(model);
+        PlanRunner runner(*model, kRoomy);
+        ASSERT_EQ(runner.refusal(), "") << model->file.text();
+        for (int t = 0; t < 6; ++t) {
+            TraceShape shape{.steps = static_cast<std::size_t>(5 + 9 * t), .grid = random.shape.exact};
+            if (t % 3 > 0) shape.missing = 0.1 * t;
+            if (t % 3 > 1) shape.invalid = 0.1;
+            expect_agreement(*model, runner, random_trace(*model, 100 * n + t, shape),
+                             random.shape.exact ? 0 : kRounding);
+            if (HasFatalFailure()) return;
+        }
+    }
+}
+
+const RandomCase kCases[] = {
+    {"Unnested", {.formulas = Formulas::unnested, .depth = 3}, 80},
+    {"UnnestedRounded", {.formulas = Formulas::unnested, .depth = 2, .exact = false}, 40},
+    {"UnboundedNesting", {.formulas = Formulas::unbounded_nesting, .monitors = 4, .depth = 3}, 80},
+    {"Prefix", {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3}, 120},
+    {"PrefixRounded", {.formulas = Formulas::prefix, .monitors = 4, .depth = 2, .exact = false}, 40},
+    {"Sliding", {.formulas = Formulas::sliding, .depth = 4, .window = 3}, 100},
+    {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
+};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, PlanRandom, testing::ValuesIn(kCases),
+                         [](const auto& shape) { return std::string(shape.param.name); });
+
+}  // namespace
