@@ -1,0 +1,316 @@
+#include <fmt/format.h>
+
+#include <array>
+#include <string_view>
+#include <utility>
+
+#include "ast/ast.hpp"
+
+namespace etlc::ast {
+
+namespace {
+
+std::string_view symbol(Comparison comparison) {
+    constexpr std::array<std::string_view, 4> kSymbols{"<=", "<", ">=", ">"};
+    return kSymbols[static_cast<std::size_t>(comparison)];
+}
+
+template <class Items, class Print>
+std::string joined(const Items& items, std::string_view separator, Print print) {
+    std::string result;
+    for (const auto& item : items) {
+        if (&item != &*std::begin(items)) result += separator;
+        result += print(item);
+    }
+    return result;
+}
+
+std::string text_of(const Name& name) {
+    return name.text;
+}
+
+std::string text_of(const Number& number) {
+    return number.text;
+}
+
+std::string text_of(const VectorLiteral& vector) {
+    return fmt::format("[{}]", joined(vector.values, ", ", [](const Number& n) { return n.text; }));
+}
+
+std::string text_of(const MatrixLiteral& matrix) {
+    const auto row = [](const std::vector<Number>& values) { return text_of(VectorLiteral{values, {}}); };
+    return fmt::format("[{}]", joined(matrix.rows, ", ", row));
+}
+
+std::string text_of(const Load& load) {
+    if (load.key.empty()) return fmt::format("load(\"{}\")", load.path);
+    return fmt::format("load(\"{}\", \"{}\")", load.path, load.key);
+}
+
+std::string text_of(const Calibrated& calibrated);
+
+template <class... Alternatives>
+std::string text_of(const std::variant<Alternatives...>& value) {
+    return std::visit([](const auto& v) { return text_of(v); }, value);
+}
+
+std::string text_of(const Aggregation& aggregation) {
+    switch (aggregation.kind) {
+        case Aggregation::Kind::min: return "min ";
+        case Aggregation::Kind::max: return "max ";
+        case Aggregation::Kind::mean: return "mean ";
+        case Aggregation::Kind::kth: break;
+    }
+    return fmt::format("kth({}) ", aggregation.n ? aggregation.n->text : "1");
+}
+
+std::string text_of(const Distance& distance) {
+    const std::string aggregation = distance.aggregation ? text_of(*distance.aggregation) : "";
+    const std::string weights = distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
+    const std::string names = joined(distance.point, ", ", [](const Name& n) { return n.text; });
+    const std::string point = distance.point_is_vector ? fmt::format("[{}]", names) : names;
+    return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights, point, distance.target.text);
+}
+
+// ---- expressions ---------------------------------------------------------------------------------------------------
+
+/// How tight an expression binds, from the loosest.
+enum ExprLevel : std::uint8_t { kSum, kProduct, kSign, kPrimary };
+
+ExprLevel level_of(const Expr& expression) {
+    switch (expression.kind) {
+        case Expr::Kind::add:
+        case Expr::Kind::subtract: return kSum;
+        case Expr::Kind::multiply:
+        case Expr::Kind::divide: return kProduct;
+        case Expr::Kind::negate: return kSign;
+        default: return kPrimary;
+    }
+}
+
+/// Appends, so that a long chain takes linear time.
+class ExprPrinter {
+public:
+    explicit ExprPrinter(std::string& text) : text_(text) {}
+
+    void print(const Expr& e, ExprLevel needed) {
+        const bool brackets = level_of(e) < needed;
+        if (brackets) text_ += '(';
+        print(e);
+        if (brackets) text_ += ')';
+    }
+
+private:
+    void print(const Expr& e) {
+        switch (e.kind) {
+            case Expr::Kind::number:
+            case Expr::Kind::name: text_ += e.text; break;
+            case Expr::Kind::distance: text_ += text_of(*e.distance); break;
+            case Expr::Kind::negate:
+                text_ += '-';
+                print(*e.arguments[0], kSign);
+                break;
+            case Expr::Kind::add: binary(e, " + "); break;
+            case Expr::Kind::subtract: binary(e, " - "); break;
+            case Expr::Kind::multiply: binary(e, " * "); break;
+            case Expr::Kind::divide: binary(e, " / "); break;
+            case Expr::Kind::abs: call(e, "abs"); break;
+            case Expr::Kind::sqrt: call(e, "sqrt"); break;
+            case Expr::Kind::min: call(e, "min"); break;
+            case Expr::Kind::max: call(e, "max"); break;
+        }
+    }
+
+    void binary(const Expr& e, std::string_view op) {
+        const ExprLevel level = level_of(e);
+        print(*e.arguments[0], level);
+        text_ += op;
+        print(*e.arguments[1], static_cast<ExprLevel>(level + 1));  // left associative
+    }
+
+    void call(const Expr& e, std::string_view function) {
+        text_ += function;
+        text_ += '(';
+        for (const ExprPtr& argument : e.arguments) {
+            if (&argument != &e.arguments.front()) text_ += ", ";
+            print(*argument, kSum);
+        }
+        text_ += ')';
+    }
+
+    std::string& text_;
+};
+
+// ---- formulas ------------------------------------------------------------------------------------------------------
+
+/// How tight a formula binds, from the loosest.
+enum FormulaLevel : std::uint8_t { kIff, kImplies, kOr, kAnd, kBinary, kPrefix, kComparison, kAtom };
+
+struct Operator {
+    FormulaLevel level;
+    std::string_view symbol;
+};
+
+Operator operator_of(Formula::Kind kind) {
+    using Kind = Formula::Kind;
+    switch (kind) {
+        case Kind::constant_true: return {kAtom, "true"};
+        case Kind::constant_false: return {kAtom, "false"};
+        case Kind::name: return {kAtom, ""};
+        case Kind::comparison: return {kComparison, ""};
+        case Kind::equivalence: return {kIff, "<->"};
+        case Kind::implication: return {kImplies, "->"};
+        case Kind::disjunction: return {kOr, "||"};
+        case Kind::conjunction: return {kAnd, "&&"};
+        case Kind::until: return {kBinary, "U"};
+        case Kind::weak_until: return {kBinary, "W"};
+        case Kind::release: return {kBinary, "R"};
+        case Kind::since: return {kBinary, "S"};
+        case Kind::negation: return {kPrefix, "!"};
+        case Kind::next: return {kPrefix, "X"};
+        case Kind::eventually: return {kPrefix, "F"};
+        case Kind::always: return {kPrefix, "G"};
+        case Kind::previous: return {kPrefix, "Y"};
+        case Kind::once: return {kPrefix, "O"};
+        case Kind::historically: return {kPrefix, "H"};
+    }
+    return {kAtom, ""};
+}
+
+std::string text_of(const Bound& bound) {
+    return bound.number.text + bound.unit;
+}
+
+std::string text_of(const Interval& interval) {
+    return fmt::format("[{}, {}]", text_of(interval.low), text_of(interval.high));
+}
+
+class FormulaPrinter {
+public:
+    explicit FormulaPrinter(std::string& text) : text_(text) {}
+
+    void print(const Formula& f, FormulaLevel needed) {
+        const bool brackets = operator_of(f.kind).level < needed;
+        if (brackets) text_ += '(';
+        print(f);
+        if (brackets) text_ += ')';
+    }
+
+private:
+    void print(const Formula& f) {
+        const Operator op = operator_of(f.kind);
+        switch (op.level) {
+            case kAtom: text_ += f.kind == Formula::Kind::name ? std::string_view(f.name) : op.symbol; break;
+            case kComparison: comparison(f); break;
+            case kPrefix: prefix(f, op); break;
+            case kIff: chain(f, op, kIff, kImplies); break;
+            case kImplies: chain(f, op, kOr, kImplies); break;
+            case kOr: chain(f, op, kAnd, kAnd); break;
+            case kAnd: chain(f, op, kBinary, kBinary); break;
+            case kBinary: chain(f, op, kPrefix, kBinary); break;
+        }
+    }
+
+    void comparison(const Formula& f) {
+        ExprPrinter(text_).print(*f.left, kSum);
+        text_ += fmt::format(" {} {}", symbol(f.comparison), f.right.text);
+    }
+
+    void prefix(const Formula& f, const Operator& op) {
+        text_ += op.symbol;
+        if (f.interval) text_ += text_of(*f.interval);
+        if (f.kind != Formula::Kind::negation) text_ += ' ';
+        // `!x > 0` is !(x > 0); the brackets are there for readers who know another language.
+        const bool compared = f.operands[0]->kind == Formula::Kind::comparison;
+        print(*f.operands[0], compared ? kAtom : kPrefix);
+    }
+
+    /// The first operand needs `first` or tighter, the others `rest`.
+    void chain(const Formula& f, const Operator& op, FormulaLevel first, FormulaLevel rest) {
+        for (const FormulaPtr& operand : f.operands) {
+            const bool is_first = &operand == &f.operands.front();
+            if (!is_first) {
+                text_ += fmt::format(" {}{} ", op.symbol, f.interval ? text_of(*f.interval) : "");
+            }
+            print(*operand, is_first ? first : rest);
+        }
+    }
+
+    std::string& text_;
+};
+
+// ---- declarations --------------------------------------------------------------------------------------------------
+
+std::string text_of(const Calibrated& calibrated) {
+    std::string arguments;
+    for (const Calibrated::Argument& a : calibrated.arguments)
+        arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
+    return fmt::format("calibrated({}{})", calibrated.method.text, arguments);
+}
+
+std::string text_of(const Type& type) {
+    constexpr std::array<std::string_view, 4> kWords{"f32", "f16", "i8", "bool"};
+    std::string result(kWords[static_cast<std::size_t>(type.kind)]);
+    if (type.dimension) result += fmt::format("[{}]", type.dimension->text);
+    if (type.scale) result += fmt::format(" scale {}", type.scale->text);
+    return result;
+}
+
+std::string text_of(const Rate& rate) {
+    return fmt::format("{} {} {}", rate.is_period ? "period" : "rate", rate.number.text, rate.unit);
+}
+
+std::string text_of(const Input& input) {
+    std::string result = fmt::format("input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
+                                     text_of(input.type));
+    if (input.range) result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
+    if (input.hold) result += fmt::format(" hold {}", input.hold->text);
+    return result;
+}
+
+std::string text_of(const Target& target) {
+    return fmt::format("target {} = {}", target.name.text, text_of(target.value));
+}
+
+std::string text_of(const Predicate& predicate) {
+    return fmt::format("predicate {} = {} {} {}", predicate.name.text, print(*predicate.expression),
+                       symbol(predicate.comparison), text_of(predicate.threshold));
+}
+
+std::string text_of(const Truth& truth) {
+    return fmt::format("truth {} = {}", truth.predicate.text, print(*truth.formula));
+}
+
+std::string text_of(const Let& let) {
+    return fmt::format("let {} = {}", let.name.text, print(*let.formula));
+}
+
+std::string text_of(const Monitor& monitor) {
+    const std::string calibrated = monitor.calibrated ? fmt::format(" {}", text_of(*monitor.calibrated)) : "";
+    return fmt::format("{}monitor {} = {}{}", monitor.sliding ? "sliding " : "", monitor.name.text,
+                       print(*monitor.formula), calibrated);
+}
+
+}  // namespace
+
+std::string print(const Spec& spec) {
+    std::string text;
+    if (!spec.name.text.empty()) text += fmt::format("spec {};\n", spec.name.text);
+    for (const Declaration& declaration : spec.declarations)
+        text += std::visit([](const auto& d) { return text_of(d); }, declaration) + ";\n";
+    return text;
+}
+
+std::string print(const Formula& formula) {
+    std::string text;
+    FormulaPrinter(text).print(formula, kIff);
+    return text;
+}
+
+std::string print(const Expr& expression) {
+    std::string text;
+    ExprPrinter(text).print(expression, kSum);
+    return text;
+}
+
+}  // namespace etlc::ast

@@ -1,0 +1,96 @@
+// ANTLR's parse tree to ast:: structs.
+// Takes: the contexts of one declaration. Gives: its struct. Throws SyntaxError where the grammar takes more than the
+// language: expressions in place of formulas and the other way round, chained comparisons, trees of more than
+// kMaxHeight.
+#pragma once
+
+#include <string>
+
+#include "EtlParser.h"
+#include "ast/ast.hpp"
+#include "parse/syntax_error.hpp"
+
+namespace etlc::parse {
+
+using Grammar = grammar::EtlParser;
+using antlr4::ParserRuleContext;
+
+/// Builds the trees of one file.
+class Builder {
+public:
+    explicit Builder(const source::File& file) : file_(file) {}
+
+    /// A `spec NAME;` gives its name.
+    std::variant<ast::Name, ast::Declaration> declaration(Grammar::DeclarationContext& context) const;
+
+private:
+    /// A tree and the length of its longest path.
+    template <class T>
+    struct Tree {
+        T root;
+        int height = 1;
+    };
+    using Expression = Tree<ast::ExprPtr>;
+    using Formula = Tree<ast::FormulaPtr>;
+
+    // declarations.cpp
+    ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
+    ast::Type type(Grammar::TypeContext& context) const;
+    ast::Range range(Grammar::RangeContext& context) const;
+    ast::Target target(Grammar::TargetDeclarationContext& context, source::Span span) const;
+    ast::Predicate predicate(Grammar::PredicateDeclarationContext& context, source::Span span) const;
+    ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
+    ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
+    ast::Load load(Grammar::LoadContext& context) const;
+    std::variant<ast::MatrixLiteral, ast::VectorLiteral> literal(Grammar::LiteralContext& context) const;
+    ast::Name name(const Grammar::NameContext& context) const;
+    ast::Number number(const Token& token) const;
+    ast::Number number(Grammar::NumberContext& context) const;
+    /// Of a rule that is a number with or without '-': the text of both, blanks between them left out.
+    std::string signed_text(const ParserRuleContext& context) const;
+
+    // expressions.cpp
+    Expression expression(Grammar::FormulaContext& context) const;
+    Expression expression(Grammar::SumContext& context) const;
+    Expression expression(Grammar::ProductContext& context) const;
+    Expression expression(Grammar::FactorContext& context) const;
+    Expression expression(Grammar::PrimaryContext& context) const;
+    Expression call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
+                    const ParserRuleContext& whole) const;
+    /// Operands of one level of precedence, grouped to the left.
+    template <class Operand>
+    Expression chain(const ParserRuleContext& context) const;
+    std::unique_ptr<ast::Distance> distance(Grammar::DistanceContext& context) const;
+    ast::Aggregation aggregation(Grammar::AggregationContext& context) const;
+    ast::Weights weights(Grammar::WeightsContext& context) const;
+
+    // formulas.cpp
+    Formula formula(Grammar::FormulaContext& context) const;
+    Formula formula(Grammar::ImplicationContext& context) const;
+    Formula formula(Grammar::DisjunctionContext& context) const;
+    Formula formula(Grammar::ConjunctionContext& context) const;
+    Formula formula(Grammar::BinaryTemporalContext& context) const;
+    Formula formula(Grammar::PrefixedContext& context) const;
+    Formula formula(Grammar::ComparisonContext& context) const;
+    Formula formula(Grammar::PrimaryContext& context) const;
+    template <class Operand>
+    Formula n_ary(const ParserRuleContext& context, ast::Formula::Kind kind) const;
+    Formula combined(ast::Formula::Kind kind, const Token& op, source::Span span, Formula left, Formula right) const;
+    Formula prefix(const Token& op, Grammar::PrefixedContext& operand, const ParserRuleContext& whole) const;
+    Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
+    /// The number that an expression consists of, with its sign; nothing where it is more than that.
+    std::optional<ast::Number> lone_number(Grammar::SumContext& context) const;
+    ast::Interval interval(Grammar::IntervalContext& context) const;
+    ast::Bound bound(Grammar::BoundContext& context) const;
+    static ast::Comparison comparison(Grammar::ComparisonOperatorContext& context);
+
+    std::string text(const Token& token) const { return text_of(token, file_); }
+    std::string text(const ParserRuleContext& context) const { return std::string(file_.text(span_of(context))); }
+
+    [[noreturn]] static void fail(diag::Code code, source::Span span, std::string message, std::string note = {});
+    [[noreturn]] static void too_high(source::Span span);
+
+    const source::File& file_;
+};
+
+}  // namespace etlc::parse

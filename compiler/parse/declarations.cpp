@@ -1,0 +1,188 @@
+#include <fmt/format.h>
+
+#include "parse/build.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::parse {
+
+namespace {
+
+/// A declaration without its ';'.
+source::Span span_of_declaration(const Grammar::DeclarationContext& context, source::Span last) {
+    return source::join(span_of(*context.start), last);
+}
+
+/// What stands before the closing ';'.
+source::Span last_part(const Grammar::DeclarationContext& context) {
+    auto* const part = context.children[context.children.size() - 2];
+    if (auto* const terminal = dynamic_cast<antlr4::tree::TerminalNode*>(part)) return span_of(*terminal->getSymbol());
+    return span_of(dynamic_cast<const ParserRuleContext&>(*part));
+}
+
+}  // namespace
+
+std::variant<ast::Name, ast::Declaration> Builder::declaration(Grammar::DeclarationContext& context) const {
+    const source::Span span = span_of_declaration(context, last_part(context));
+    if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context)) return name(*d->name());
+    if (auto* const d = dynamic_cast<Grammar::RateDeclarationContext*>(&context))
+        return ast::Rate{number(*d->NUMBER()->getSymbol()), false, "Hz", span};
+    if (auto* const d = dynamic_cast<Grammar::PeriodDeclarationContext*>(&context))
+        return ast::Rate{number(*d->NUMBER()->getSymbol()), true, text(*d->timeUnit()), span};
+    if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context)) return input(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context)) return target(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::PredicateDeclarationContext*>(&context)) return predicate(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::TruthDeclarationContext*>(&context))
+        return ast::Truth{name(*d->name()), formula(*d->formula()).root, span};
+    if (auto* const d = dynamic_cast<Grammar::LetDeclarationContext*>(&context))
+        return ast::Let{name(*d->name()), formula(*d->formula()).root, span};
+    return monitor(dynamic_cast<Grammar::MonitorDeclarationContext&>(context), span);
+}
+
+ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Span span) const {
+    ast::Input result;
+    for (const Grammar::NameContext* const n : context.name()) result.names.push_back(name(*n));
+    result.type = type(*context.type());
+    if (auto* const limits = context.range()) result.range = range(*limits);
+    if (auto* const hold = context.hold()) result.hold = number(*hold->NUMBER()->getSymbol());
+    result.span = span;
+    return result;
+}
+
+ast::Type Builder::type(Grammar::TypeContext& context) const {
+    ast::Type result;
+    result.span = span_of(context);
+    Grammar::DimensionContext* dimension = nullptr;
+    if (auto* const t = dynamic_cast<Grammar::Float32TypeContext*>(&context)) {
+        dimension = t->dimension();
+    } else if (auto* const half = dynamic_cast<Grammar::Float16TypeContext*>(&context)) {
+        result.kind = ast::Type::Kind::f16;
+        dimension = half->dimension();
+    } else if (auto* const bytes = dynamic_cast<Grammar::Int8TypeContext*>(&context)) {
+        result.kind = ast::Type::Kind::i8;
+        dimension = bytes->dimension();
+        if (auto* const scale = bytes->number()) result.scale = number(*scale);
+    } else {
+        result.kind = ast::Type::Kind::boolean;
+    }
+    if (dimension != nullptr) result.dimension = number(*dimension->NUMBER()->getSymbol());
+    return result;
+}
+
+ast::Range Builder::range(Grammar::RangeContext& context) const {
+    const auto limit = [this](const Grammar::LimitContext& l) { return ast::Number{signed_text(l), span_of(l)}; };
+    return {limit(*context.limit(0)), limit(*context.limit(1)), span_of(context)};
+}
+
+ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::Span span) const {
+    ast::Target result;
+    result.name = name(*context.name());
+    result.span = span;
+    if (auto* const loaded = context.load()) {
+        result.value = load(*loaded);
+    } else {
+        auto value = literal(*context.literal());
+        std::visit([&result](auto&& v) { result.value = std::move(v); }, std::move(value));
+    }
+    return result;
+}
+
+ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context, source::Span span) const {
+    ast::Predicate result;
+    result.name = name(*context.name());
+    result.expression = expression(*context.sum()).root;
+    result.comparison = comparison(*context.comparisonOperator());
+    if (auto* const calibration = dynamic_cast<Grammar::CalibratedThresholdContext*>(context.threshold()))
+        result.threshold = calibrated(*calibration->calibrated());
+    else
+        result.threshold = number(*dynamic_cast<Grammar::NumberThresholdContext&>(*context.threshold()).number());
+    result.span = span;
+    return result;
+}
+
+ast::Monitor Builder::monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const {
+    ast::Monitor result;
+    result.name = name(*context.name());
+    result.formula = formula(*context.formula()).root;
+    result.sliding = context.SLIDING() != nullptr;
+    if (auto* const calibration = context.calibrated()) result.calibrated = calibrated(*calibration);
+    result.span = span;
+    return result;
+}
+
+ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
+    ast::Calibrated result;
+    result.method = name(*context.name());
+    result.span = span_of(context);
+    for (Grammar::ArgumentContext* const argument : context.argument()) {
+        ast::Calibrated::Argument& added = result.arguments.emplace_back();
+        added.key = name(*argument->name(0));
+        if (auto* const value = argument->number())
+            added.value = number(*value);
+        else
+            added.value = name(*argument->name(1));
+    }
+    return result;
+}
+
+ast::Load Builder::load(Grammar::LoadContext& context) const {
+    const auto content = [this](const Token& string) {
+        const source::Span span = span_of(string);
+        return std::string(file_.text({span.begin + 1, span.end - 1}));  // without its quotes
+    };
+    ast::Load result;
+    result.span = span_of(context);
+    result.path = content(*context.path);
+    result.path_span = span_of(*context.path);
+    if (context.key != nullptr) {
+        result.key = content(*context.key);
+        result.key_span = span_of(*context.key);
+    }
+    return result;
+}
+
+std::variant<ast::MatrixLiteral, ast::VectorLiteral> Builder::literal(Grammar::LiteralContext& context) const {
+    const auto numbers = [this](const std::vector<Grammar::NumberContext*>& contexts) {
+        std::vector<ast::Number> result;
+        result.reserve(contexts.size());
+        for (Grammar::NumberContext* const n : contexts) result.push_back(number(*n));
+        return result;
+    };
+    if (auto* const vector = dynamic_cast<Grammar::VectorLiteralContext*>(&context))
+        return ast::VectorLiteral{numbers(vector->number()), span_of(context)};
+    ast::MatrixLiteral matrix;
+    matrix.span = span_of(context);
+    for (Grammar::RowContext* const row : dynamic_cast<Grammar::MatrixLiteralContext&>(context).row())
+        matrix.rows.push_back(numbers(row->number()));
+    return matrix;
+}
+
+ast::Name Builder::name(const Grammar::NameContext& context) const {
+    return {text(*context.start), span_of(context)};
+}
+
+ast::Number Builder::number(const Token& token) const {
+    return {text(token), span_of(token)};
+}
+
+ast::Number Builder::number(Grammar::NumberContext& context) const {
+    return {signed_text(context), span_of(context)};
+}
+
+std::string Builder::signed_text(const ParserRuleContext& context) const {
+    const std::string digits = text(*context.stop);
+    return context.start == context.stop ? digits : fmt::format("-{}", digits);
+}
+
+void Builder::fail(diag::Code code, source::Span span, std::string message, std::string note) {
+    diag::Diagnostic diagnostic{code, std::move(message), span, {}, 0, 0, {}};
+    if (!note.empty()) diagnostic.note(std::move(note));
+    throw SyntaxError{std::move(diagnostic), {}, {}};
+}
+
+void Builder::too_high(source::Span span) {
+    fail(diag::Code::nesting_too_deep, span,
+         fmt::format("more than {} operators depend on one another here", kMaxHeight),
+         "name parts of it with 'let', or load a matrix of numbers as a target");
+}
+
+}  // namespace etlc::parse

@@ -1,0 +1,176 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "parse/build.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::parse {
+
+using Kind = ast::Expr::Kind;
+
+namespace {
+
+ast::ExprPtr node(Kind kind, source::Span span) {
+    auto result = std::make_unique<ast::Expr>();
+    result->kind = kind;
+    result->span = span;
+    return result;
+}
+
+Kind kind_of(const Token& op) {
+    switch (op.getType()) {
+        case Grammar::PLUS: return Kind::add;
+        case Grammar::MINUS: return Kind::subtract;
+        case Grammar::TIMES: return Kind::multiply;
+        case Grammar::DIVIDE: return Kind::divide;
+        case Grammar::ABS: return Kind::abs;
+        case Grammar::SQRT: return Kind::sqrt;
+        case Grammar::MIN: return Kind::min;
+        default: return Kind::max;
+    }
+}
+
+template <class Context>
+Context& only_child(const ParserRuleContext& context) {
+    return *dynamic_cast<Context*>(context.children.front());
+}
+
+bool is_single(const ParserRuleContext& context) {
+    return context.children.size() == 1;
+}
+
+/// The sum that a formula's rule consists of; nullptr where a formula's operator stands in it.
+Grammar::SumContext* only_sum(const Grammar::FormulaContext& context) {
+    const ParserRuleContext* at = &context;
+    while (is_single(*at)) {
+        auto* const child = dynamic_cast<ParserRuleContext*>(at->children.front());
+        if (auto* const sum = dynamic_cast<Grammar::SumContext*>(child)) return sum;
+        at = child;
+    }
+    return nullptr;
+}
+
+}  // namespace
+
+Builder::Expression Builder::expression(Grammar::FormulaContext& context) const {
+    if (Grammar::SumContext* const sum = only_sum(context)) return expression(*sum);
+    fail(diag::Code::mixed_up_kinds, span_of(context), "expected an expression, found a formula",
+         "expressions are made of scalar inputs, numbers, distances, + - * / and functions");
+}
+
+template <class Operand>
+Builder::Expression Builder::chain(const ParserRuleContext& context) const {
+    Expression left = expression(*dynamic_cast<Operand*>(context.children[0]));
+    for (std::size_t i = 1; i + 1 < context.children.size(); i += 2) {
+        const Token& op = *dynamic_cast<antlr4::tree::TerminalNode*>(context.children[i])->getSymbol();
+        auto& operand = *dynamic_cast<Operand*>(context.children[i + 1]);
+        Expression right = expression(operand);
+        ast::ExprPtr both = node(kind_of(op), source::join(span_of(*context.start), span_of(operand)));
+        both->arguments.push_back(std::move(left.root));
+        both->arguments.push_back(std::move(right.root));
+        left = {std::move(both), 1 + std::max(left.height, right.height)};
+        if (left.height > kMaxHeight) too_high(span_of(op));
+    }
+    return left;
+}
+
+Builder::Expression Builder::expression(Grammar::SumContext& context) const {
+    return chain<Grammar::ProductContext>(context);
+}
+
+Builder::Expression Builder::expression(Grammar::ProductContext& context) const {
+    return chain<Grammar::FactorContext>(context);
+}
+
+Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
+    if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context)) return expression(*plain->primary());
+    auto& negation = dynamic_cast<Grammar::NegationContext&>(context);
+    Expression operand = expression(*negation.factor());
+    ast::ExprPtr result = node(Kind::negate, span_of(context));
+    result->arguments.push_back(std::move(operand.root));
+    if (operand.height >= kMaxHeight) too_high(span_of(*context.start));
+    return {std::move(result), operand.height + 1};
+}
+
+Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const {
+    if (auto* const bracket = dynamic_cast<Grammar::BracketPrimaryContext*>(&context))
+        return expression(*bracket->formula());
+    if (auto* const unary = dynamic_cast<Grammar::UnaryFunctionPrimaryContext*>(&context))
+        return call(*unary->op, {unary->formula()}, context);
+    if (auto* const variadic = dynamic_cast<Grammar::VariadicFunctionPrimaryContext*>(&context))
+        return call(*variadic->op, variadic->formula(), context);
+    if (dynamic_cast<Grammar::ConstantPrimaryContext*>(&context) != nullptr)
+        fail(diag::Code::mixed_up_kinds, span_of(context),
+             fmt::format("expected an expression, found the formula '{}'", text(context)));
+
+    ast::ExprPtr result = node(Kind::name, span_of(context));
+    if (auto* const measured = dynamic_cast<Grammar::DistancePrimaryContext*>(&context)) {
+        result->kind = Kind::distance;
+        result->distance = distance(*measured->distance());
+        return {std::move(result), 1};
+    }
+    if (dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr) result->kind = Kind::number;
+    result->text = text(context);
+    return {std::move(result), 1};
+}
+
+Builder::Expression Builder::call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
+                                  const ParserRuleContext& whole) const {
+    Expression result{node(kind_of(function), span_of(whole)), 1};
+    for (Grammar::FormulaContext* const argument : arguments) {
+        Expression value = expression(*argument);
+        result.root->arguments.push_back(std::move(value.root));
+        result.height = std::max(result.height, value.height + 1);
+    }
+    if (result.height > kMaxHeight) too_high(span_of(function));
+    return result;
+}
+
+std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& context) const {
+    auto result = std::make_unique<ast::Distance>();
+    result->span = span_of(context);
+    if (auto* const aggregated = context.aggregation()) result->aggregation = aggregation(*aggregated);
+    const Token& word = *context.metric()->start;
+    result->metric = {text(word), span_of(word)};
+    if (auto* const weighted = dynamic_cast<Grammar::WeightedMetricContext*>(context.metric()))
+        result->weights = weights(*weighted->weights());
+
+    Grammar::PointContext& point = *context.point();
+    result->point_span = span_of(point);
+    if (auto* const embedding = dynamic_cast<Grammar::EmbeddingPointContext*>(&point)) {
+        result->point.push_back(name(*embedding->name()));
+    } else {
+        result->point_is_vector = true;
+        for (const Grammar::NameContext* const n : dynamic_cast<Grammar::VectorPointContext&>(point).name())
+            result->point.push_back(name(*n));
+    }
+    result->target = name(*context.name());
+    return result;
+}
+
+ast::Aggregation Builder::aggregation(Grammar::AggregationContext& context) const {
+    using Aggregation = ast::Aggregation::Kind;
+    ast::Aggregation result;
+    result.span = span_of(context);
+    if (auto* const kth = dynamic_cast<Grammar::KthAggregationContext*>(&context)) {
+        result.kind = Aggregation::kth;
+        result.n = number(*kth->NUMBER()->getSymbol());
+        return result;
+    }
+    switch (context.start->getType()) {
+        case Grammar::MIN: result.kind = Aggregation::min; break;
+        case Grammar::MAX: result.kind = Aggregation::max; break;
+        default: result.kind = Aggregation::mean; break;
+    }
+    return result;
+}
+
+ast::Weights Builder::weights(Grammar::WeightsContext& context) const {
+    if (auto* const loaded = dynamic_cast<Grammar::LoadedWeightsContext*>(&context)) return load(*loaded->load());
+    if (auto* const named = dynamic_cast<Grammar::NamedWeightsContext*>(&context)) return name(*named->name());
+    auto value = literal(*dynamic_cast<Grammar::LiteralWeightsContext&>(context).literal());
+    return std::visit([](auto&& v) -> ast::Weights { return std::move(v); }, std::move(value));
+}
+
+}  // namespace etlc::parse

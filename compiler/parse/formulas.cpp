@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "parse/build.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::parse {
+
+using Kind = ast::Formula::Kind;
+
+namespace {
+
+ast::FormulaPtr node(Kind kind, source::Span span) {
+    auto result = std::make_unique<ast::Formula>();
+    result->kind = kind;
+    result->span = span;
+    return result;
+}
+
+Kind kind_of(const Token& op) {
+    switch (op.getType()) {
+        case Grammar::TRUE: return Kind::constant_true;
+        case Grammar::FALSE: return Kind::constant_false;
+        case Grammar::NOT: return Kind::negation;
+        case Grammar::NEXT: return Kind::next;
+        case Grammar::EVENTUALLY: return Kind::eventually;
+        case Grammar::ALWAYS: return Kind::always;
+        case Grammar::UNTIL: return Kind::until;
+        case Grammar::WEAK_UNTIL: return Kind::weak_until;
+        case Grammar::RELEASE: return Kind::release;
+        case Grammar::PREVIOUS: return Kind::previous;
+        case Grammar::ONCE: return Kind::once;
+        case Grammar::HISTORICALLY: return Kind::historically;
+        default: return Kind::since;
+    }
+}
+
+const Token& symbol(antlr4::tree::ParseTree* child) {
+    return *dynamic_cast<antlr4::tree::TerminalNode*>(child)->getSymbol();
+}
+
+/// The primary that a sum consists of; nullptr where an operator of expressions stands in it.
+Grammar::PrimaryContext* only_primary(Grammar::SumContext& context) {
+    if (context.children.size() != 1) return nullptr;
+    auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);
+    if (product.children.size() != 1) return nullptr;
+    auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(product.children[0]);
+    return plain != nullptr ? plain->primary() : nullptr;
+}
+
+}  // namespace
+
+template <class Operand>
+Builder::Formula Builder::n_ary(const ParserRuleContext& context, Kind kind) const {
+    if (context.children.size() == 1) return formula(*dynamic_cast<Operand*>(context.children[0]));
+    Formula result{node(kind, span_of(context)), 1};
+    result.root->operator_span = span_of(symbol(context.children[1]));
+    for (std::size_t i = 0; i < context.children.size(); i += 2) {
+        Formula operand = formula(*dynamic_cast<Operand*>(context.children[i]));
+        result.root->operands.push_back(std::move(operand.root));
+        result.height = std::max(result.height, operand.height + 1);
+    }
+    if (result.height > kMaxHeight) too_high(result.root->operator_span);
+    return result;
+}
+
+Builder::Formula Builder::combined(Kind kind, const Token& op, source::Span span, Formula left, Formula right) const {
+    Formula result{node(kind, span), 1 + std::max(left.height, right.height)};
+    result.root->operator_span = span_of(op);
+    result.root->operands.push_back(std::move(left.root));
+    result.root->operands.push_back(std::move(right.root));
+    if (result.height > kMaxHeight) too_high(span_of(op));
+    return result;
+}
+
+Builder::Formula Builder::formula(Grammar::FormulaContext& context) const {
+    Formula left = formula(*dynamic_cast<Grammar::ImplicationContext*>(context.children[0]));
+    for (std::size_t i = 1; i + 1 < context.children.size(); i += 2) {
+        auto& operand = dynamic_cast<Grammar::ImplicationContext&>(*context.children[i + 1]);
+        const source::Span span = source::join(span_of(*context.start), span_of(operand));
+        left = combined(Kind::equivalence, symbol(context.children[i]), span, std::move(left), formula(operand));
+    }
+    return left;
+}
+
+Builder::Formula Builder::formula(Grammar::ImplicationContext& context) const {
+    Formula left = formula(*context.disjunction());
+    if (context.children.size() == 1) return left;
+    return combined(Kind::implication, symbol(context.children[1]), span_of(context), std::move(left),
+                    formula(*context.implication()));
+}
+
+Builder::Formula Builder::formula(Grammar::DisjunctionContext& context) const {
+    return n_ary<Grammar::ConjunctionContext>(context, Kind::disjunction);
+}
+
+Builder::Formula Builder::formula(Grammar::ConjunctionContext& context) const {
+    return n_ary<Grammar::BinaryTemporalContext>(context, Kind::conjunction);
+}
+
+Builder::Formula Builder::formula(Grammar::BinaryTemporalContext& context) const {
+    Formula left = formula(*context.prefixed());
+    if (context.op == nullptr) return left;
+    Formula result = combined(kind_of(*context.op), *context.op, span_of(context), std::move(left),
+                              formula(*context.binaryTemporal()));
+    if (auto* const bounds = context.interval()) result.root->interval = interval(*bounds);
+    return result;
+}
+
+Builder::Formula Builder::prefix(const Token& op, Grammar::PrefixedContext& operand,
+                                 const ParserRuleContext& whole) const {
+    Formula inner = formula(operand);
+    Formula result{node(kind_of(op), span_of(whole)), inner.height + 1};
+    result.root->operator_span = span_of(op);
+    result.root->operands.push_back(std::move(inner.root));
+    if (result.height > kMaxHeight) too_high(span_of(op));
+    return result;
+}
+
+Builder::Formula Builder::formula(Grammar::PrefixedContext& context) const {
+    if (auto* const atom = dynamic_cast<Grammar::AtomContext*>(&context)) return formula(*atom->comparison());
+    if (auto* const plain = dynamic_cast<Grammar::PlainPrefixContext*>(&context))
+        return prefix(*plain->op, *plain->prefixed(), context);
+    auto& bounded = dynamic_cast<Grammar::IntervalPrefixContext&>(context);
+    Formula result = prefix(*bounded.op, *bounded.prefixed(), context);
+    if (auto* const bounds = bounded.interval()) result.root->interval = interval(*bounds);
+    return result;
+}
+
+Builder::Formula Builder::formula(Grammar::ComparisonContext& context) const {
+    auto& left = dynamic_cast<Grammar::SumContext&>(*context.children[0]);
+    if (context.children.size() > 1) return compared(left, context);
+    if (Grammar::PrimaryContext* const primary = only_primary(left)) return formula(*primary);
+    fail(diag::Code::mixed_up_kinds, span_of(context), "expected a formula, found an expression",
+         "an expression becomes a formula by comparing it with a number, as in 'x - y > 0'");
+}
+
+Builder::Formula Builder::compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const {
+    auto& op = dynamic_cast<Grammar::ComparisonOperatorContext&>(*context.children[1]);
+    if (context.children.size() > 3)
+        fail(diag::Code::comparison_form, span_of(dynamic_cast<ParserRuleContext&>(*context.children[3])),
+             "comparisons do not chain", "write two of them: 'x > 0 && x < 1'");
+    auto* const right = dynamic_cast<Grammar::SumContext*>(context.children[2]);
+    if (right == nullptr)
+        fail(diag::Code::comparison_form, span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
+             "a calibrated threshold stands only in a predicate",
+             "declare 'predicate NAME = ... calibrated(...);' and use its name here");
+    const std::optional<ast::Number> threshold = lone_number(*right);
+    if (!threshold)
+        fail(diag::Code::comparison_form, span_of(*right),
+             fmt::format("expected a number on the right of '{}', found an expression", text(op)),
+             "what is compared stands on the left, a number on the right: x - y <= 0.5");
+    Expression value = expression(left);
+    Formula result{node(Kind::comparison, span_of(context)), value.height + 1};
+    result.root->left = std::move(value.root);
+    result.root->comparison = comparison(op);
+    result.root->right = *threshold;
+    result.root->operator_span = span_of(op);
+    if (result.height > kMaxHeight) too_high(span_of(op));
+    return result;
+}
+
+std::optional<ast::Number> Builder::lone_number(Grammar::SumContext& context) const {
+    if (context.children.size() != 1) return std::nullopt;
+    auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);
+    if (product.children.size() != 1) return std::nullopt;
+    auto* factor = dynamic_cast<Grammar::FactorContext*>(product.children[0]);
+    auto* const negation = dynamic_cast<Grammar::NegationContext*>(factor);
+    if (negation != nullptr) factor = negation->factor();
+    auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(factor);
+    if (plain == nullptr || dynamic_cast<Grammar::NumberPrimaryContext*>(plain->primary()) == nullptr)
+        return std::nullopt;
+    return ast::Number{fmt::format("{}{}", negation != nullptr ? "-" : "", text(*plain->start)), span_of(context)};
+}
+
+Builder::Formula Builder::formula(Grammar::PrimaryContext& context) const {
+    if (auto* const bracket = dynamic_cast<Grammar::BracketPrimaryContext*>(&context))
+        return formula(*bracket->formula());
+    if (auto* const constant = dynamic_cast<Grammar::ConstantPrimaryContext*>(&context))
+        return {node(kind_of(*constant->op), span_of(context)), 1};
+    if (auto* const named = dynamic_cast<Grammar::NamePrimaryContext*>(&context)) {
+        ast::FormulaPtr result = node(Kind::name, span_of(context));
+        result->name = text(*named->start);
+        return {std::move(result), 1};
+    }
+    const bool is_number = dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr;
+    const bool is_distance = dynamic_cast<Grammar::DistancePrimaryContext*>(&context) != nullptr;
+    fail(diag::Code::mixed_up_kinds, span_of(context),
+         fmt::format("expected a formula, found {}", is_number     ? "a number"
+                                                     : is_distance ? "a distance"
+                                                                   : "an expression"),
+         "an expression becomes a formula by comparing it with a number, as in 'x - y > 0'");
+}
+
+ast::Interval Builder::interval(Grammar::IntervalContext& context) const {
+    return {bound(*context.bound(0)), bound(*context.bound(1)), span_of(context)};
+}
+
+ast::Bound Builder::bound(Grammar::BoundContext& context) const {
+    ast::Bound result{number(*context.start), {}, span_of(context)};
+    if (auto* const finite = dynamic_cast<Grammar::FiniteBoundContext*>(&context))
+        if (auto* const unit = finite->timeUnit()) result.unit = text(*unit);
+    return result;
+}
+
+ast::Comparison Builder::comparison(Grammar::ComparisonOperatorContext& context) {
+    switch (context.start->getType()) {
+        case Grammar::LESS_EQUAL: return ast::Comparison::less_equal;
+        case Grammar::LESS: return ast::Comparison::less;
+        case Grammar::GREATER_EQUAL: return ast::Comparison::greater_equal;
+        default: return ast::Comparison::greater;
+    }
+}
+
+}  // namespace etlc::parse

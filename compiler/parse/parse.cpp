@@ -1,0 +1,195 @@
+#include "parse/parse.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "parse/build.hpp"
+#include "parse/nesting.hpp"
+#include "parse/slices.hpp"
+#include "parse/syntax_error.hpp"
+#include "parse/tokens.hpp"
+#include "parse/utf8.hpp"
+
+namespace etlc::parse {
+
+using diag::Code;
+using diag::Diagnostic;
+
+namespace {
+
+/// Reads one file, declaration by declaration.
+class Reader {
+public:
+    Reader(const source::File& file, diag::Sink& sink) : file_(file), sink_(sink), builder_(file) {}
+
+    ast::Spec read() {
+        if (!is_text()) return {};
+        tokens_ = tokens_of(file_);
+        for (const Slice& slice : slices_of(tokens_)) read(slice);
+        report_errors();
+        report_missing_spec();
+        return std::move(spec_);
+    }
+
+private:
+    bool is_text() {
+        const std::string_view text = file_.text();
+        if (text.size() > kMaxSpecBytes) {
+            sink_
+                .report({Code::spec_too_large,
+                         fmt::format("a spec of {} bytes; at most {} are read", text.size(), kMaxSpecBytes),
+                         {},
+                         {},
+                         0,
+                         0,
+                         {}})
+                .note("target sets of that size belong in .npy files");
+            return false;
+        }
+        const bool utf16 = text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF";
+        if (utf16) {
+            sink_.report({Code::invalid_utf8, "this file is UTF-16; save it as UTF-8", {}, {}, 0, 0, {}});
+            return false;
+        }
+        if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
+            sink_.report(Code::unexpected_character, span_at(nul), "a NUL byte; is this a text file?");
+            return false;
+        }
+        if (const std::size_t invalid = first_invalid_utf8(text); invalid < text.size())
+            sink_.report(Code::invalid_utf8, span_at(invalid),
+                         fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8",
+                                     static_cast<unsigned char>(text[invalid])));
+        return true;
+    }
+
+    static source::Span span_at(std::size_t offset) {
+        return {static_cast<std::uint32_t>(offset), static_cast<std::uint32_t>(offset + 1)};
+    }
+
+    void read(Slice slice) {
+        const Token& first = *tokens_[slice.begin];
+        const bool is_spec = first.getType() == Grammar::SPEC;
+        try {
+            refuse_mistakes(slice);
+            refuse_deep_nesting(slice);
+            add(parsed(slice), span_of(first));
+        } catch (SyntaxError& error) {
+            errors_.push_back(std::move(error));
+            add_unreadable(slice);
+            spec_seen_ = spec_seen_ || is_spec;
+        } catch (const Unexplained&) {
+            add_unreadable(slice);
+        }
+        // `specc a;` is an error already; that the spec is missing would be the same one again.
+        if (slice.begin == 0 && !is_spec) first_is_misspelt_ = is_misspelt_spec(first);
+    }
+
+    bool is_misspelt_spec(const Token& token) const {
+        return is_name(token) && diag::nearest_name(text_of(token, file_), {"spec"}).has_value();
+    }
+
+    /// Thrown for a declaration whose trouble has been reported already.
+    struct Unexplained {};
+
+    void refuse_mistakes(Slice slice) const {
+        for (std::size_t i = slice.begin; i < slice.end; ++i) {
+            if (!is_mistake(*tokens_[i])) continue;
+            std::optional<Diagnostic> explained = explain_mistake(*tokens_[i], file_);
+            if (!explained) throw Unexplained{};
+            throw SyntaxError{std::move(*explained), {}, {}};
+        }
+    }
+
+    void refuse_deep_nesting(Slice slice) const {
+        const std::optional<std::size_t> at = too_deep_at(tokens_, slice);
+        if (!at) return;
+        Diagnostic error{Code::nesting_too_deep,
+                         fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
+                         span_of(*tokens_[*at]),
+                         {},
+                         0,
+                         0,
+                         {}};
+        error.note("name parts of the formula with 'let'");
+        throw SyntaxError{std::move(error), {}, {}};
+    }
+
+    std::variant<ast::Name, ast::Declaration> parsed(Slice slice) const {
+        SliceStream stream(tokens_, slice);
+        Grammar parser(&stream);
+        parser.removeErrorListeners();
+        parser.setErrorHandler(std::make_shared<Strategy>(file_, tokens_, slice));
+        return builder_.declaration(*parser.declaration());
+    }
+
+    void add(std::variant<ast::Name, ast::Declaration> read, source::Span first) {
+        if (auto* const declaration = std::get_if<ast::Declaration>(&read)) {
+            spec_.declarations.push_back(std::move(*declaration));
+            return;
+        }
+        auto& name = std::get<ast::Name>(read);
+        if (spec_seen_)
+            sink_.report(Code::misplaced_spec, first, "a second 'spec'").note(spec_.name.span, "the first is here");
+        else if (!spec_.declarations.empty() || !errors_.empty())
+            sink_.report(Code::misplaced_spec, first, "'spec' must be the first declaration of the file");
+        if (!spec_seen_) spec_.name = std::move(name);
+        spec_seen_ = true;
+    }
+
+    /// Notes what a broken declaration would have declared, as far as its first words tell.
+    void add_unreadable(Slice slice) {
+        const std::size_t last = slice.end;
+        std::size_t at = slice.begin;
+        const std::size_t kind = tokens_[at]->getType();
+        if (kind == Grammar::SLIDING && at + 1 < last && tokens_[at + 1]->getType() == Grammar::MONITOR) ++at;
+        if (kind == Grammar::SPEC || kind == Grammar::TRUTH || kind == Grammar::RATE || kind == Grammar::PERIOD) return;
+        for (++at; at < last && (is_name(*tokens_[at]) || is_reserved_word(*tokens_[at], file_)); at += 2) {
+            spec_.unreadable.push_back({text_of(*tokens_[at], file_), span_of(*tokens_[at])});
+            if (at + 1 >= last || tokens_[at + 1]->getType() != Grammar::COMMA) break;
+        }
+    }
+
+    /// A reserved word used as a name breaks every other declaration that uses it: that is one cause, told once.
+    void report_errors() {
+        std::vector<std::string> misused;
+        for (const SyntaxError& error : errors_)
+            if (error.diagnostic.code == Code::reserved_name) misused.push_back(error.found);
+        const auto is_misused = [&misused](const std::string& word) {
+            return std::find(misused.begin(), misused.end(), word) != misused.end();
+        };
+        for (SyntaxError& error : errors_) {
+            const bool follows =
+                error.diagnostic.code != Code::reserved_name && (is_misused(error.found) || is_misused(error.previous));
+            if (!follows) sink_.report(std::move(error.diagnostic));
+        }
+    }
+
+    void report_missing_spec() {
+        if (spec_seen_ || first_is_misspelt_) return;
+        const source::Span begin = span_of(*tokens_.front());
+        const bool empty = tokens_.size() == 1;
+        sink_
+            .report(Code::misplaced_spec, begin,
+                    empty ? "the file is empty"
+                          : fmt::format("expected 'spec NAME;', found {}", quoted(*tokens_.front(), file_)))
+            .note("a file begins with 'spec NAME;', which names the generated code");
+    }
+
+    const source::File& file_;
+    diag::Sink& sink_;
+    Builder builder_;
+    Tokens tokens_;
+    ast::Spec spec_;
+    std::vector<SyntaxError> errors_;
+    bool spec_seen_ = false;
+    bool first_is_misspelt_ = false;
+};
+
+}  // namespace
+
+ast::Spec parse(const source::File& file, diag::Sink& sink) {
+    return Reader(file, sink).read();
+}
+
+}  // namespace etlc::parse

@@ -1,0 +1,79 @@
+#include "parse/slices.hpp"
+
+#include <algorithm>
+
+#include "EtlLexer.h"
+
+namespace etlc::parse {
+
+using grammar::EtlLexer;
+
+namespace {
+
+/// Whether a declaration begins at token `i`, judged by its first words: a declaration word alone may as well be a
+/// reserved word that somebody took for a name.
+bool begins_declaration(const Tokens& tokens, std::size_t i) {
+    const auto type = [&tokens](std::size_t k) { return k < tokens.size() ? tokens[k]->getType() : Token::EOF; };
+    const bool name_follows = i + 1 < tokens.size() && is_name(*tokens[i + 1]);
+    switch (type(i)) {
+        case EtlLexer::SPEC: return name_follows && type(i + 2) == EtlLexer::SEMICOLON;
+        case EtlLexer::RATE:
+        case EtlLexer::PERIOD: return type(i + 1) == EtlLexer::NUMBER;
+        case EtlLexer::INPUT: return name_follows && (type(i + 2) == EtlLexer::COMMA || type(i + 2) == EtlLexer::COLON);
+        case EtlLexer::SLIDING: return type(i + 1) == EtlLexer::MONITOR;
+        case EtlLexer::TARGET:
+        case EtlLexer::PREDICATE:
+        case EtlLexer::TRUTH:
+        case EtlLexer::LET:
+        case EtlLexer::MONITOR: return name_follows && type(i + 2) == EtlLexer::ASSIGN;
+        default: return false;
+    }
+}
+
+}  // namespace
+
+std::vector<Slice> slices_of(const Tokens& tokens) {
+    std::vector<Slice> slices;
+    std::size_t begin = 0;
+    const std::size_t last = tokens.size() - 1;  // EOF
+    for (std::size_t i = 0; i < last; ++i) {
+        const bool after_sliding = i == begin + 1 && tokens[begin]->getType() == EtlLexer::SLIDING;
+        if (i > begin && !after_sliding && begins_declaration(tokens, i)) {
+            slices.push_back({begin, i});
+            begin = i;
+        }
+        if (tokens[i]->getType() == EtlLexer::SEMICOLON) {
+            slices.push_back({begin, i + 1});
+            begin = i + 1;
+        }
+    }
+    if (begin < last) slices.push_back({begin, last});
+    return slices;
+}
+
+SliceStream::SliceStream(const Tokens& tokens, Slice slice) : tokens_(tokens), slice_(slice), end_(Token::EOF) {
+    end_.setStartIndex(tokens[slice.end]->getStartIndex());
+    end_.setStopIndex(tokens[slice.end]->getStartIndex());
+    end_.setTokenIndex(slice.end - slice.begin);
+}
+
+Token* SliceStream::LT(ssize_t k) {
+    if (k == 0) return nullptr;
+    const ssize_t at = static_cast<ssize_t>(at_) + (k > 0 ? k - 1 : k);
+    return at < 0 ? nullptr : get(static_cast<std::size_t>(at));
+}
+
+Token* SliceStream::get(std::size_t index) const {
+    if (index >= slice_.end - slice_.begin) return const_cast<antlr4::CommonToken*>(&end_);
+    return tokens_[slice_.begin + index].get();
+}
+
+void SliceStream::consume() {
+    if (at_ < size()) ++at_;
+}
+
+void SliceStream::seek(std::size_t index) {
+    at_ = std::min(index, size());
+}
+
+}  // namespace etlc::parse

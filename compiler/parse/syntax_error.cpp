@@ -1,0 +1,221 @@
+#include "parse/syntax_error.hpp"
+
+#include <fmt/format.h>
+
+#include <initializer_list>
+
+#include "EtlParser.h"
+#include "parse/expected.hpp"
+
+namespace etlc::parse {
+
+using diag::Code;
+using diag::Diagnostic;
+using grammar::EtlParser;
+
+namespace {
+
+bool is(const Token* token, std::initializer_list<std::size_t> types) {
+    if (token == nullptr) return false;
+    for (const std::size_t type : types)
+        if (token->getType() == type) return true;
+    return false;
+}
+
+bool is_aggregation(const Token* token) {
+    return is(token, {EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN});
+}
+
+/// Composes the diagnostic of one place.
+class Explanation {
+public:
+    Explanation(const Stuck& stuck, const Token& found, const source::File& file)
+        : stuck_(stuck), found_(found), file_(file) {}
+
+    Diagnostic make() {
+        if (stuck_.previous == nullptr) return no_declaration();
+        if (reserved_as_name()) return reserved();
+        if (unknown_call()) return no_such_callable();
+        if (interval_misplaced()) return no_interval();
+        Diagnostic result = expected_found();
+        add_notes(result);
+        return result;
+    }
+
+private:
+    std::string text(const Token& token) const { return text_of(token, file_); }
+
+    bool found_is_word() const { return found_.getType() == EtlParser::IDENTIFIER; }
+
+    /// Where what is missing belongs: after the last word on its line rather than before the first on the next.
+    source::Span place() const {
+        const source::Span found = span_of(found_);
+        if (stuck_.previous == nullptr) return found;
+        const std::uint32_t end = span_of(*stuck_.previous).end;
+        const bool next_line = file_.position(end).line != file_.position(found.begin).line;
+        const bool slice_ended = stuck_.found->getType() == Token::EOF;
+        return next_line || slice_ended ? source::Span{end, end} : found;
+    }
+
+    Diagnostic at(Code code, source::Span span, std::string message) const {
+        return {code, std::move(message), span, {}, 0, 0, {}};
+    }
+
+    void add_nearest(Diagnostic& to, const Token& word, const std::vector<std::string>& candidates) const {
+        if (const auto nearest = diag::nearest_name(text(word), candidates))
+            to.note(fmt::format("did you mean '{}'?", *nearest));
+    }
+
+    Diagnostic no_declaration() const {
+        static const std::vector<std::string> kWords{"spec",      "rate",  "period", "input",   "target",
+                                                     "predicate", "truth", "let",    "monitor", "sliding"};
+        const bool word = found_is_word();
+        Diagnostic result = at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
+                               fmt::format("expected a declaration, found {}", quoted(found_, file_)));
+        if (word) add_nearest(result, found_, kWords);
+        if (result.notes.empty())
+            result.note(
+                "a declaration begins with spec, rate, period, input, target, predicate, truth, let, monitor or "
+                "sliding monitor");
+        return result;
+    }
+
+    bool reserved_as_name() const {
+        return stuck_.rule == EtlParser::RuleName && stuck_.parent_rule == EtlParser::RuleDeclaration &&
+               is_reserved_word(found_, file_);
+    }
+
+    Diagnostic reserved() const {
+        Diagnostic result = at(Code::reserved_name, span_of(found_),
+                               fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)));
+        result.note(fmt::format("{} is {}; choose another name", quoted(found_, file_),
+                                description_of_reserved(found_.getType())));
+        return result;
+    }
+
+    bool unknown_call() const {
+        const bool call = found_.getType() == EtlParser::LPAREN && is(stuck_.previous, {EtlParser::IDENTIFIER}) &&
+                          (stuck_.rule != EtlParser::RuleName);
+        const bool operand = stuck_.rule == EtlParser::RulePrimary || stuck_.rule == EtlParser::RuleDeclaration ||
+                             stuck_.rule == EtlParser::RuleComparisonOperator;
+        const bool distance = is_aggregation(stuck_.previous) && found_is_word();
+        return (call && operand && stuck_.before_previous != nullptr &&
+                !is(stuck_.before_previous, {stuck_.declaration})) ||
+               distance;
+    }
+
+    Diagnostic no_such_callable() const {
+        const bool aggregated = is_aggregation(stuck_.previous);
+        const Token& word = aggregated ? found_ : *stuck_.previous;
+        Diagnostic result =
+            at(Code::unknown_keyword, span_of(word),
+               aggregated ? fmt::format("expected a distance after {}, found {}", quoted(*stuck_.previous, file_),
+                                        quoted(word, file_))
+                          : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
+        add_nearest(result, word, callable_words());
+        if (result.notes.empty())
+            result.note(fmt::format("distances: {}; functions: {}",
+                                    "l2, l2sq, l1, linf, cosine, angular, mahalanobis(W)", "abs, sqrt, min, max"));
+        return result;
+    }
+
+    bool interval_misplaced() const {
+        return found_.getType() == EtlParser::LBRACKET &&
+               is(stuck_.previous, {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::WEAK_UNTIL, EtlParser::NOT,
+                                    EtlParser::AND, EtlParser::OR, EtlParser::IMPLIES, EtlParser::IFF});
+    }
+
+    Diagnostic no_interval() const {
+        Diagnostic result = at(Code::syntax_error, span_of(found_),
+                               fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)));
+        result.note("intervals stand after F, G, O, H, U, R and S");
+        return result;
+    }
+
+    Diagnostic expected_found() const {
+        const bool unknown = found_is_word() && expects_keyword(stuck_);
+        return at(unknown ? Code::unknown_keyword : Code::syntax_error, place(),
+                  fmt::format("expected {} after {}, found {}", expected_words(stuck_), quoted(*stuck_.previous, file_),
+                              quoted(found_, file_)));
+    }
+
+    void add_notes(Diagnostic& to) const {
+        const std::size_t found = found_.getType();
+        if (found_is_word() && stuck_.rule != EtlParser::RuleName) add_nearest(to, found_, expected_spellings(stuck_));
+        if (!to.notes.empty()) return;
+        if (found == EtlParser::INF && stuck_.rule != EtlParser::RuleDeclaration)
+            to.note("inf stands only in the bounds of intervals and ranges");
+        else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
+            to.note("a comparison is '<=', '<', '>=' or '>'");
+        else if (is(stuck_.previous, {EtlParser::F16, EtlParser::I8}) && stuck_.rule == EtlParser::RuleDimension)
+            to.note("only f32 and bool can be scalars; an embedding has its dimension in brackets");
+        else if (stuck_.rule == EtlParser::RuleWeights || is(stuck_.previous, {EtlParser::MAHALANOBIS}))
+            to.note("the weights come first: mahalanobis(W)(z, goal)");
+        else if (stuck_.rule == EtlParser::RuleInterval || stuck_.rule == EtlParser::RuleBound)
+            to.note("an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], [0s, 2s]");
+        else if (stuck_.rule == EtlParser::RulePrimary && found == EtlParser::RPAREN &&
+                 stuck_.expected.contains(std::size_t{EtlParser::COMMA}))
+            to.note("min(...) and max(...) of expressions take two or more; over a target set it is 'min l2(z, goal)'");
+        else
+            add_declaration_notes(to);
+    }
+
+    void add_declaration_notes(Diagnostic& to) const {
+        if (stuck_.rule == EtlParser::RuleThreshold)
+            to.note("what is compared stands on the left, its threshold on the right: x - y <= 0.5");
+        else if (stuck_.declaration == EtlParser::PREDICATE && stuck_.rule == EtlParser::RuleComparisonOperator)
+            to.note("a predicate compares one expression with a threshold; a formula is named with 'let'");
+        else if (is_reserved_word(found_, file_) && !stuck_.looked_ahead && stuck_.rule == EtlParser::RulePrefixed)
+            to.note(
+                fmt::format("{} is reserved: {}", quoted(found_, file_), description_of_reserved(found_.getType())));
+    }
+
+    const Stuck& stuck_;
+    const Token& found_;
+    const source::File& file_;
+};
+
+}  // namespace
+
+SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file) {
+    const Token& found = stuck.found->getType() == Token::EOF ? next : *stuck.found;
+    const std::string previous = stuck.previous != nullptr ? text_of(*stuck.previous, file) : std::string();
+    return {Explanation(stuck, found, file).make(), text_of(found, file), previous};
+}
+
+Token* Strategy::recoverInline(antlr4::Parser* parser) {
+    give_up(parser, parser->getCurrentToken());
+}
+
+void Strategy::recover(antlr4::Parser* parser, std::exception_ptr error) {
+    try {
+        std::rethrow_exception(error);
+    } catch (const antlr4::RecognitionException& e) {
+        give_up(parser, e.getOffendingToken());
+    }
+}
+
+void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
+    const auto index = [this](const Token* token) {
+        // Tokens of a slice are in the order of their offsets.
+        std::size_t i = slice_.begin;
+        while (i < slice_.end && tokens_[i].get() != token) ++i;
+        return i;
+    };
+    const std::size_t at = index(found);
+    const auto before = [this, at](std::size_t n) { return at >= slice_.begin + n ? tokens_[at - n].get() : nullptr; };
+    const antlr4::ParserRuleContext* const context = parser->getContext();
+    const auto* const parent = dynamic_cast<const antlr4::ParserRuleContext*>(context->parent);
+    const Stuck stuck{found,
+                      before(1),
+                      before(2),
+                      parser->getExpectedTokens(),
+                      context->getRuleIndex(),
+                      parent != nullptr ? parent->getRuleIndex() : context->getRuleIndex(),
+                      tokens_[slice_.begin]->getType(),
+                      found != parser->getCurrentToken(),
+                      &parser->getVocabulary()};
+    throw explain(stuck, *tokens_[slice_.end], file_);
+}
+
+}  // namespace etlc::parse

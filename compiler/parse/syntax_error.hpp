@@ -1,0 +1,57 @@
+// What stops the reading of one declaration.
+// Takes: the place where ANTLR's parser is stuck. Gives: one diagnostic in the user's terms, thrown as SyntaxError.
+// Keeps true: parsing stops at a declaration's first error; ANTLR's own recovery and messages are never used.
+#pragma once
+
+#include <string>
+
+#include "diag/diag.hpp"
+#include "parse/slices.hpp"
+
+namespace etlc::parse {
+
+struct SyntaxError {
+    diag::Diagnostic diagnostic;
+    /// The words at the place: an error that only follows from a reserved word used as a name is told by them.
+    std::string found;
+    std::string previous;
+};
+
+/// A parser that cannot go on, and what it would have taken.
+struct Stuck {
+    const Token* found;            ///< EOF where the slice ended
+    const Token* previous;         ///< nullptr: nothing read yet
+    const Token* before_previous;  ///< nullptr: no such token
+    antlr4::misc::IntervalSet expected;
+    std::size_t rule;         ///< EtlParser::Rule...
+    std::size_t parent_rule;  ///< of the rule that called it
+    std::size_t declaration;  ///< type of the slice's first token
+    bool looked_ahead;        ///< found lies past the token at which the parser had to decide
+    const antlr4::dfa::Vocabulary* vocabulary;
+};
+
+class Strategy final : public antlr4::ANTLRErrorStrategy {
+public:
+    Strategy(const source::File& file, const Tokens& tokens, Slice slice)
+        : file_(file), tokens_(tokens), slice_(slice) {}
+
+    void reset(antlr4::Parser* /*parser*/) override {}
+    Token* recoverInline(antlr4::Parser* parser) override;
+    void recover(antlr4::Parser* parser, std::exception_ptr error) override;
+    void sync(antlr4::Parser* /*parser*/) override {}
+    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
+    void reportMatch(antlr4::Parser* /*parser*/) override {}
+    void reportError(antlr4::Parser* /*parser*/, const antlr4::RecognitionException& /*error*/) override {}
+
+private:
+    [[noreturn]] void give_up(antlr4::Parser* parser, const Token* found);
+
+    const source::File& file_;
+    const Tokens& tokens_;
+    Slice slice_;
+};
+
+/// `next`: the first token after the slice, which is what the user sees where the slice ended too early.
+SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file);
+
+}  // namespace etlc::parse

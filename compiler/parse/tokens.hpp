@@ -1,0 +1,39 @@
+// Text to tokens.
+// Takes: a file. Gives: its tokens without blanks and comments, ended by EOF; and what is wrong with a token that the
+// lexer found to be a mistake. Keeps true: a token's indices are byte offsets of the file; any bytes can be lexed.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "antlr4-runtime.h"
+#include "diag/diag.hpp"
+#include "source/source.hpp"
+
+namespace etlc::parse {
+
+using Token = antlr4::Token;
+
+/// Tokens refer to the streams they came from but are never asked for their text: that is the file's.
+using Tokens = std::vector<std::unique_ptr<Token>>;
+
+Tokens tokens_of(const source::File& file);
+
+source::Span span_of(const Token& token);
+source::Span span_of(const antlr4::ParserRuleContext& context);
+std::string text_of(const Token& token, const source::File& file);
+/// 'word', cut where it is long; "the end of the file" for EOF.
+std::string quoted(const Token& token, const source::File& file);
+
+bool is_mistake(const Token& token);
+/// What to say of such a token; nothing where its bytes are not UTF-8, which has been said of the file as a whole.
+std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source::File& file);
+
+/// Reserved words cannot be names; contextual words can.
+bool is_reserved_word(const Token& token, const source::File& file);
+/// Identifiers and contextual words: whatever the rule `name` takes.
+bool is_name(const Token& token);
+
+}  // namespace etlc::parse

@@ -1,0 +1,133 @@
+// The words of Embedding Temporal Logic. docs/language.md explains them.
+//
+// Reserved words come first. The contextual words after them (types, units, distances, aggregations, functions) are
+// tokens of their own, which the parser's rule `name` accepts as names as well.
+lexer grammar EtlLexer;
+
+// ---- reserved: declarations
+
+SPEC      : 'spec' ;
+RATE      : 'rate' ;
+PERIOD    : 'period' ;
+INPUT     : 'input' ;
+TARGET    : 'target' ;
+PREDICATE : 'predicate' ;
+TRUTH     : 'truth' ;
+LET       : 'let' ;
+SLIDING   : 'sliding' ;
+MONITOR   : 'monitor' ;
+
+// ---- reserved: values
+
+TRUE       : 'true' ;
+FALSE      : 'false' ;
+CALIBRATED : 'calibrated' ;
+LOAD       : 'load' ;
+INF        : 'inf' ;
+
+// ---- reserved: operators of formulas; the word is an exact synonym
+
+IFF          : '<->' | 'iff' ;
+IMPLIES      : '->' | 'implies' ;
+OR           : '||' | 'or' ;
+AND          : '&&' | 'and' ;
+NOT          : '!' | 'not' ;
+UNTIL        : 'U' | 'until' ;
+WEAK_UNTIL   : 'W' | 'weak_until' ;
+RELEASE      : 'R' | 'release' ;
+SINCE        : 'S' | 'since' ;
+NEXT         : 'X' | 'next' ;
+EVENTUALLY   : 'F' | 'eventually' ;
+ALWAYS       : 'G' | 'always' ;
+PREVIOUS     : 'Y' | 'previous' ;
+ONCE         : 'O' | 'once' ;
+HISTORICALLY : 'H' | 'historically' ;
+
+// ---- contextual: inputs and their types
+
+IN    : 'in' ;
+HOLD  : 'hold' ;
+SCALE : 'scale' ;
+F32   : 'f32' ;
+F16   : 'f16' ;
+I8    : 'i8' ;
+BOOL  : 'bool' ;
+
+// ---- contextual: units
+
+HERTZ        : 'Hz' ;
+MICROSECONDS : 'us' ;
+MILLISECONDS : 'ms' ;
+SECONDS      : 's' ;
+
+// ---- contextual: distances, aggregations, functions; `min` is a unit as well
+
+L2          : 'l2' ;
+L2SQ        : 'l2sq' ;
+L1          : 'l1' ;
+LINF        : 'linf' ;
+COSINE      : 'cosine' ;
+ANGULAR     : 'angular' ;
+MAHALANOBIS : 'mahalanobis' ;
+MIN         : 'min' ;
+MAX         : 'max' ;
+MEAN        : 'mean' ;
+KTH         : 'kth' ;
+ABS         : 'abs' ;
+SQRT        : 'sqrt' ;
+
+IDENTIFIER : [A-Za-z_] [A-Za-z_0-9]* ;
+
+// ---- numbers and strings: the sign is a token of its own; a string is taken as it stands, without escapes
+
+NUMBER : DIGIT+ ('.' DIGIT+)? EXPONENT? ;
+STRING : '"' ~["\r\n]* '"' ;
+
+// ---- punctuation
+
+LESS_EQUAL    : '<=' ;
+LESS          : '<' ;
+GREATER_EQUAL : '>=' ;
+GREATER       : '>' ;
+ASSIGN        : '=' ;
+PLUS          : '+' ;
+MINUS         : '-' ;
+TIMES         : '*' ;
+DIVIDE        : '/' ;
+LPAREN        : '(' ;
+RPAREN        : ')' ;
+LBRACKET      : '[' ;
+RBRACKET      : ']' ;
+COMMA         : ',' ;
+COLON         : ':' ;
+SEMICOLON     : ';' ;
+
+// ---- what lies between words
+
+BLANKS        : [ \t\r\n\f\u000B]+            -> skip ;
+LINE_COMMENT  : '//' ~[\r\n]*                 -> skip ;
+BLOCK_COMMENT : '/*' .*? '*/'                 -> skip ;
+
+// ---- mistakes, as tokens, so that messages can name them. An unterminated comment takes the rest of the file: were it
+// two characters long, a file full of them would be read over and over.
+
+UNTERMINATED_STRING  : '"' ~["\r\n]* ;
+UNTERMINATED_COMMENT : '/*' (~[*] | '*'+ ~[*/])* '*'* ;
+
+MALFORMED_NUMBER
+    : DIGIT+ '.'
+    | '.' DIGIT+ EXPONENT?
+    | DIGIT+ ('.' DIGIT+)? [eE] [+-]?
+    | DIGIT+ '.' DIGIT+ EXPONENT? [fF]
+    | '0' [xX] [0-9a-fA-F]+
+    ;
+
+FOREIGN_OPERATOR
+    : '==' | '===' | '!=' | '!==' | '<>' | '=>' | '<=>' | '=<' | '<-->' | '-->'
+    | '&' | '|' | '^' | '~' | '%' | '**' | '/\\' | '\\/' | ':='
+    ;
+
+UNEXPECTED : . ;
+
+fragment DIGIT    : [0-9] ;
+fragment EXPONENT : [eE] [+-]? DIGIT+ ;

@@ -1,0 +1,197 @@
+// The grammar of Embedding Temporal Logic. docs/language.md explains it.
+//
+// Formulas and expressions share one ladder of rules, from the loosest operator to the tightest: `(x + y) * 2 > 1` and
+// `(a && b)` begin alike, and a parser that had to tell them apart at the bracket would read ahead without bound.
+// compiler/parse tells them apart as it builds the tree, where it knows which of the two may stand.
+// Every decision but those on contextual words takes one token of lookahead. Chains are loops, not recursion.
+parser grammar EtlParser;
+
+options { tokenVocab = EtlLexer; }
+
+spec
+    : declaration* EOF
+    ;
+
+declaration
+    : SPEC name SEMICOLON                                                 # SpecDeclaration
+    | RATE NUMBER HERTZ SEMICOLON                                         # RateDeclaration
+    | PERIOD NUMBER timeUnit SEMICOLON                                    # PeriodDeclaration
+    | INPUT name (COMMA name)* COLON type range? hold? SEMICOLON          # InputDeclaration
+    | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
+    | PREDICATE name ASSIGN sum comparisonOperator threshold SEMICOLON    # PredicateDeclaration
+    | TRUTH name ASSIGN formula SEMICOLON                                 # TruthDeclaration
+    | LET name ASSIGN formula SEMICOLON                                   # LetDeclaration
+    | SLIDING? MONITOR name ASSIGN formula calibrated? SEMICOLON          # MonitorDeclaration
+    ;
+
+// ---- formulas and expressions, from the loosest operator to the tightest
+
+formula
+    : implication (IFF implication)*
+    ;
+
+implication
+    : disjunction (IMPLIES implication)?
+    ;
+
+disjunction
+    : conjunction (OR conjunction)*
+    ;
+
+conjunction
+    : binaryTemporal (AND binaryTemporal)*
+    ;
+
+binaryTemporal
+    : prefixed ( op=(UNTIL | RELEASE | SINCE) interval? binaryTemporal
+               | op=WEAK_UNTIL binaryTemporal
+               )?
+    ;
+
+prefixed
+    : op=(NOT | NEXT | PREVIOUS) prefixed                                        # PlainPrefix
+    | op=(EVENTUALLY | ALWAYS | ONCE | HISTORICALLY) interval? prefixed          # IntervalPrefix
+    | comparison                                                                 # Atom
+    ;
+
+// One comparison is right; more, and thresholds, are accepted here only to be explained.
+comparison
+    : sum (comparisonOperator (sum | calibrated))*
+    ;
+
+sum
+    : product ((PLUS | MINUS) product)*
+    ;
+
+product
+    : factor ((TIMES | DIVIDE) factor)*
+    ;
+
+factor
+    : MINUS factor      # Negation
+    | primary           # Unsigned
+    ;
+
+primary
+    : NUMBER                                                    # NumberPrimary
+    | op=(TRUE | FALSE)                                         # ConstantPrimary
+    | distance                                                  # DistancePrimary
+    | op=(ABS | SQRT) LPAREN formula RPAREN                     # UnaryFunctionPrimary
+    | op=(MIN | MAX) LPAREN formula (COMMA formula)+ RPAREN     # VariadicFunctionPrimary
+    | name                                                      # NamePrimary
+    | LPAREN formula RPAREN                                     # BracketPrimary
+    ;
+
+comparisonOperator
+    : LESS_EQUAL | LESS | GREATER_EQUAL | GREATER
+    ;
+
+interval
+    : LBRACKET bound COMMA bound RBRACKET
+    ;
+
+bound
+    : NUMBER timeUnit?      # FiniteBound
+    | INF                   # InfiniteBound
+    ;
+
+// ---- distances
+
+distance
+    : aggregation? metric LPAREN point COMMA name RPAREN
+    ;
+
+aggregation
+    : op=(MIN | MAX | MEAN)         # PlainAggregation
+    | KTH LPAREN NUMBER RPAREN      # KthAggregation
+    ;
+
+metric
+    : op=(L2 | L2SQ | L1 | LINF | COSINE | ANGULAR)     # PlainMetric
+    | MAHALANOBIS LPAREN weights RPAREN                 # WeightedMetric
+    ;
+
+weights
+    : load      # LoadedWeights
+    | literal   # LiteralWeights
+    | name      # NamedWeights
+    ;
+
+point
+    : name                                          # EmbeddingPoint
+    | LBRACKET name (COMMA name)* RBRACKET          # VectorPoint
+    ;
+
+// ---- thresholds
+
+threshold
+    : number        # NumberThreshold
+    | calibrated    # CalibratedThreshold
+    ;
+
+calibrated
+    : CALIBRATED LPAREN name (COMMA argument)* RPAREN
+    ;
+
+argument
+    : name ASSIGN (number | name)
+    ;
+
+// ---- inputs
+
+type
+    : F32 dimension?                        # Float32Type
+    | F16 dimension                         # Float16Type
+    | I8 dimension (SCALE number)?          # Int8Type
+    | BOOL                                  # BoolType
+    ;
+
+dimension
+    : LBRACKET NUMBER RBRACKET
+    ;
+
+range
+    : IN LBRACKET limit COMMA limit RBRACKET
+    ;
+
+limit
+    : MINUS? (NUMBER | INF)
+    ;
+
+hold
+    : HOLD NUMBER
+    ;
+
+// ---- data
+
+load
+    : LOAD LPAREN path=STRING (COMMA key=STRING)? RPAREN
+    ;
+
+literal
+    : LBRACKET row (COMMA row)* RBRACKET            # MatrixLiteral
+    | LBRACKET number (COMMA number)* RBRACKET      # VectorLiteral
+    ;
+
+row
+    : LBRACKET number (COMMA number)* RBRACKET
+    ;
+
+number
+    : MINUS? NUMBER
+    ;
+
+timeUnit
+    : MICROSECONDS | MILLISECONDS | SECONDS | MIN
+    ;
+
+// ---- names: contextual words are names wherever they cannot be keywords
+
+name
+    : IDENTIFIER
+    | IN | HOLD | SCALE
+    | F32 | F16 | I8 | BOOL
+    | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
+    | L2 | L2SQ | L1 | LINF | COSINE | ANGULAR | MAHALANOBIS
+    | MIN | MAX | MEAN | KTH | ABS | SQRT
+    ;
