@@ -1,0 +1,44 @@
+#!/usr/bin/env bash
+# tutorial_test.sh ETLC RUNTIME DOCUMENT: DOCUMENT's commands print what it says they print.
+# In it, a fence "NAME file=PATH" is a file, made in an empty folder; in a "console" fence each line after "$ " is run there and the
+# lines up to the next are its output. With ETLC_UPDATE=1 in the environment the outputs are written anew.
+set -euo pipefail
+PATH=$(dirname "$1"):$PATH
+export ETLC_RUNTIME=$2
+document=$3
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+mkdir "$folder/work"
+
+fence='' # what the current block is: nothing, a file's path, "console" or "other"
+commands=0
+while IFS= read -r line; do
+    case $fence:$line in
+    console:'$ '*)
+        echo "$line"
+        (cd "$folder/work" && bash -c "${line#$ }" </dev/null 2>&1) || true
+        commands=$((commands + 1))
+        continue
+        ;;
+    console:'```') fence='' ;;
+    console:*) continue ;; # the output that was committed
+    :'```console') fence=console ;;
+    :'```'*file=*)
+        fence=${line##*file=}
+        : >"$folder/work/$fence"
+        ;;
+    :'```'*) fence=other ;;
+    *:'```') fence='' ;;
+    :* | other:*) ;;
+    *) printf '%s\n' "$line" >>"$folder/work/$fence" ;;
+    esac
+    printf '%s\n' "$line"
+done <"$document" >"$folder/document.md"
+
+[ -z "$fence" ] || { echo "the last block is not closed"; exit 1; }
+[ "$commands" -ge 5 ] || { echo "only $commands commands were found"; exit 1; }
+if [ "${ETLC_UPDATE:-}" = 1 ]; then
+    cp "$folder/document.md" "$document"
+else
+    diff -u "$document" "$folder/document.md"
+fi
