@@ -12,7 +12,7 @@ deb=$(echo "$box"/etlc_"$version"_*.deb)
 [ -f "$deb" ] || { ls "$box"; fail "there is no package of version $version"; }
 
 depends=$(dpkg-deb -f "$deb" Depends)
-for library in libc6 libstdc++6 libfmt9 libantlr4-runtime; do
+for library in libc6 libstdc++6 libfmt9 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
