@@ -203,7 +203,7 @@ struct Spec {
     Name name;  ///< empty text: missing or unreadable, already reported
     std::vector<Declaration> declarations;
     /// Names of declarations that could not be read. check/ takes them as declared, so that one broken line does not
-    /// make every use of its name an error too.
+    /// make every use of its name an error too. The reserved word `rate` stands for a `rate` or `period` declaration.
     std::vector<Name> unreadable;
 };
 

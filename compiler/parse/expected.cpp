@@ -147,7 +147,7 @@ std::vector<std::string> listed(const Stuck& stuck) {
 }  // namespace
 
 std::string expected_words(const Stuck& stuck) {
-    if (stuck.looked_ahead) return "an operator";
+    if (stuck.looked_ahead && stuck.rule != EtlParser::RuleLiteral) return "an operator";
     if (expects_operand(stuck)) return operand_words(stuck);
     if (expects_name(stuck)) return name_words(stuck);
     std::vector<std::string> words = listed(stuck);

@@ -143,7 +143,11 @@ private:
         std::size_t at = slice.begin;
         const std::size_t kind = tokens_[at]->getType();
         if (kind == Grammar::SLIDING && at + 1 < last && tokens_[at + 1]->getType() == Grammar::MONITOR) ++at;
-        if (kind == Grammar::SPEC || kind == Grammar::TRUTH || kind == Grammar::RATE || kind == Grammar::PERIOD) return;
+        if (kind == Grammar::SPEC || kind == Grammar::TRUTH) return;
+        if (kind == Grammar::RATE || kind == Grammar::PERIOD) {
+            spec_.unreadable.push_back({"rate", span_of(*tokens_[at])});
+            return;
+        }
         for (++at; at < last && (is_name(*tokens_[at]) || is_reserved_word(*tokens_[at], file_)); at += 2) {
             spec_.unreadable.push_back({text_of(*tokens_[at], file_), span_of(*tokens_[at])});
             if (at + 1 >= last || tokens_[at + 1]->getType() != Grammar::COMMA) break;

@@ -42,7 +42,10 @@ std::vector<Slice> slices_of(const Tokens& tokens) {
             slices.push_back({begin, i});
             begin = i;
         }
-        if (tokens[i]->getType() == EtlLexer::SEMICOLON) {
+        const auto is_semicolon = [&tokens](std::size_t k) { return tokens[k]->getType() == EtlLexer::SEMICOLON; };
+        // A run of stray ';' is one slice, and one error.
+        if (is_semicolon(begin) && is_semicolon(i) && is_semicolon(i + 1)) continue;
+        if (is_semicolon(i)) {
             slices.push_back({begin, i + 1});
             begin = i + 1;
         }

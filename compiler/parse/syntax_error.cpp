@@ -37,6 +37,7 @@ public:
         if (reserved_as_name()) return reserved();
         if (unknown_call()) return no_such_callable();
         if (interval_misplaced()) return no_interval();
+        if (unknown_unit()) return no_such_unit();
         Diagnostic result = expected_found();
         add_notes(result);
         return result;
@@ -53,8 +54,7 @@ private:
         if (stuck_.previous == nullptr) return found;
         const std::uint32_t end = span_of(*stuck_.previous).end;
         const bool next_line = file_.position(end).line != file_.position(found.begin).line;
-        const bool slice_ended = stuck_.found->getType() == Token::EOF;
-        return next_line || slice_ended ? source::Span{end, end} : found;
+        return next_line || slice_ended() ? source::Span{end, end} : found;
     }
 
     Diagnostic at(Code code, source::Span span, std::string message) const {
@@ -93,15 +93,13 @@ private:
         return result;
     }
 
+    /// A word before '(' that is neither a distance nor a function, or a word after an aggregation that is no distance.
     bool unknown_call() const {
-        const bool call = found_.getType() == EtlParser::LPAREN && is(stuck_.previous, {EtlParser::IDENTIFIER}) &&
-                          (stuck_.rule != EtlParser::RuleName);
-        const bool operand = stuck_.rule == EtlParser::RulePrimary || stuck_.rule == EtlParser::RuleDeclaration ||
-                             stuck_.rule == EtlParser::RuleComparisonOperator;
-        const bool distance = is_aggregation(stuck_.previous) && found_is_word();
-        return (call && operand && stuck_.before_previous != nullptr &&
-                !is(stuck_.before_previous, {stuck_.declaration})) ||
-               distance;
+        if (is_aggregation(stuck_.previous) && found_is_word()) return true;
+        const bool after_operand = stuck_.rule == EtlParser::RulePrimary || stuck_.rule == EtlParser::RuleDeclaration ||
+                                   stuck_.rule == EtlParser::RuleComparisonOperator;
+        const bool declared_name = is(stuck_.before_previous, {stuck_.declaration});
+        return found_.getType() == EtlParser::LPAREN && is_name(*stuck_.previous) && after_operand && !declared_name;
     }
 
     Diagnostic no_such_callable() const {
@@ -112,10 +110,10 @@ private:
                aggregated ? fmt::format("expected a distance after {}, found {}", quoted(*stuck_.previous, file_),
                                         quoted(word, file_))
                           : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
-        add_nearest(result, word, callable_words());
+        if (word.getType() == EtlParser::IDENTIFIER) add_nearest(result, word, callable_words());
         if (result.notes.empty())
-            result.note(fmt::format("distances: {}; functions: {}",
-                                    "l2, l2sq, l1, linf, cosine, angular, mahalanobis(W)", "abs, sqrt, min, max"));
+            result.note(
+                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(W); functions: abs, sqrt, min, max");
         return result;
     }
 
@@ -132,6 +130,18 @@ private:
         return result;
     }
 
+    bool unknown_unit() const {
+        return stuck_.rule == EtlParser::RuleInterval && is(stuck_.previous, {EtlParser::NUMBER}) && found_is_word();
+    }
+
+    Diagnostic no_such_unit() const {
+        Diagnostic result = at(Code::unknown_keyword, span_of(found_),
+                               fmt::format("expected a unit of time (us, ms, s or min) after {}, found {}",
+                                           quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        add_nearest(result, found_, {"us", "ms", "s", "min"});
+        return result;
+    }
+
     Diagnostic expected_found() const {
         const bool unknown = found_is_word() && expects_keyword(stuck_);
         return at(unknown ? Code::unknown_keyword : Code::syntax_error, place(),
@@ -140,35 +150,53 @@ private:
     }
 
     void add_notes(Diagnostic& to) const {
-        const std::size_t found = found_.getType();
         if (found_is_word() && stuck_.rule != EtlParser::RuleName) add_nearest(to, found_, expected_spellings(stuck_));
-        if (!to.notes.empty()) return;
-        if (found == EtlParser::INF && stuck_.rule != EtlParser::RuleDeclaration)
+        if (to.notes.empty()) add_note_on_words(to);
+        if (to.notes.empty()) add_note_on_rule(to);
+    }
+
+    /// What the words found and before suggest was meant.
+    void add_note_on_words(Diagnostic& to) const {
+        const std::size_t found = found_.getType();
+        const bool in_brackets =
+            stuck_.rule == EtlParser::RulePrimary && stuck_.expected.contains(std::size_t{EtlParser::COMMA});
+        if (found == EtlParser::INF)
             to.note("inf stands only in the bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
             to.note("a comparison is '<=', '<', '>=' or '>'");
-        else if (is(stuck_.previous, {EtlParser::F16, EtlParser::I8}) && stuck_.rule == EtlParser::RuleDimension)
-            to.note("only f32 and bool can be scalars; an embedding has its dimension in brackets");
-        else if (stuck_.rule == EtlParser::RuleWeights || is(stuck_.previous, {EtlParser::MAHALANOBIS}))
-            to.note("the weights come first: mahalanobis(W)(z, goal)");
-        else if (stuck_.rule == EtlParser::RuleInterval || stuck_.rule == EtlParser::RuleBound)
-            to.note("an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], [0s, 2s]");
-        else if (stuck_.rule == EtlParser::RulePrimary && found == EtlParser::RPAREN &&
-                 stuck_.expected.contains(std::size_t{EtlParser::COMMA}))
+        else if (found == EtlParser::RPAREN && in_brackets)
             to.note("min(...) and max(...) of expressions take two or more; over a target set it is 'min l2(z, goal)'");
-        else
-            add_declaration_notes(to);
+        else if (is(stuck_.previous, {EtlParser::KTH}))
+            to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
+        else if (is_reserved_word(found_, file_) && stuck_.expected.contains(std::size_t{EtlParser::IDENTIFIER}) &&
+                 !slice_ended())
+            to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_), description_of_reserved(found)));
     }
 
-    void add_declaration_notes(Diagnostic& to) const {
-        if (stuck_.rule == EtlParser::RuleThreshold)
-            to.note("what is compared stands on the left, its threshold on the right: x - y <= 0.5");
-        else if (stuck_.declaration == EtlParser::PREDICATE && stuck_.rule == EtlParser::RuleComparisonOperator)
-            to.note("a predicate compares one expression with a threshold; a formula is named with 'let'");
-        else if (is_reserved_word(found_, file_) && !stuck_.looked_ahead && stuck_.rule == EtlParser::RulePrefixed)
-            to.note(
-                fmt::format("{} is reserved: {}", quoted(found_, file_), description_of_reserved(found_.getType())));
+    /// How the thing that is being read is written.
+    void add_note_on_rule(Diagnostic& to) const {
+        switch (stuck_.rule) {
+            case EtlParser::RuleDimension:
+                to.note("only f32 and bool can be scalars; an embedding has its dimension in brackets");
+                break;
+            case EtlParser::RuleMetric:
+            case EtlParser::RuleWeights: to.note("the weights come first: mahalanobis(W)(z, goal)"); break;
+            case EtlParser::RuleInterval:
+            case EtlParser::RuleBound:
+                to.note("an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], [0s, 2s]");
+                break;
+            case EtlParser::RuleThreshold:
+                to.note("what is compared stands on the left, its threshold on the right: x - y <= 0.5");
+                break;
+            case EtlParser::RuleComparisonOperator:
+                if (stuck_.declaration == EtlParser::PREDICATE)
+                    to.note("a predicate compares one expression with a threshold; a formula is named with 'let'");
+                break;
+            default: break;
+        }
     }
+
+    bool slice_ended() const { return stuck_.found->getType() == Token::EOF; }
 
     const Stuck& stuck_;
     const Token& found_;
