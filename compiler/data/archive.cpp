@@ -27,7 +27,9 @@ std::string words(int code) {
     zip_error_init_with_code(&error, code);
     std::string result = zip_error_strerror(&error);
     zip_error_fini(&error);
-    if (!result.empty() && result[0] >= 'A' && result[0] <= 'Z') result[0] = static_cast<char>(result[0] - 'A' + 'a');
+    const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
+    const bool abbreviation = result.size() > 1 && capital(result[1]);  // CRC
+    if (!result.empty() && capital(result[0]) && !abbreviation) result[0] = static_cast<char>(result[0] - 'A' + 'a');
     return result;
 }
 
@@ -112,13 +114,13 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
 }
 
 Failure Archive::missing(const std::string& key) const {
-    if (keys_.empty()) return {Code::no_such_array, fmt::format("holds no arrays, expected {}", quoted(key))};
-    std::string message = fmt::format("has no array {}; it holds {}", quoted(key), listed(keys_));
+    if (keys_.empty()) return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
+    std::string message = fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
     constexpr std::size_t kCandidates = 1000;  // a distance is computed to each
     std::vector<std::string> candidates = keys_;
     candidates.resize(std::min(candidates.size(), kCandidates));
     if (auto nearest = diag::nearest_name(key, candidates))
-        message += fmt::format("; did you mean {}?", quoted(*nearest));
+        message += fmt::format("; did you mean {}?", in_quotes(*nearest));
     return {Code::no_such_array, message};
 }
 
@@ -126,11 +128,11 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
     const auto found = std::find(keys_.begin(), keys_.end(), key);
     if (found == keys_.end()) return missing(key);
     if (std::find(found + 1, keys_.end(), key) != keys_.end())
-        return Failure{Code::no_such_array, fmt::format("holds two arrays named {}", quoted(key))};
+        return Failure{Code::no_such_array, fmt::format("holds two arrays named {}", in_quotes(key))};
     const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
     zip_stat_t status;
     const auto in_array = [&](const Failure& failure) {
-        return Failure{failure.code, fmt::format("array {}: {}", quoted(key), failure.message)};
+        return Failure{failure.code, fmt::format("array {}: {}", in_quotes(key), failure.message)};
     };
     if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
         return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))));

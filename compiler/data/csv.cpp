@@ -113,7 +113,7 @@ void CsvReader::read_quoted() {
     const int c = peek();
     if (c != ',' && c != '\r' && c != '\n' && c >= 0) {
         const char byte = static_cast<char>(c);
-        fail(fmt::format("{} after a closing quote, expected a comma or the end of the line", quoted({&byte, 1})),
+        fail(fmt::format("{} after a closing quote, expected a comma or the end of the line", in_quotes({&byte, 1})),
              line_, column_);
     }
 }

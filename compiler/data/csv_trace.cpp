@@ -52,7 +52,7 @@ public:
                 if (found == columns_.end()) return absent(name, channels[c]);
                 if (found->second.count > 1)
                     return Failure{Code::no_such_channel,
-                                   fmt::format("{} columns are named {}", found->second.count, quoted(name)), 1};
+                                   fmt::format("{} columns are named {}", found->second.count, in_quotes(name)), 1, 1};
                 result.push_back({found->second.column, c, e});
             }
             if (auto failure = beyond(channels[c])) return *failure;
@@ -68,7 +68,7 @@ private:
     };
 
     Failure absent(const std::string& name, const Channel& channel) const {
-        std::string message = fmt::format("no column {}", quoted(name));
+        std::string message = fmt::format("no column {}", in_quotes(name));
         const bool vector = channel.kind == Channel::Kind::vector;
         if (vector) message += fmt::format(", needed by input '{}' of {} elements", channel.name, channel.width);
         constexpr std::size_t kCandidates = 1000;  // a distance is computed to each
@@ -77,8 +77,8 @@ private:
         // z[15] is no misspelling of z[16]: where the vector is merely shorter, its neighbours are no suggestion.
         const bool shorter = vector && columns_.contains(column_name(channel, 0));
         const auto nearest = shorter ? std::nullopt : diag::nearest_name(name, candidates);
-        message += nearest ? fmt::format("; did you mean {}?", quoted(*nearest)) : "; there are " + listed(names_);
-        return {Code::no_such_channel, message, 1};
+        message += nearest ? fmt::format("; did you mean {}?", in_quotes(*nearest)) : "; there are " + listed(names_);
+        return {Code::no_such_channel, message, 1, 1};
     }
 
     /// A column for an element that the vector does not have: then the file was made for another width.
@@ -86,10 +86,10 @@ private:
         if (channel.kind != Channel::Kind::vector) return {};
         const std::string next = column_name(channel, channel.width);
         if (!columns_.contains(next)) return {};
-        return Failure{
-            Code::trace_shape,
-            fmt::format("has a column {}, but input '{}' has {} elements", quoted(next), channel.name, channel.width),
-            1};
+        return Failure{Code::trace_shape,
+                       fmt::format("has a column {}, but input '{}' has {} elements", in_quotes(next), channel.name,
+                                   channel.width),
+                       1, 1};
     }
 
     std::vector<std::string> names_;
@@ -132,8 +132,8 @@ private:
         if (!sound)
             return Failure{Code::not_a_number,
                            fmt::format("column {} holds {}, expected {}",
-                                       quoted(column_name(channels_[slot.channel], slot.element)),
-                                       quoted(rows_->cell(slot.column)), boolean ? "0 or 1" : "a number"),
+                                       in_quotes(column_name(channels_[slot.channel], slot.element)),
+                                       in_quotes(rows_->cell(slot.column)), boolean ? "0 or 1" : "a number"),
                            rows_->line(slot.column), rows_->column(slot.column)};
         sample.values[slot.channel][slot.element] = std::isfinite(*value) ? *value : kNaN;
         return {};

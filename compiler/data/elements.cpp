@@ -84,30 +84,18 @@ double half_to_double(std::uint16_t bits) {
 
 std::size_t decode(Element element, const char* bytes, std::size_t n, double* to) {
     switch (element) {
-        case Element::f16:
-            return decode_each<std::uint16_t>(bytes, n, to, half_to_double);
-        case Element::f32:
-            return decode_as<std::uint32_t, float>(bytes, n, to);
-        case Element::f64:
-            return decode_as<std::uint64_t, double>(bytes, n, to);
-        case Element::i8:
-            return decode_as<std::uint8_t, std::int8_t>(bytes, n, to);
-        case Element::i16:
-            return decode_as<std::uint16_t, std::int16_t>(bytes, n, to);
-        case Element::i32:
-            return decode_as<std::uint32_t, std::int32_t>(bytes, n, to);
-        case Element::i64:
-            return decode_as<std::uint64_t, std::int64_t>(bytes, n, to);
-        case Element::u8:
-            return decode_as<std::uint8_t, std::uint8_t>(bytes, n, to);
-        case Element::u16:
-            return decode_as<std::uint16_t, std::uint16_t>(bytes, n, to);
-        case Element::u32:
-            return decode_as<std::uint32_t, std::uint32_t>(bytes, n, to);
-        case Element::u64:
-            return decode_as<std::uint64_t, std::uint64_t>(bytes, n, to);
-        case Element::boolean:
-            return decode_booleans(bytes, n, to);
+        case Element::f16: return decode_each<std::uint16_t>(bytes, n, to, half_to_double);
+        case Element::f32: return decode_as<std::uint32_t, float>(bytes, n, to);
+        case Element::f64: return decode_as<std::uint64_t, double>(bytes, n, to);
+        case Element::i8: return decode_as<std::uint8_t, std::int8_t>(bytes, n, to);
+        case Element::i16: return decode_as<std::uint16_t, std::int16_t>(bytes, n, to);
+        case Element::i32: return decode_as<std::uint32_t, std::int32_t>(bytes, n, to);
+        case Element::i64: return decode_as<std::uint64_t, std::int64_t>(bytes, n, to);
+        case Element::u8: return decode_as<std::uint8_t, std::uint8_t>(bytes, n, to);
+        case Element::u16: return decode_as<std::uint16_t, std::uint16_t>(bytes, n, to);
+        case Element::u32: return decode_as<std::uint32_t, std::uint32_t>(bytes, n, to);
+        case Element::u64: return decode_as<std::uint64_t, std::uint64_t>(bytes, n, to);
+        case Element::boolean: return decode_booleans(bytes, n, to);
     }
     return 0;
 }

@@ -22,17 +22,12 @@ struct CloseFile {
 std::string words(int error) {
     switch (error) {
         case ENOENT:
-        case ENOTDIR:
-            return "no such file";
-        case EISDIR:
-            return "is a directory, expected a file";
+        case ENOTDIR: return "no such file";
+        case EISDIR: return "is a directory, expected a file";
         case EACCES:
-        case EPERM:
-            return "permission denied";
-        case ENOSPC:
-            return "no space left on the device";
-        default:
-            return std::strerror(error);
+        case EPERM: return "permission denied";
+        case ENOSPC: return "no space left on the device";
+        default: return std::strerror(error);
     }
 }
 

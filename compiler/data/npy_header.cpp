@@ -37,7 +37,7 @@ public:
         }
         expect('}');
         if (!failure_ && peek() != '\0')
-            fail(fmt::format("header goes on after its '}}': {}", quoted(text_.substr(at_))));
+            fail(fmt::format("header goes on after its '}}': {}", in_quotes(text_.substr(at_))));
         for (const Key& key : keys_)
             if (!failure_ && !key.seen) fail(fmt::format("header has no key '{}'", key.name));
         return failure_;
@@ -60,7 +60,7 @@ private:
             key.seen = true;
             return (this->*key.value)(header);
         }
-        fail(fmt::format("header has the key {}, expected 'descr', 'fortran_order' and 'shape'", quoted(name)));
+        fail(fmt::format("header has the key {}, expected 'descr', 'fortran_order' and 'shape'", in_quotes(name)));
     }
 
     void descr(NpyHeader& header) {
@@ -73,27 +73,21 @@ private:
         if (element && order == '>' && info(*element).bytes > 1)
             return fail_elements(fmt::format("big-endian elements, '{}'", text));
         if (!element || (order != '<' && order != '|' && order != '>'))
-            return fail_elements(fmt::format("elements of type {}{}", quoted(text), kind_of(code)));
+            return fail_elements(fmt::format("elements of type {}{}", in_quotes(text), kind_of(code)));
         header.element = *element;
     }
 
     /// What a numpy type code that is not read stands for, as " (Python objects)".
     static std::string_view kind_of(std::string_view code) {
         switch (code.empty() ? ' ' : code.front()) {
-            case 'O':
-                return " (Python objects)";
-            case 'c':
-                return " (complex numbers)";
+            case 'O': return " (Python objects)";
+            case 'c': return " (complex numbers)";
             case 'S':
-            case 'U':
-                return " (text)";
+            case 'U': return " (text)";
             case 'M':
-            case 'm':
-                return " (times)";
-            case 'V':
-                return " (raw bytes)";
-            default:
-                return "";
+            case 'm': return " (times)";
+            case 'V': return " (raw bytes)";
+            default: return "";
         }
     }
 
@@ -103,7 +97,7 @@ private:
         header.fortran_order = rest.starts_with("True");
         if (!header.fortran_order && !rest.starts_with("False"))
             return fail(
-                fmt::format("header's 'fortran_order' is {}, expected True or False", quoted(rest.substr(0, 10))));
+                fmt::format("header's 'fortran_order' is {}, expected True or False", in_quotes(rest.substr(0, 10))));
         at_ += header.fortran_order ? 4 : 5;
     }
 
@@ -127,7 +121,7 @@ private:
             return 0;
         }
         if (error != std::errc()) {
-            fail(fmt::format("header's 'shape' holds {}, expected a dimension", quoted(text_.substr(at_, 10))));
+            fail(fmt::format("header's 'shape' holds {}, expected a dimension", in_quotes(text_.substr(at_, 10))));
             return 0;
         }
         at_ = static_cast<std::size_t>(end - text_.data());
@@ -166,7 +160,7 @@ private:
         return at_ < text_.size() ? text_[at_] : '\0';
     }
 
-    std::string found() const { return at_ < text_.size() ? quoted(text_.substr(at_, 1)) : "its end"; }
+    std::string found() const { return at_ < text_.size() ? in_quotes(text_.substr(at_, 1)) : "its end"; }
 
     void fail(std::string message) {
         if (!failure_) failure_ = malformed(std::move(message));
@@ -225,7 +219,7 @@ diag::Result<NpyHeader> read_npy_header(ByteSource& source) {
     if (!start) return start.failure();
     if (!start->starts_with(kMagic))
         return malformed(fmt::format("is no .npy array: begins with {}, expected {}",
-                                     quoted(std::string_view(*start).substr(0, kMagic.size())), quoted(kMagic)));
+                                     in_quotes(std::string_view(*start).substr(0, kMagic.size())), in_quotes(kMagic)));
     const int major = static_cast<unsigned char>((*start)[6]);
     const int minor = static_cast<unsigned char>((*start)[7]);
     if (major < 1 || major > 3 || minor != 0)

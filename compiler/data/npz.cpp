@@ -29,7 +29,7 @@ diag::Result<Array> read_from(const ArchivePlace& place, const std::string& key)
     const auto member = archive->member(*chosen);
     if (!member) return located(member.failure(), place.path);
     auto array = read_npy_from(**member);
-    if (!array) return located(array.failure(), fmt::format("{}: array {}", place.path, quoted(*chosen)));
+    if (!array) return located(array.failure(), fmt::format("{}: array {}", place.path, in_quotes(*chosen)));
     return array;
 }
 
@@ -51,7 +51,7 @@ diag::Result<Array> read_array(const std::string& path, const std::string& key) 
     if (!key.empty())
         return Failure{
             Code::key_without_archive,
-            fmt::format("{}: the key {} has no meaning for an .npy file, which holds one array", path, quoted(key))};
+            fmt::format("{}: the key {} has no meaning for an .npy file, which holds one array", path, in_quotes(key))};
     return read_npy(path);
 }
 

@@ -26,7 +26,7 @@ struct Feed {
 };
 
 Failure in_array(const Failure& failure, const Channel& channel) {
-    return of_trace(located(failure, fmt::format("array {}", quoted(channel.name))));
+    return of_trace(located(failure, fmt::format("array {}", in_quotes(channel.name))));
 }
 
 std::optional<Failure> check_elements(const NpyHeader& header, const Channel& channel) {
@@ -86,7 +86,7 @@ private:
                 value = std::numeric_limits<double>::quiet_NaN();
             } else if (channel.kind == Kind::boolean && value != 0 && value != 1) {
                 return Failure{Code::trace_elements, fmt::format("array {}: holds {} in step {}, expected 0 or 1",
-                                                                 quoted(channel.name), value, step_)};
+                                                                 in_quotes(channel.name), value, step_)};
             }
         }
         return {};
@@ -101,26 +101,15 @@ private:
 
 diag::Failure of_trace(Failure failure) {
     switch (failure.code) {
-        case Code::unreadable_data_file:
-            failure.code = Code::unreadable_trace;
-            break;
-        case Code::unknown_data_format:
-            failure.code = Code::unknown_trace_format;
-            break;
-        case Code::unsupported_elements:
-            failure.code = Code::trace_elements;
-            break;
-        case Code::no_such_array:
-            failure.code = Code::no_such_channel;
-            break;
+        case Code::unreadable_data_file: failure.code = Code::unreadable_trace; break;
+        case Code::unknown_data_format: failure.code = Code::unknown_trace_format; break;
+        case Code::unsupported_elements: failure.code = Code::trace_elements; break;
+        case Code::no_such_array: failure.code = Code::no_such_channel; break;
         case Code::malformed_array:
         case Code::wrong_array_size:
         case Code::array_too_large:
-        case Code::malformed_archive:
-            failure.code = Code::malformed_trace_array;
-            break;
-        default:
-            break;
+        case Code::malformed_archive: failure.code = Code::malformed_trace_array; break;
+        default: break;
     }
     return failure;
 }
@@ -138,8 +127,8 @@ diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place, c
         const auto& last = feeds.back();
         if (last.header.shape[0] != first.header.shape[0])
             return Failure{Code::trace_shape, fmt::format("arrays differ in length: {} has {} steps, {} has {}",
-                                                          quoted(first.channel.name), first.header.shape[0],
-                                                          quoted(channel.name), last.header.shape[0])};
+                                                          in_quotes(first.channel.name), first.header.shape[0],
+                                                          in_quotes(channel.name), last.header.shape[0])};
     }
     return std::unique_ptr<Trace>(std::make_unique<NpzTrace>(std::move(feeds)));
 }

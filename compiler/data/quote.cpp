@@ -34,7 +34,7 @@ std::size_t character(std::string_view text) {
 
 }  // namespace
 
-std::string quoted(std::string_view text) {
+std::string in_quotes(std::string_view text) {
     std::string result = "'";
     std::size_t i = 0;
     while (i < text.size() && i < kMaxQuoted) {
@@ -58,7 +58,7 @@ std::string listed(const std::vector<std::string>& names) {
     const std::size_t hidden = names.size() - shown;
     for (std::size_t i = 0; i < shown; ++i) {
         if (i > 0) result += i + 1 == shown && hidden == 0 ? " and " : ", ";
-        result += quoted(names[i]);
+        result += in_quotes(names[i]);
     }
     if (hidden > 0) result += fmt::format(" and {} more", hidden);
     return result;

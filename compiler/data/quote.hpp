@@ -9,7 +9,7 @@
 
 namespace etlc::data {
 
-std::string quoted(std::string_view text);
+std::string in_quotes(std::string_view text);
 
 /// 'a', 'b' and 'c'; of a long list the first few and a count.
 std::string listed(const std::vector<std::string>& names);

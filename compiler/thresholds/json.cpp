@@ -36,8 +36,8 @@ public:
 
     bool key(std::string& name) {
         if (!seen_.back().insert(name).second) {
-            failure_ =
-                Failure{Code::invalid_thresholds, fmt::format("key {} stands twice in one object", data::quoted(name))};
+            failure_ = Failure{Code::invalid_thresholds,
+                               fmt::format("key {} stands twice in one object", data::in_quotes(name))};
             return false;
         }
         open_.back()->keys.push_back(std::move(name));
@@ -48,7 +48,7 @@ public:
         constexpr int kNumberOverflow = 406;
         const bool overflow = error.id == kNumberOverflow;
         const bool at_end = position > text_.size();
-        std::string what = at_end ? "its end" : data::quoted(last_token);
+        std::string what = at_end ? "its end" : data::in_quotes(last_token);
         if (overflow) what = "a number that no double holds";
         const source::Position place = place_of(position);
         failure_ = Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what), place.line,
@@ -138,18 +138,12 @@ diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values)
 
 std::string describe(const Json& json) {
     switch (json.kind) {
-        case Json::Kind::null:
-            return "null";
-        case Json::Kind::boolean:
-            return json.text;
-        case Json::Kind::number:
-            return data::quoted(json.text);
-        case Json::Kind::string:
-            return fmt::format("the text {}", data::quoted(json.text));
-        case Json::Kind::array:
-            return "an array";
-        case Json::Kind::object:
-            return "an object";
+        case Json::Kind::null: return "null";
+        case Json::Kind::boolean: return json.text;
+        case Json::Kind::number: return data::in_quotes(json.text);
+        case Json::Kind::string: return fmt::format("the text {}", data::in_quotes(json.text));
+        case Json::Kind::array: return "an array";
+        case Json::Kind::object: return "an object";
     }
     return "nothing";
 }

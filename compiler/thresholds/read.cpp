@@ -15,7 +15,7 @@
 namespace etlc::thresholds {
 namespace {
 
-using data::quoted;
+using data::in_quotes;
 using diag::Code;
 using diag::Failure;
 
@@ -51,7 +51,7 @@ private:
         if (format != nullptr && format->text != "1")
             failure_ =
                 Failure{Code::unknown_thresholds_format,
-                        fmt::format("'format' is {}, expected 1, the one this version reads", quoted(format->text))};
+                        fmt::format("'format' is {}, expected 1, the one this version reads", in_quotes(format->text))};
     }
 
     /// `what` is the key of the canonical text: "predicate" or "formula".
@@ -174,7 +174,7 @@ private:
         const Json* value = object.find(key);
         if (value == nullptr) {
             failure_ = Failure{Code::invalid_thresholds,
-                               fmt::format("key {} is missing, expected {}", quoted(place), expected)};
+                               fmt::format("key {} is missing, expected {}", in_quotes(place), expected)};
             return nullptr;
         }
         if (value->kind == kind) return value;
@@ -186,16 +186,16 @@ private:
         for (const std::string& key : object.keys) {
             if (failure_) return;
             if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-            std::string message = fmt::format("unknown key {}", quoted(path.empty() ? key : path + "." + key));
+            std::string message = fmt::format("unknown key {}", in_quotes(path.empty() ? key : path + "." + key));
             if (auto nearest = diag::nearest_name(key, known))
-                message += fmt::format("; did you mean {}?", quoted(*nearest));
+                message += fmt::format("; did you mean {}?", in_quotes(*nearest));
             failure_ = Failure{Code::invalid_thresholds, message};
         }
     }
 
     void fail(const std::string& place, const Json& found, const std::string& expected) {
         if (failure_) return;
-        const std::string subject = place.empty() ? "the file" : quoted(place);
+        const std::string subject = place.empty() ? "the file" : in_quotes(place);
         failure_ =
             Failure{Code::invalid_thresholds, fmt::format("{} is {}, expected {}", subject, describe(found), expected)};
     }

@@ -1,0 +1,58 @@
+// Bytes of .npy and .npz files for tests, sound ones and broken ones.
+// Takes: header parts, members. Gives: the file's bytes. Keeps true: nothing is checked, so that tests can lie.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace etlc::tests {
+
+/// A header dictionary as numpy writes it.
+std::string npy_dictionary(const std::string& descr, bool fortran_order, const std::string& shape);
+
+/// Magic word, version, length, `dictionary` padded to 64 bytes and a line feed, `data`.
+std::string npy_raw(const std::string& dictionary, const std::string& data, int major = 1);
+
+/// npy_raw(npy_dictionary(...), data)
+std::string npy(const std::string& descr, const std::string& shape, const std::string& data,
+                bool fortran_order = false);
+
+/// The little-endian bytes of float32 numbers.
+std::string floats(const std::vector<float>& values);
+
+struct Member {
+    std::string name;
+    std::string bytes;
+    bool deflated = true;
+    bool encrypted = false;
+};
+
+/// A zip archive of the members, made by libzip in a temporary file.
+std::string zip_of(const std::vector<Member>& members);
+
+/// `bytes` with every `from` replaced by `to`, which has the same length. Fails the test where there is none.
+std::string patched(std::string bytes, const std::string& from, const std::string& to);
+
+/// `n` as `width` little-endian bytes.
+std::string little_endian(std::uint64_t n, int width);
+
+/// A file in the test's temporary folder, removed with the object.
+class TemporaryPath {
+public:
+    explicit TemporaryPath(const std::string& name);
+    TemporaryPath(const std::string& name, const std::string& bytes);
+    TemporaryPath(const TemporaryPath&) = delete;
+    TemporaryPath& operator=(const TemporaryPath&) = delete;
+    ~TemporaryPath();
+
+    const std::string& path() const { return path_; }
+
+private:
+    std::string folder_;
+    std::string path_;
+};
+
+std::string file_bytes(const std::string& path);
+
+}  // namespace etlc::tests

@@ -1,0 +1,155 @@
+// .npz files: members stored and deflated, keys, and archives that lie.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include "data/array.hpp"
+#include "npy_bytes.hpp"
+
+namespace etlc::data {
+namespace {
+
+using diag::Code;
+using tests::floats;
+using tests::npy;
+using tests::patched;
+using tests::zip_of;
+
+const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
+
+TEST(Npz, StoredAndDeflatedGiveTheSame) {
+    for (const char* file : {"stored.npz", "deflated.npz"}) {
+        for (const char* key : {"goal", "half", "turned"}) {
+            const auto array = read_npz(kFolder + file, key);
+            ASSERT_TRUE(array) << array.failure().message;
+            EXPECT_EQ(array->shape_text(), "(3, 4)");
+            for (int k = 0; k < 12; ++k) EXPECT_EQ(array->values[k], (k - 2) * 0.5) << file << " " << key << " " << k;
+        }
+    }
+}
+
+TEST(Npz, TheOnlyArrayNeedsNoKey) {
+    ASSERT_TRUE(read_npz(kFolder + "single.npz", ""));
+    const auto which = read_npz(kFolder + "stored.npz", "");
+    ASSERT_FALSE(which);
+    EXPECT_EQ(which.failure().code, Code::no_such_array);
+    EXPECT_EQ(which.failure().message,
+              kFolder + "stored.npz: holds 3 arrays, 'goal', 'half' and 'turned'; expected the key of one of them");
+}
+
+const std::string kTwo = floats({1, 2});
+
+/// The archive of one array `z`; `from` becomes `to` in both of its headers.
+std::string archive(bool deflated = true) {
+    return zip_of({{"z.npy", npy("<f4", "(2,)", kTwo), deflated}});
+}
+
+struct Broken {
+    std::string what;
+    std::string bytes;
+    std::string key;
+    Code code;
+    std::string message;  ///< after "goal.npz: "
+};
+
+std::vector<Broken> broken() {
+    const std::string array = npy("<f4", "(2,)", kTwo);
+    const std::string stored = archive(false);
+    const std::string two_z = patched(zip_of({{"z1.npy", array}, {"z2.npy", array}}), "z2.npy", "z1.npy");
+    // The central directory's copy of the header names the method 10 bytes in, the local one 8 bytes in.
+    std::string method = stored;
+    method[8] = 12;
+    method[stored.find("PK\x01\x02") + 10] = 12;
+    const std::string wrong_data = patched(stored, kTwo, floats({1, 3}));
+    const std::string size = tests::little_endian(array.size(), 4);
+    std::vector<tests::Member> many;
+    for (int i = 0; i < 12; ++i) many.push_back({fmt::format("a{}.npy", i), array});
+    return {
+        {"empty", "", "z", Code::no_such_array, "holds no arrays, expected 'z'"},
+        {"no zip", array, "z", Code::malformed_archive, "is no .npz file: not a zip archive"},
+        {"no arrays", zip_of({{"readme.txt", "x"}}), "z", Code::no_such_array, "holds no arrays, expected 'z'"},
+        {"no arrays, no key", zip_of({{"readme.txt", "x"}}), "", Code::no_such_array, "holds no arrays"},
+        {"missing key", zip_of({{"goal_a.npy", array}, {"goal_b.npy", array}}), "gaol_a", Code::no_such_array,
+         "has no array 'gaol_a'; it holds 'goal_a' and 'goal_b'; did you mean 'goal_a'?"},
+        {"missing key of many", zip_of(many), "other", Code::no_such_array,
+         "has no array 'other'; it holds 'a0', 'a1', 'a2', 'a3', 'a4', 'a5', 'a6', 'a7', 'a8', 'a9' and 2 more"},
+        {"key twice", two_z, "z1", Code::no_such_array, "holds two arrays named 'z1'"},
+        {"encrypted", zip_of({{"z.npy", array, true, true}}), "z", Code::malformed_archive,
+         "array 'z': is encrypted, expected plain members"},
+        {"method", method, "z", Code::malformed_archive,
+         "array 'z': is packed by zip method 12, expected 0 (stored) or 8 (deflated)"},
+        {"checksum", wrong_data, "z", Code::malformed_archive, "array 'z': archive is damaged: CRC error"},
+        {"header promises more than the entry has", zip_of({{"z.npy", npy("<f4", "(250000000,)", kTwo)}}), "z",
+         Code::wrong_array_size,
+         "array 'z': array is cut short: float32 of shape (250000000,) takes 1000000000 bytes, 8 are there"},
+        {"entry has more than the header promises", zip_of({{"z.npy", npy("<f4", "(1,)", std::string(1 << 24, '\0'))}}),
+         "z", Code::wrong_array_size,
+         "array 'z': array has bytes left over: float32 of shape (1,) takes 4 bytes, 16777216 are there"},
+        {"not an array", zip_of({{"z.npy", "hello, hello"}}), "z", Code::malformed_array,
+         "array 'z': is no .npy array: begins with 'hello,', expected '\\x93NUMPY'"},
+        {"directory says the member is larger", patched(stored, size, tests::little_endian(array.size() + 4, 4)), "z",
+         Code::wrong_array_size,
+         "array 'z': array has bytes left over: float32 of shape (2,) takes 8 bytes, 12 are there"},
+    };
+}
+
+TEST(Npz, EveryFaultHasItsMessage) {
+    for (const Broken& one : broken()) {
+        const auto array = parse_npz(one.bytes, "goal.npz", one.key);
+        ASSERT_FALSE(array) << one.what;
+        EXPECT_EQ(array.failure().code, one.code) << one.what;
+        EXPECT_EQ(array.failure().message, "goal.npz: " + one.message) << one.what;
+    }
+}
+
+TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
+    const auto array = read_npz(kFolder + "bzip2.npz", "goal");
+    ASSERT_FALSE(array);
+    EXPECT_EQ(array.failure().message,
+              kFolder + "bzip2.npz: array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");
+}
+
+TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
+    // Header and directory promise 400 MB alike, 8 bytes of data are there.
+    const std::string lie = npy("<f4", "(100000000,)", kTwo);
+    const std::string header_only = lie.substr(0, lie.size() - kTwo.size());
+    const std::string bytes = patched(zip_of({{"z.npy", lie, false}}), tests::little_endian(lie.size(), 4),
+                                      tests::little_endian(header_only.size() + 400000000, 4));
+    const auto array = parse_npz(bytes, "bomb.npz", "z");
+    ASSERT_FALSE(array);
+    EXPECT_EQ(array.failure().code, Code::malformed_archive) << array.failure().message;
+}
+
+TEST(Npz, CutAnywhere) {
+    for (const bool deflated : {false, true}) {
+        const std::string whole = archive(deflated);
+        ASSERT_TRUE(parse_npz(whole, "x", "z"));
+        for (std::size_t n = 0; n < whole.size(); ++n) {
+            const auto array = parse_npz(whole.substr(0, n), "x", "z");
+            ASSERT_FALSE(array) << n;
+            EXPECT_TRUE(array.failure().message.starts_with("x: ")) << array.failure().message;
+        }
+    }
+}
+
+TEST(Npz, AnyByteChangedIsSoundOrAnError) {
+    const std::string whole = archive();
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+        for (const int change : {0x01, 0x80, 0xff}) {
+            std::string bytes = whole;
+            bytes[i] = static_cast<char>(bytes[i] ^ change);
+            const auto array = parse_npz(bytes, "x", "z");
+            // The checksum leaves no way to other values.
+            EXPECT_TRUE(!array || array->values == (std::vector<double>{1, 2})) << i;
+        }
+    }
+}
+
+TEST(Npz, FilesThatCannotBeRead) {
+    const auto missing = read_npz("no_such.npz", "z");
+    ASSERT_FALSE(missing);
+    EXPECT_EQ(missing.failure().code, Code::unreadable_data_file);
+    EXPECT_EQ(missing.failure().message, "no_such.npz: no such file");
+}
+
+}  // namespace
+}  // namespace etlc::data
