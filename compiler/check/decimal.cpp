@@ -86,16 +86,17 @@ std::optional<std::uint64_t> Decimal::whole(std::uint64_t limit) const {
 
 std::string Decimal::text() const {
     if (is_zero()) return "0";
-    const std::string sign = negative ? "-" : "";
+    std::string text = negative ? "-" : "";
     const auto size = static_cast<std::int64_t>(digits.size());
     if (exponent > kPlainDigits || exponent < -kPlainZeros) {
-        const std::string fraction = size > 1 ? "." + digits.substr(1) : "";
-        return sign + digits[0] + fraction + "e" + std::to_string(exponent - 1);
+        text += digits[0];
+        if (size > 1) text.append(".").append(digits, 1);
+        return text.append("e").append(std::to_string(exponent - 1));
     }
-    if (exponent <= 0) return sign + "0." + std::string(static_cast<std::size_t>(-exponent), '0') + digits;
+    if (exponent <= 0) return text.append("0.").append(static_cast<std::size_t>(-exponent), '0').append(digits);
     const auto point = static_cast<std::size_t>(exponent);
-    if (size <= exponent) return sign + digits + std::string(point - digits.size(), '0');
-    return sign + digits.substr(0, point) + "." + digits.substr(point);
+    if (size <= exponent) return text.append(digits).append(point - digits.size(), '0');
+    return text.append(digits, 0, point).append(".").append(digits, point);
 }
 
 std::strong_ordering Decimal::operator<=>(const Decimal& other) const {

@@ -208,6 +208,7 @@ struct Model {
 /// out, except in formulas of more than kMaxPrinted operators and atoms: there the names of lets stand below the top.
 std::string print(const Model& model, Index formula);
 inline constexpr std::uint64_t kMaxPrinted = 1000;
+bool lets_are_written_out(const Model& model, Index formula);
 
 /// The expression as canonical text: equal values of numbers are written alike.
 std::string print(const Model& model, const Expr& expression);

@@ -23,49 +23,31 @@ struct Operator {
 
 Operator operator_of(Kind kind) {
     switch (kind) {
-        case Kind::equivalence:
-            return {"<->", kIff};
-        case Kind::implication:
-            return {"->", kImplies};
-        case Kind::disjunction:
-            return {"||", kOr};
-        case Kind::conjunction:
-            return {"&&", kAnd};
-        case Kind::until:
-            return {"U", kUntil};
-        case Kind::weak_until:
-            return {"W", kUntil};
-        case Kind::release:
-            return {"R", kUntil};
-        case Kind::since:
-            return {"S", kUntil};
-        case Kind::negation:
-            return {"!", kPrefix};
-        case Kind::next:
-            return {"X", kPrefix};
-        case Kind::eventually:
-            return {"F", kPrefix};
-        case Kind::always:
-            return {"G", kPrefix};
-        case Kind::previous:
-            return {"Y", kPrefix};
-        case Kind::once:
-            return {"O", kPrefix};
-        case Kind::historically:
-            return {"H", kPrefix};
-        case Kind::constant_true:
-            return {"true", kAtom};
-        case Kind::constant_false:
-            return {"false", kAtom};
+        case Kind::equivalence: return {"<->", kIff};
+        case Kind::implication: return {"->", kImplies};
+        case Kind::disjunction: return {"||", kOr};
+        case Kind::conjunction: return {"&&", kAnd};
+        case Kind::until: return {"U", kUntil};
+        case Kind::weak_until: return {"W", kUntil};
+        case Kind::release: return {"R", kUntil};
+        case Kind::since: return {"S", kUntil};
+        case Kind::negation: return {"!", kPrefix};
+        case Kind::next: return {"X", kPrefix};
+        case Kind::eventually: return {"F", kPrefix};
+        case Kind::always: return {"G", kPrefix};
+        case Kind::previous: return {"Y", kPrefix};
+        case Kind::once: return {"O", kPrefix};
+        case Kind::historically: return {"H", kPrefix};
+        case Kind::constant_true: return {"true", kAtom};
+        case Kind::constant_false: return {"false", kAtom};
         case Kind::predicate:
-        case Kind::boolean_input:
-            break;
+        case Kind::boolean_input: break;
     }
     return {"", kAtom};
 }
 
 /// Sizes of the formulas up to `formula` with every let written out, saturating.
-std::uint64_t written_out(const Model& model, Index formula) {
+std::uint64_t written_out_size(const Model& model, Index formula) {
     constexpr std::uint64_t kMany = std::numeric_limits<std::uint32_t>::max();
     std::vector<std::uint64_t> size(formula + 1, 1);
     for (Index i = 0; i <= formula; ++i)
@@ -76,7 +58,7 @@ std::uint64_t written_out(const Model& model, Index formula) {
 class FormulaPrinter {
 public:
     FormulaPrinter(const Model& model, Index root) : model_(model), root_(root) {
-        if (written_out(model, root) <= kMaxPrinted) return;
+        if (lets_are_written_out(model, root)) return;
         for (const Let& let : model.lets)
             if (let.formula != kNone) let_names_.try_emplace(let.formula, let.name);
     }
@@ -175,47 +157,29 @@ void write_binary(const Model& model, const Expr& expression, ExprLevel level, s
 
 void write(const Model& model, const Expr& expression, int weakest, std::string& out) {
     switch (expression.kind) {
-        case ExprKind::number:
-            out += Decimal::parse(expression.text).text();
-            return;
-        case ExprKind::scalar:
-            out += model.inputs[expression.index].name;
-            return;
-        case ExprKind::distance:
-            out += model.distances[expression.index].text;
-            return;
+        case ExprKind::number: out += Decimal::parse(expression.text).text(); return;
+        case ExprKind::scalar: out += model.inputs[expression.index].name; return;
+        case ExprKind::distance: out += model.distances[expression.index].text; return;
         case ExprKind::negate:
             out += '-';
             write(model, expression.arguments[0], kNegation, out);
             return;
-        case ExprKind::add:
-            write_binary(model, expression, kSum, " + ", weakest, out);
-            return;
-        case ExprKind::subtract:
-            write_binary(model, expression, kSum, " - ", weakest, out);
-            return;
-        case ExprKind::multiply:
-            write_binary(model, expression, kProduct, " * ", weakest, out);
-            return;
-        case ExprKind::divide:
-            write_binary(model, expression, kProduct, " / ", weakest, out);
-            return;
-        case ExprKind::abs:
-            write_call(model, expression, "abs", out);
-            return;
-        case ExprKind::sqrt:
-            write_call(model, expression, "sqrt", out);
-            return;
-        case ExprKind::min:
-            write_call(model, expression, "min", out);
-            return;
-        case ExprKind::max:
-            write_call(model, expression, "max", out);
-            return;
+        case ExprKind::add: write_binary(model, expression, kSum, " + ", weakest, out); return;
+        case ExprKind::subtract: write_binary(model, expression, kSum, " - ", weakest, out); return;
+        case ExprKind::multiply: write_binary(model, expression, kProduct, " * ", weakest, out); return;
+        case ExprKind::divide: write_binary(model, expression, kProduct, " / ", weakest, out); return;
+        case ExprKind::abs: write_call(model, expression, "abs", out); return;
+        case ExprKind::sqrt: write_call(model, expression, "sqrt", out); return;
+        case ExprKind::min: write_call(model, expression, "min", out); return;
+        case ExprKind::max: write_call(model, expression, "max", out); return;
     }
 }
 
 }  // namespace
+
+bool lets_are_written_out(const Model& model, Index formula) {
+    return written_out_size(model, formula) <= kMaxPrinted;
+}
 
 std::string print(const Model& model, Index formula) {
     return FormulaPrinter(model, formula).print();

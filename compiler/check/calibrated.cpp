@@ -1,0 +1,100 @@
+#include "check/calibrated.hpp"
+
+#include <fmt/format.h>
+
+#include <limits>
+
+#include "check/decimal.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+struct Method {
+    std::string_view name;
+    ThresholdOrigin origin;
+    bool has_alpha;
+};
+
+constexpr std::array kMethods = std::to_array<Method>({
+    {"f1", ThresholdOrigin::f1, false},
+    {"conformal", ThresholdOrigin::conformal, true},
+    {"class_conditional", ThresholdOrigin::class_conditional, true},
+});
+
+const Method* find_method(Context& c, const ast::Name& name) {
+    for (const Method& method : kMethods)
+        if (method.name == name.text) return &method;
+    if (name.text == "adaptive") {
+        c.report(Code::calibration_not_available, name.span, "adaptive thresholds are not available in this version")
+            .note("the methods are f1, conformal and class_conditional");
+        return nullptr;
+    }
+    auto& error = c.report(
+        Code::unknown_method, name.span,
+        fmt::format("'{}' is not a calibration method; expected f1, conformal or class_conditional", name.text));
+    if (const auto near = diag::nearest_name(name.text, {"f1", "conformal", "class_conditional"}))
+        error.note(fmt::format("did you mean '{}'?", *near));
+    return nullptr;
+}
+
+bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
+    if (argument.key.text != "alpha") return false;
+    const auto* number = std::get_if<ast::Number>(&argument.value);
+    const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
+                           Decimal::parse(number->text) < Decimal::parse("1");
+    if (open_unit) return true;
+    const auto [text, span] = number != nullptr ? std::pair(number->text, number->span)
+                                                : std::pair(std::get<ast::Name>(argument.value).text,
+                                                            std::get<ast::Name>(argument.value).span);
+    c.report(Code::calibration_argument, span,
+             fmt::format("alpha = {}; expected a number between 0 and 1, neither of them", text));
+    return false;
+}
+
+/// The text of alpha, empty for a method without; nothing where an argument had an error.
+std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, const Method& method) {
+    std::string alpha;
+    const std::size_t errors = c.sink.errors();
+    for (const ast::Calibrated::Argument& argument : written.arguments) {
+        if (argument.key.text != "alpha" || !method.has_alpha) {
+            c.report(Code::calibration_argument, argument.key.span,
+                     method.has_alpha
+                         ? fmt::format("{} has no argument '{}'; expected alpha", method.name, argument.key.text)
+                         : fmt::format("{} has no arguments", method.name));
+            continue;
+        }
+        if (!alpha.empty()) c.report(Code::calibration_argument, argument.key.span, "alpha is given twice");
+        if (is_alpha(c, argument)) alpha = std::get<ast::Number>(argument.value).text;
+    }
+    if (c.sink.errors() > errors) return std::nullopt;
+    if (method.has_alpha && alpha.empty()) {
+        c.report(
+            Code::calibration_argument, written.span,
+            fmt::format("{} needs its error rate; expected calibrated({}, alpha = 0.1)", method.name, method.name));
+        return std::nullopt;
+    }
+    return alpha;
+}
+
+}  // namespace
+
+std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& written) {
+    const Method* method = find_method(c, written.method);
+    if (method == nullptr) return std::nullopt;
+    const auto alpha = alpha_of(c, written, *method);
+    if (!alpha) return std::nullopt;
+    Threshold threshold;
+    threshold.origin = method->origin;
+    threshold.alpha = *alpha;
+    threshold.text = method->has_alpha ? fmt::format("calibrated({}, alpha = {})", method->name, *alpha)
+                                       : fmt::format("calibrated({})", method->name);
+    threshold.value64 = std::numeric_limits<double>::quiet_NaN();
+    threshold.value = std::numeric_limits<float>::quiet_NaN();
+    threshold.span = written.span;
+    return threshold;
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,29 @@
+#include "check/check.hpp"
+
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options, diag::Sink& sink) {
+    Context context{spec, file, options, sink};
+    context.incomplete = sink.has_errors();
+    context.model.file = file;
+
+    declare_names(context);
+    check_rate(context);
+    check_inputs(context);
+    check_targets(context);
+    check_predicates(context);
+    check_lets(context);
+    check_truths(context);
+    check_monitors(context);
+    check_thresholds(context);
+    set_robustness(context);
+    warn(context);
+
+    if (sink.has_errors()) return std::nullopt;
+    context.model.dependencies.assign(context.dependencies.begin(), context.dependencies.end());
+    return std::move(context.model);
+}
+
+}  // namespace etlc::check

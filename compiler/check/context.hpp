@@ -1,0 +1,77 @@
+// What the steps of check share while they build the model.
+// Takes: the tree. Gives: the model under construction, the names, and the one way to report.
+// Keeps true: model.inputs, .targets, .lets and .monitors and the named predicates have one element a declaration, in
+// file order, from the start; an element that had an error is marked broken in `scope`.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <unordered_map>
+#include <unordered_set>
+#include <utility>
+#include <vector>
+
+#include "ast/ast.hpp"
+#include "check/check.hpp"
+#include "check/matrices.hpp"
+#include "check/model.hpp"
+#include "check/scope.hpp"
+#include "check/time.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::check {
+
+/// Formulas that nest deeper, their lets written out, are refused, so that later stages may recurse.
+inline constexpr std::uint32_t kMaxDepth = 1000;
+
+struct Context {
+    const ast::Spec& spec;
+    const source::File& file;
+    const Options& options;
+    diag::Sink& sink;
+
+    /// parse/ had errors: what is missing may stand in what it could not read.
+    bool incomplete = false;
+    Model model{};
+    Scope scope{};
+    StepLength step{};
+
+    /// Parallel to model.formulas.
+    std::vector<Span> operator_spans{};
+    std::vector<std::uint32_t> depths{};
+
+    /// Canonical text of what stands once in the model, to where it stands.
+    std::unordered_map<std::string, Index> distance_of_text{};
+    std::unordered_map<std::string, Index> predicate_of_text{};
+
+    std::unordered_set<std::string> unknown_names{};
+    /// Files read so far, by path and key; nothing for one that had an error.
+    std::map<std::pair<std::string, std::string>, std::optional<Matrix>> matrices{};
+    std::set<std::string> dependencies{};
+
+    diag::Diagnostic& report(diag::Code code, Span span, std::string message) {
+        return sink.report(code, span, std::move(message));
+    }
+};
+
+/// Declarations of one alternative, in file order.
+template <class T, class Visit>
+void for_each_declaration(const ast::Spec& spec, Visit visit) {
+    Index index = 0;
+    for (const ast::Declaration& declaration : spec.declarations)
+        if (const auto* found = std::get_if<T>(&declaration)) visit(*found, index++);
+}
+
+/// What `name` means; null, with a diagnostic at the first such use, where nothing declares it. `wanted` is what would
+/// fit here, in words ("a predicate, a let or a bool input"), `kinds` the kinds among which a near name is looked for.
+const Reference* find(Context& context, const ast::Name& name, const std::vector<NameKind>& kinds,
+                      std::string_view wanted);
+/// The same, and an error where the name is of another kind than `kind`. kNone: reported, or the declaration is broken.
+Index resolve(Context& context, const ast::Name& name, NameKind kind);
+
+/// The number rounded once to float32; overflow and underflow are reported, with 1 in its place.
+float number32(Context& context, const ast::Number& number);
+
+}  // namespace etlc::check

@@ -1,0 +1,25 @@
+// EXPR: scalars, numbers, aggregated distances and arithmetic on them.
+// Takes: the tree. Gives: the typed expression, its range, and what it reads.
+// Keeps true: equal distances stand once in the model; a tree is no deeper than parse/ lets it be.
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "check/context.hpp"
+
+namespace etlc::check {
+
+/// The typed expression; nothing where it had an error, which is reported.
+std::optional<Expr> check_expression(Context& context, const ast::Expr& expression);
+/// The distance's index in the model; kNone where it had an error, which is reported.
+Index check_distance(Context& context, const ast::Distance& distance);
+
+/// What the expression can be, by interval arithmetic. `undefined` is set to the part, if there is one, that has no
+/// value whatever the inputs are: the square root of numbers below zero, a division by zero.
+Range range_of(const Model& model, const Expr& expression, const Expr*& undefined);
+
+/// Inputs that the expression reads, ascending.
+std::vector<Index> inputs_of(const Model& model, const Expr& expression);
+
+}  // namespace etlc::check

@@ -1,0 +1,83 @@
+#include "check/provenance.hpp"
+
+#include <set>
+
+#include "data/array.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+std::string weights_hash(const Distance& distance) {
+    return data::content_hash({distance.weights.size()}, distance.weights);
+}
+
+void add_distances(const Model& model, const Expr& expression, std::map<std::string, std::string>& hashes) {
+    if (expression.kind == Expr::Kind::distance) {
+        const Distance& distance = model.distances[expression.index];
+        const Target& target = model.targets[distance.target];
+        hashes[target.name] = target.hash;
+        if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
+        for (const Index index : distance.point) {
+            const Input& input = model.inputs[index];
+            if (input.type == InputType::i8) hashes[input.name] = data::content_hash({1}, {input.scale});
+        }
+    }
+    for (const Expr& argument : expression.arguments) add_distances(model, argument, hashes);
+}
+
+std::vector<bool> reachable(const Model& model, Index root) {
+    std::vector<bool> seen(root + 1, false);
+    seen[root] = true;
+    for (Index i = root + 1; i-- > 0;) {
+        if (!seen[i]) continue;
+        for (const Index operand : model.formulas[i].operands) seen[operand] = true;
+    }
+    return seen;
+}
+
+std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen) {
+    std::set<Index> found;
+    for (Index i = 0; i < seen.size(); ++i)
+        if (seen[i] && model.formulas[i].kind == Formula::Kind::predicate) found.insert(model.formulas[i].index);
+    return found;
+}
+
+/// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
+std::string text_with_definitions(const Model& model, Index formula, const std::vector<bool>& seen) {
+    std::string text = print(model, formula);
+    std::string_view separator = " where ";
+    const auto define = [&](const std::string& name, const std::string& definition) {
+        text += separator;
+        text += name + " = " + definition;
+        separator = ", ";
+    };
+    for (const Index index : predicates_in(model, seen)) {
+        const Predicate& predicate = model.predicates[index];
+        if (!predicate.name.empty()) define(predicate.name, predicate.text + predicate.threshold.text);
+    }
+    if (lets_are_written_out(model, formula)) return text;
+    for (const Let& let : model.lets) {
+        const bool named = let.formula < seen.size() && seen[let.formula] && let.formula != formula;
+        if (named) define(let.name, print(model, let.formula));
+    }
+    return text;
+}
+
+}  // namespace
+
+Provenance provenance(const Model& model, Index predicate) {
+    Provenance result;
+    result.predicate = model.predicates[predicate].text;
+    add_distances(model, model.predicates[predicate].expression, result.targets);
+    for (const Truth& truth : model.truths) {
+        if (truth.predicate != predicate || truth.formula == kNone) continue;
+        const std::vector<bool> seen = reachable(model, truth.formula);
+        result.truth = text_with_definitions(model, truth.formula, seen);
+        for (const Index index : predicates_in(model, seen))
+            add_distances(model, model.predicates[index].expression, result.truth_targets);
+    }
+    return result;
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,26 @@
+// What a calibrated threshold depends on, besides the demonstrations.
+// Takes: a predicate of the model. Gives: the texts and hashes that `etlc calibrate` writes beside its epsilon and that
+// check/ compares when it reads one back.
+// Keeps true: two specs with equal provenance ask for the same threshold from the same demonstrations.
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "check/model.hpp"
+
+namespace etlc::check {
+
+struct Provenance {
+    std::string predicate;  ///< canonical text without the threshold
+    std::string truth;      ///< canonical text of the truth formula, its predicates and lets written out; empty: none
+    /// Content hashes: of every target that the predicate measures against, by its name; of the weights of a
+    /// mahalanobis distance, by the distance's text; of the scale of an i8 input, by the input's name.
+    std::map<std::string, std::string> targets;
+    /// The same of what only the truth formula measures.
+    std::map<std::string, std::string> truth_targets;
+};
+
+Provenance provenance(const Model& model, Index predicate);
+
+}  // namespace etlc::check

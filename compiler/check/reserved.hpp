@@ -1,0 +1,21 @@
+// Names that a spec may not declare, because C++ or the generated code could not bear them.
+// Takes: a name and what it would name. Gives: why not, or nothing.
+// Keeps true: a name that passes compiles as a member or a namespace with every compiler, whatever C headers are
+// included.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+namespace etlc::check {
+
+/// Why no declaration may bear `name`: "is a C++ keyword". `is_namespace` for the spec's own name, which stands beside
+/// the functions of the C library.
+std::optional<std::string_view> why_forbidden(std::string_view name, bool is_namespace);
+
+/// A name like `name` that may be declared: `int` becomes `int_input`, `a__b` becomes `a_b`. `kind` is a word of the
+/// language.
+std::string allowed_name(std::string_view name, std::string_view kind, bool is_namespace);
+
+}  // namespace etlc::check

@@ -1,0 +1,152 @@
+// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this spec.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "check/decimal.hpp"
+#include "check/provenance.hpp"
+#include "check/steps.hpp"
+#include "data/file.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+/// SPEC.thresholds.json beside SPEC.etl.
+std::string default_path(const std::string& spec_path) {
+    std::filesystem::path path(spec_path);
+    if (path.extension() == ".etl") path.replace_extension();
+    path += ".thresholds.json";
+    return path.string();
+}
+
+std::vector<Index> calibrated_predicates(Context& c) {
+    std::vector<Index> found;
+    for (Index i = 0; i < c.model.predicates.size(); ++i) {
+        const Predicate& predicate = c.model.predicates[i];
+        const bool sound = predicate.name.empty() || !c.scope.entity(NameKind::predicate, i).broken;
+        if (sound && predicate.threshold.origin != ThresholdOrigin::literal) found.push_back(i);
+    }
+    return found;
+}
+
+/// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
+std::optional<thresholds::File> read_thresholds(Context& c, const Predicate& first) {
+    const bool is_default = c.options.thresholds_path.empty();
+    const std::string path = is_default ? default_path(c.file.path()) : c.options.thresholds_path;
+    if (is_default && !std::filesystem::exists(path)) {
+        c.report(Code::thresholds_missing, first.threshold.span,
+                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", first.name, path))
+            .note("'etlc calibrate' makes one from labelled demonstrations; --thresholds names another");
+        return std::nullopt;
+    }
+    auto file = thresholds::read(path);
+    if (!file) {
+        c.sink.report(data::in_file(file.failure(), path))
+            .note(first.threshold.span, fmt::format("the threshold of '{}' is calibrated", first.name));
+        return std::nullopt;
+    }
+    c.dependencies.insert(path);
+    return std::move(*file);
+}
+
+bool same_number(const std::string& a, const std::string& b) {
+    return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
+}
+
+std::string_view method_word(ThresholdOrigin origin) {
+    switch (origin) {
+        case ThresholdOrigin::f1: return "f1";
+        case ThresholdOrigin::conformal: return "conformal";
+        case ThresholdOrigin::class_conditional: return "class_conditional";
+        case ThresholdOrigin::literal: break;
+    }
+    return "";
+}
+
+/// What differs between the spec and what the entry was calibrated for, a sentence each.
+class Differences {
+public:
+    Differences(const Model& model, Index predicate, const thresholds::Entry& entry)
+        : predicate_(model.predicates[predicate]), entry_(entry), now_(provenance(model, predicate)) {}
+
+    std::vector<std::string> find() && {
+        const std::string_view method = method_word(predicate_.threshold.origin);
+        if (entry_.method != method)
+            add("method", entry_.method, method);
+        else if (!same_number(entry_.alpha, predicate_.threshold.alpha))
+            add("alpha", entry_.alpha, predicate_.threshold.alpha);
+        if (entry_.predicate != now_.predicate) add("predicate", entry_.predicate, now_.predicate);
+        add_changed(now_.targets);
+        if (entry_.truth != "array") {
+            if (entry_.truth != now_.truth)
+                add("truth", entry_.truth, now_.truth.empty() ? "none" : now_.truth);
+            else
+                add_changed(now_.truth_targets);
+        }
+        return std::move(found_);
+    }
+
+private:
+    void add(std::string_view what, std::string_view then, std::string_view now) {
+        found_.push_back(fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
+    }
+
+    static std::string_view trimmed(std::string_view text) {
+        while (text.ends_with(' ')) text.remove_suffix(1);
+        return text;
+    }
+
+    void add_changed(const std::map<std::string, std::string>& hashes) {
+        for (const auto& [name, hash] : hashes) {
+            const auto then = entry_.targets.find(name);
+            // A target that the entry does not know belongs to a predicate that has changed, which has been said.
+            if (then != entry_.targets.end() && then->second != hash)
+                found_.push_back(fmt::format("the values of '{}' have changed", name));
+            if (then == entry_.targets.end() && found_.empty())
+                found_.push_back(fmt::format("it does not say for which values of '{}'", name));
+        }
+    }
+
+    const Predicate& predicate_;
+    const thresholds::Entry& entry_;
+    Provenance now_;
+    std::vector<std::string> found_;
+};
+
+void take_threshold(Context& c, Index index, const thresholds::File& file) {
+    Predicate& predicate = c.model.predicates[index];
+    const auto found = file.predicates.find(predicate.name);
+    if (found == file.predicates.end()) {
+        c.report(Code::threshold_missing, predicate.threshold.span,
+                 fmt::format("{} has no threshold for '{}'", file.path, predicate.name))
+            .note("calibrate again with 'etlc calibrate'");
+        return;
+    }
+    const std::vector<std::string> differences = Differences(c.model, index, found->second).find();
+    if (!differences.empty()) {
+        auto& error = c.report(
+            Code::threshold_stale, predicate.threshold.span,
+            fmt::format("the threshold of '{}' in {} was calibrated for something else", predicate.name, file.path));
+        for (const std::string& difference : differences) error.note(difference);
+        error.note("calibrate again with 'etlc calibrate'");
+        return;
+    }
+    predicate.threshold.value = found->second.epsilon;
+    predicate.threshold.value64 = static_cast<double>(found->second.epsilon);
+}
+
+}  // namespace
+
+void check_thresholds(Context& c) {
+    const std::vector<Index> calibrated = calibrated_predicates(c);
+    if (calibrated.empty() || c.options.allow_uncalibrated) return;
+    const auto file = read_thresholds(c, c.model.predicates[calibrated[0]]);
+    if (!file) return;
+    for (const Index index : calibrated) take_threshold(c, index, *file);
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,30 @@
+// Time: the length of a step, and interval bounds in steps.
+// Takes: rates, periods and durations as exact decimal fractions. Gives: whole numbers of steps.
+// Keeps true: no rounding anywhere: 0.29 s at 100 Hz is 29 steps.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+
+#include "ast/ast.hpp"
+#include "source/source.hpp"
+
+namespace etlc::check {
+
+struct Context;
+
+/// The length of one step as the spec gives it.
+struct StepLength {
+    const ast::Rate* rate = nullptr;  ///< none given, or none that can be used
+    bool broken = false;              ///< one was given and had an error
+};
+
+struct Steps {
+    std::uint32_t low = 0;
+    std::uint32_t high = 0;
+};
+
+/// The interval in steps; nothing where it had an error, which is reported.
+std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);
+
+}  // namespace etlc::check

@@ -1,0 +1,83 @@
+// What is legal and surely not meant: declarations without use, predicates without choice.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "check/decimal.hpp"
+#include "check/formula_warnings.hpp"
+#include "check/predicates.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+void warn_of_unused(Context& c) {
+    for (const NameKind kind : {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let}) {
+        for (const Entity& entity : c.scope.all(kind)) {
+            if (entity.used) continue;
+            c.report(Code::unused_declaration, entity.span,
+                     fmt::format("{} '{}' is not used", word(kind), entity.name));
+        }
+    }
+}
+
+enum class Outcome : std::uint8_t { varies, always, never };
+
+Outcome outcome(const Predicate& predicate) {
+    const auto [low, high] = predicate.delta;
+    const float epsilon = predicate.threshold.value;
+    switch (predicate.comparison) {
+        case Comparison::less_equal:
+            return high <= epsilon ? Outcome::always : low > epsilon ? Outcome::never : Outcome::varies;
+        case Comparison::less:
+            return high < epsilon ? Outcome::always : low >= epsilon ? Outcome::never : Outcome::varies;
+        case Comparison::greater_equal:
+            return low >= epsilon ? Outcome::always : high < epsilon ? Outcome::never : Outcome::varies;
+        case Comparison::greater:
+            return low > epsilon ? Outcome::always : high <= epsilon ? Outcome::never : Outcome::varies;
+    }
+    return Outcome::varies;
+}
+
+void warn_of_constant_predicates(Context& c) {
+    for (const Predicate& predicate : c.model.predicates) {
+        if (predicate.text.empty() || std::isnan(predicate.threshold.value)) continue;  // broken, or not yet calibrated
+        const Outcome found = outcome(predicate);
+        if (found == Outcome::varies) continue;
+        const Range& delta = predicate.delta;
+        const std::string values = delta.low == delta.high ? fmt::format("{:.9g}", delta.low)
+                                                           : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
+        c.report(Code::constant_predicate, predicate.span,
+                 fmt::format("the comparison is {} true: its left side is {}",
+                             found == Outcome::always ? "always" : "never", values));
+    }
+}
+
+void warn_of_same_predicates(Context& c) {
+    std::map<std::string, const Predicate*> first;
+    for (const Predicate& predicate : c.model.predicates) {
+        if (predicate.name.empty() || predicate.text.empty() || predicate.threshold.origin != ThresholdOrigin::literal)
+            continue;
+        const std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
+        const auto [before, is_new] = first.try_emplace(text, &predicate);
+        if (is_new) continue;
+        c.report(Code::same_definition, predicate.span,
+                 fmt::format("'{}' is the same predicate as '{}'", predicate.name, before->second->name))
+            .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
+    }
+}
+
+}  // namespace
+
+void warn(Context& c) {
+    // A name that was misspelt in its only use is no second cause.
+    if (!c.sink.has_errors()) warn_of_unused(c);
+    warn_of_constant_predicates(c);
+    warn_of_same_predicates(c);
+    warn_about_formulas(c);
+}
+
+}  // namespace etlc::check
