@@ -58,7 +58,7 @@ typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t
   if (odd) aggregate = window_total<Monoid>(ring[cursor], middle, total);  // the slot's suffix, before it is filled
   ring[cursor] = element;
   uint32_t next = cursor + 1;
-  if (next == slots / 2 || next == slots) {  // the newest block is full: every block is one older from here
+  if (n < 4 || next == slots / 2 || next == slots) {  // the newest block is full: every block is one older from here
     if (next == slots) next = 0;
     middle = total;
     newest = Monoid::identity();
