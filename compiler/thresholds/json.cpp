@@ -19,7 +19,7 @@ using diag::Failure;
 /// Builds the tree from nlohmann's events. Returning false stops the parser.
 class Builder {
 public:
-    Builder(const std::string& text, std::uint64_t max_values) : text_(text), values_left_(max_values) {}
+    Builder(const std::string& text, std::uint64_t max_values) : text_(text), max_values_(max_values) {}
 
     bool null() { return add({}) != nullptr; }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
@@ -44,12 +44,13 @@ public:
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string& last_token, const nlohmann::json::exception& error) {
+    bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) {
         constexpr int kNumberOverflow = 406;
-        const bool overflow = error.id == kNumberOverflow;
-        const bool at_end = position > text_.size();
-        std::string what = at_end ? "its end" : data::in_quotes(last_token);
-        if (overflow) what = "a number that no double holds";
+        std::string what = "its end";
+        if (error.id == kNumberOverflow)
+            what = "a number that no double holds";
+        else if (position <= text_.size())  // counts the bytes read, the unexpected one included
+            what = data::in_quotes(character(position > 0 ? position - 1 : 0));
         const source::Position place = place_of(position);
         failure_ = Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what), place.line,
                            place.column};
@@ -89,11 +90,12 @@ private:
 
     /// Pointers to open arrays and objects stay good: only the innermost one grows.
     Json* add(Json json) {
-        if (values_left_ == 0) {
-            failure_ = Failure{Code::malformed_thresholds, "holds more values than are read"};
+        if (values_ == max_values_) {
+            failure_ = Failure{Code::malformed_thresholds,
+                               fmt::format("holds more than {} values, the most that are read", max_values_)};
             return nullptr;
         }
-        --values_left_;
+        ++values_;
         if (open_.empty()) {
             root_ = std::move(json);
             return &root_;
@@ -103,11 +105,19 @@ private:
         return &items.back();
     }
 
+    static bool continuation(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; }
+
+    /// The UTF-8 character that begins at byte `at`.
+    std::string_view character(std::size_t at) const {
+        std::size_t end = at + 1;
+        while (end < text_.size() && end < at + 4 && continuation(text_[end])) ++end;
+        return std::string_view(text_).substr(at, end - at);
+    }
+
     source::Position place_of(std::size_t position) const {
         const std::string_view before = std::string_view(text_).substr(0, position > 0 ? position - 1 : 0);
         const auto lines = std::count(before.begin(), before.end(), '\n');
         const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
-        const auto continuation = [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; };
         const std::string_view line = before.substr(line_begin);
         const auto columns = static_cast<std::size_t>(line.end() - line.begin()) -
                              static_cast<std::size_t>(std::count_if(line.begin(), line.end(), continuation));
@@ -115,7 +125,8 @@ private:
     }
 
     const std::string& text_;
-    std::uint64_t values_left_;
+    std::uint64_t max_values_;
+    std::uint64_t values_ = 0;
     Json root_;
     std::vector<Json*> open_;
     std::vector<std::unordered_set<std::string>> seen_;  ///< keys of each open object

@@ -13,6 +13,7 @@ namespace {
 /// The shortest decimal text that reads back to the same bits; infinities as text, which JSON has no number for.
 template <class Number>
 std::string number(Number value) {
+    if (value == 0 && std::signbit(value)) return "-0.0";  // -0 is an integer to JSON readers, and has no sign
     if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
     std::array<char, 64> buffer;
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
