@@ -29,30 +29,19 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
         if (std::isnan(a.back())) return kUnknown;
     }
     switch (expr.kind) {
-        case Expr::Kind::number:
-            return expr.number32;
-        case Expr::Kind::scalar:
-            return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
+        case Expr::Kind::number: return expr.number32;
+        case Expr::Kind::scalar: return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
         case Expr::Kind::distance:
             return distance(model, model.distances[expr.index], samples).delta.value_or(kUnknown);
-        case Expr::Kind::negate:
-            return -a[0];
-        case Expr::Kind::add:
-            return a[0] + a[1];
-        case Expr::Kind::subtract:
-            return a[0] - a[1];
-        case Expr::Kind::multiply:
-            return a[0] * a[1];
-        case Expr::Kind::divide:
-            return a[0] / a[1];
-        case Expr::Kind::abs:
-            return std::abs(a[0]);
-        case Expr::Kind::sqrt:
-            return std::sqrt(a[0]);
-        case Expr::Kind::min:
-            return *std::min_element(a.begin(), a.end());
-        case Expr::Kind::max:
-            return *std::max_element(a.begin(), a.end());
+        case Expr::Kind::negate: return -a[0];
+        case Expr::Kind::add: return a[0] + a[1];
+        case Expr::Kind::subtract: return a[0] - a[1];
+        case Expr::Kind::multiply: return a[0] * a[1];
+        case Expr::Kind::divide: return a[0] / a[1];
+        case Expr::Kind::abs: return std::abs(a[0]);
+        case Expr::Kind::sqrt: return std::sqrt(a[0]);
+        case Expr::Kind::min: return *std::min_element(a.begin(), a.end());
+        case Expr::Kind::max: return *std::max_element(a.begin(), a.end());
     }
     return kUnknown;
 }

@@ -76,20 +76,13 @@ double mahalanobis(const Vector& d, const check::Distance& distance) {
 double between(const check::Distance& distance, const Vector& point, const Vector& target) {
     const Vector d = difference(point, target);
     switch (distance.metric) {
-        case Metric::l2:
-            return norm(d);
-        case Metric::l2sq:
-            return dot(d, d);
-        case Metric::l1:
-            return l1(d);
-        case Metric::linf:
-            return linf(d);
-        case Metric::cosine:
-            return cosine(point, target);
-        case Metric::angular:
-            return angular(point, target);
-        case Metric::mahalanobis:
-            return mahalanobis(d, distance);
+        case Metric::l2: return norm(d);
+        case Metric::l2sq: return dot(d, d);
+        case Metric::l1: return l1(d);
+        case Metric::linf: return linf(d);
+        case Metric::cosine: return cosine(point, target);
+        case Metric::angular: return angular(point, target);
+        case Metric::mahalanobis: return mahalanobis(d, distance);
     }
     return std::nan("");
 }
@@ -97,14 +90,11 @@ double between(const check::Distance& distance, const Vector& point, const Vecto
 double aggregate(const check::Distance& distance, Vector distances) {
     std::sort(distances.begin(), distances.end());
     switch (distance.aggregation) {
-        case Aggregation::min:
-            return distances.front();
-        case Aggregation::max:
-            return distances.back();
+        case Aggregation::min: return distances.front();
+        case Aggregation::max: return distances.back();
         case Aggregation::mean:
             return std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
-        case Aggregation::kth:
-            return distances[distance.kth - 1];  // "the n-th smallest distance, from 1"
+        case Aggregation::kth: return distances[distance.kth - 1];  // "the n-th smallest distance, from 1"
     }
     return std::nan("");
 }

@@ -103,6 +103,9 @@ private:
                 step.push_back({m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
             }
             run_.telemetry.push_back(std::move(step));
+            std::vector<bool> present;
+            for (const auto& sample : samples) present.push_back(!sample.empty());
+            run_.present.push_back(std::move(present));
         }
     }
 

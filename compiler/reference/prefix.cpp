@@ -63,11 +63,9 @@ Unseen Prefix::unseen(Index node) {
 Value Prefix::evaluate(const Node& node, Index index, std::uint64_t k) {
     switch (node.kind) {
         // "`true`, `false`: +inf, -inf"
-        case Node::Kind::constant:
-            return node.negated ? kFalse : kTrue;
+        case Node::Kind::constant: return node.negated ? kFalse : kTrue;
         case Node::Kind::predicate:
-        case Node::Kind::boolean:
-            return literals_.values[index][k];
+        case Node::Kind::boolean: return literals_.values[index][k];
         // "`f && g`, `f || g`: min, max"
         case Node::Kind::all: {
             Value result = kTrue;
@@ -79,22 +77,14 @@ Value Prefix::evaluate(const Node& node, Index index, std::uint64_t k) {
             for (const Index operand : node.operands) result = max(result, at(operand, k));
             return result;
         }
-        case Node::Kind::eventually:
-            return eventually(node, k);
-        case Node::Kind::always:
-            return always(node, k);
-        case Node::Kind::until:
-            return until(node, k);
-        case Node::Kind::release:
-            return release(node, k);
-        case Node::Kind::once:
-            return once(node, k);
-        case Node::Kind::historically:
-            return historically(node, k);
-        case Node::Kind::since:
-            return since(node, k);
-        case Node::Kind::trigger:
-            return trigger(node, k);
+        case Node::Kind::eventually: return eventually(node, k);
+        case Node::Kind::always: return always(node, k);
+        case Node::Kind::until: return until(node, k);
+        case Node::Kind::release: return release(node, k);
+        case Node::Kind::once: return once(node, k);
+        case Node::Kind::historically: return historically(node, k);
+        case Node::Kind::since: return since(node, k);
+        case Node::Kind::trigger: return trigger(node, k);
     }
     return kFalse;
 }
@@ -243,12 +233,10 @@ Unseen Prefix::find_unseen(const Node& node, Index index) {
     const bool from_now = node.low == 0;
     const bool unbounded = node.high == check::kUnbounded;
     switch (node.kind) {
-        case Node::Kind::constant:
-            return node.negated ? Unseen{-kInfinity, -kInfinity} : Unseen{kInfinity, kInfinity};
+        case Node::Kind::constant: return node.negated ? Unseen{-kInfinity, -kInfinity} : Unseen{kInfinity, kInfinity};
         // "for a predicate its range"; a bool's is [-inf, +inf]
         case Node::Kind::predicate:
-        case Node::Kind::boolean:
-            return literals_.ranges[index];
+        case Node::Kind::boolean: return literals_.ranges[index];
         // "min and max for && and ||"
         case Node::Kind::all: {
             Unseen result{kInfinity, kInfinity};
@@ -267,17 +255,13 @@ Unseen Prefix::find_unseen(const Node& node, Index index) {
             return result;
         }
         // "F, O: lowest that of the operand if a = 0, else -inf, highest the operand's"
-        case Node::Kind::eventually:
-            return {from_now ? operand(0).lowest : -kInfinity, operand(0).highest};
+        case Node::Kind::eventually: return {from_now ? operand(0).lowest : -kInfinity, operand(0).highest};
         // "G, H: highest the operand's if a = 0, else +inf, lowest the operand's"
-        case Node::Kind::always:
-            return {operand(0).lowest, from_now ? operand(0).highest : kInfinity};
+        case Node::Kind::always: return {operand(0).lowest, from_now ? operand(0).highest : kInfinity};
         // "U, S: lowest g's if a = 0, else -inf, highest g's"
-        case Node::Kind::until:
-            return {from_now ? operand(1).lowest : -kInfinity, operand(1).highest};
+        case Node::Kind::until: return {from_now ? operand(1).lowest : -kInfinity, operand(1).highest};
         // "R: highest g's if a = 0, else +inf, lowest g's"
-        case Node::Kind::release:
-            return {operand(1).lowest, from_now ? operand(1).highest : kInfinity};
+        case Node::Kind::release: return {operand(1).lowest, from_now ? operand(1).highest : kInfinity};
         // "O and S have a highest of at least [...] what is known of their (last) operand; and an unbounded O with a =
         // 0 has a lowest of at least the greatest known lower"
         case Node::Kind::once: {

@@ -39,6 +39,8 @@ struct Run {
     std::vector<std::vector<Verdict>> finish;
     /// telemetry[step][predicate]
     std::vector<std::vector<Telemetry>> telemetry;
+    /// present[step][input]: the sample was there and valid, or held.
+    std::vector<std::vector<bool>> present;
     /// Steps on which some predicate or bool that a monitor names was unknown, after hold.
     std::uint32_t missing_steps = 0;
 };

@@ -16,14 +16,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 const char* word(Status status) {
     switch (status) {
-        case Status::satisfied:
-            return "satisfied";
-        case Status::violated:
-            return "violated";
-        case Status::unknown:
-            return "unknown";
-        case Status::undecided:
-            return "undecided";
+        case Status::satisfied: return "satisfied";
+        case Status::violated: return "violated";
+        case Status::unknown: return "unknown";
+        case Status::undecided: return "undecided";
     }
     return "?";
 }
@@ -42,8 +38,8 @@ public:
         if (auto bad = rows("finish call", expected_.finish, observed_.finish)) return bad;
         if (auto bad = later_values()) return bad;
         if (auto bad = telemetry()) return bad;
-        if (expected_.missing_steps != observed_.missing_steps)
-            return fmt::format("missing_steps {}, expected {}", observed_.missing_steps, expected_.missing_steps);
+        if (const std::uint32_t expected = missing_steps(); expected != observed_.missing_steps)
+            return fmt::format("missing_steps {}, expected {}", observed_.missing_steps, expected);
         return {};
     }
 
@@ -106,6 +102,19 @@ private:
             }
         }
         return {};
+    }
+
+    std::uint32_t missing_steps() const {
+        std::uint32_t result = 0;
+        for (std::size_t step = 0; step < expected_.telemetry.size(); ++step) {
+            bool lacking = false;
+            for (std::size_t p = 0; p < model_.predicates.size(); ++p)
+                lacking |= observed_.dependencies.predicates[p] && std::isnan(expected_.telemetry[step][p].delta);
+            for (std::size_t n = 0; n < model_.inputs.size(); ++n)
+                lacking |= observed_.dependencies.flags[n] && !expected_.present[step][n];
+            if (lacking) ++result;
+        }
+        return result;
     }
 
     std::optional<std::string> telemetry() const {

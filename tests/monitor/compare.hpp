@@ -13,6 +13,13 @@
 
 namespace etlc::tests {
 
+/// The atoms that a monitor still looks at: simplification may find that some change no verdict, and a step that lacks
+/// only those is not counted as missing. (That they change none is what the comparison of the verdicts shows.)
+struct Dependencies {
+    std::vector<bool> predicates;  ///< by index of the model
+    std::vector<bool> flags;       ///< bool inputs that stand in formulas, by index of the model's inputs
+};
+
 /// A run as a monitor shows it: robustness_high is not observable, telemetry only of the predicates that it computes.
 struct Observed {
     struct Predicate {
@@ -24,6 +31,7 @@ struct Observed {
     std::vector<std::vector<reference::Verdict>> finish;
     std::vector<std::vector<Predicate>> telemetry;
     std::uint32_t missing_steps = 0;
+    Dependencies dependencies;
 };
 
 struct Comparison {

@@ -57,10 +57,19 @@ Observed PlanRunner::run(const reference::Trace& trace) {
         result.telemetry.push_back(telemetry());
     }
     result.missing_steps = evaluator_->missing_steps();
+    result.dependencies = dependencies();
     std::uint32_t calls = 0;
     for (const plan::Monitor& monitor : plan_->monitors) calls = std::max(calls, monitor.sliding ? monitor.horizon : 0);
     for (std::uint32_t call = 0; call < calls && !trace.empty(); ++call)
         result.finish.push_back(verdicts(evaluator_->finish()));
+    return result;
+}
+
+Dependencies PlanRunner::dependencies() const {
+    Dependencies result{std::vector<bool>(model_.predicates.size()), std::vector<bool>(model_.inputs.size())};
+    for (const plan::Index index : plan_->predicates) result.predicates[index] = true;
+    for (const plan::Stream& stream : plan_->streams)
+        if (stream.op == plan::StreamOp::flag) result.flags[stream.index] = true;
     return result;
 }
 

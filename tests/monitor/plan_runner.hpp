@@ -20,6 +20,8 @@ public:
 
     /// Empty where the spec was planned; else the codes of the errors, separated by spaces.
     const std::string& refusal() const { return refusal_; }
+    /// The atoms that the plan computes.
+    Dependencies dependencies() const;
     /// A run from reset to the last call of finish().
     Observed run(const reference::Trace& trace);
 

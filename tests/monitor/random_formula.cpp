@@ -47,18 +47,13 @@ RandomFormula::Piece RandomFormula::connective(int depth, Allowed allowed) {
     switch (random_.between(0, 9)) {
         case 0:
         case 1:
-        case 2:
-            return binary(left, random_.word({"&&", "and"}), "", operand(), conjunction);
+        case 2: return binary(left, random_.word({"&&", "and"}), "", operand(), conjunction);
         case 3:
         case 4:
-        case 5:
-            return binary(left, random_.word({"||", "or"}), "", operand(), disjunction);
-        case 6:
-            return binary(left, random_.word({"->", "implies"}), "", operand(), implies);
-        case 7:
-            return binary(left, random_.word({"<->", "iff"}), "", operand(), iff);
-        default:
-            return unary(random_.word({"!", "not"}), "", left);
+        case 5: return binary(left, random_.word({"||", "or"}), "", operand(), disjunction);
+        case 6: return binary(left, random_.word({"->", "implies"}), "", operand(), implies);
+        case 7: return binary(left, random_.word({"<->", "iff"}), "", operand(), iff);
+        default: return unary(random_.word({"!", "not"}), "", left);
     }
 }
 
@@ -67,11 +62,9 @@ RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
     const Piece operand = grow(depth - 1, allowed);
     switch (random_.between(0, 7)) {
         case 0:
-        case 1:
-            return unary(random_.word({"F", "eventually"}), future_interval(), operand);
+        case 1: return unary(random_.word({"F", "eventually"}), future_interval(), operand);
         case 2:
-        case 3:
-            return unary(random_.word({"G", "always"}), future_interval(), operand);
+        case 3: return unary(random_.word({"G", "always"}), future_interval(), operand);
         case 4:
             return binary(operand, random_.word({"U", "until"}), future_interval(), grow(depth - 1, allowed), until);
         case 5:
@@ -80,8 +73,7 @@ RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
             if (shape_.unbounded)
                 return binary(operand, random_.word({"W", "weak_until"}), "", grow(depth - 1, allowed), until);
             [[fallthrough]];
-        default:
-            return unary(random_.word({"X", "next"}), "", operand);
+        default: return unary(random_.word({"X", "next"}), "", operand);
     }
 }
 
@@ -91,15 +83,11 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
     const Piece operand = grow(depth - 1, allowed);
     switch (random_.between(0, 5)) {
         case 0:
-        case 1:
-            return unary(random_.word({"O", "once"}), past_interval(), operand);
-        case 2:
-            return unary(random_.word({"H", "historically"}), past_interval(), operand);
+        case 1: return unary(random_.word({"O", "once"}), past_interval(), operand);
+        case 2: return unary(random_.word({"H", "historically"}), past_interval(), operand);
         case 3:
-        case 4:
-            return binary(operand, random_.word({"S", "since"}), past_interval(), grow(depth - 1, allowed), until);
-        default:
-            return unary(random_.word({"Y", "previous"}), "", operand);
+        case 4: return binary(operand, random_.word({"S", "since"}), past_interval(), grow(depth - 1, allowed), until);
+        default: return unary(random_.word({"Y", "previous"}), "", operand);
     }
 }
 

@@ -112,22 +112,14 @@ private:
     std::string scalar_term() {
         if (random_.chance(0.3)) return random_.word({"x", "y"});
         switch (random_.between(0, exact_ ? 5 : 7)) {
-            case 0:
-                return fmt::format("{} * {}", number(-2, 2), random_.word({"x", "y"}));
-            case 1:
-                return "abs(x - y)";
-            case 2:
-                return fmt::format("max(x, y, {})", number(-2, 2));
-            case 3:
-                return "min(x, -y)";
-            case 4:
-                return "(x + y) / 2";
-            case 5:
-                return "-x";
-            case 6:
-                return "sqrt(abs(y))";
-            default:
-                return "x / (abs(y) + 0.5)";
+            case 0: return fmt::format("{} * {}", number(-2, 2), random_.word({"x", "y"}));
+            case 1: return "abs(x - y)";
+            case 2: return fmt::format("max(x, y, {})", number(-2, 2));
+            case 3: return "min(x, -y)";
+            case 4: return "(x + y) / 2";
+            case 5: return "-x";
+            case 6: return "sqrt(abs(y))";
+            default: return "x / (abs(y) + 0.5)";
         }
     }
 

@@ -36,17 +36,12 @@ std::vector<double> invalid_sample(Random& random, const check::Input& input) {
     if (input.type == InputType::i8) return sample;  // every integer is valid: the zero vector
     const double infinity = std::numeric_limits<double>::infinity();
     switch (random.between(0, 3)) {
-        case 0:
-            sample.back() = std::nan("");
-            break;
-        case 1:
-            sample.front() = random.chance(0.5) ? infinity : -infinity;
-            break;
+        case 0: sample.back() = std::nan(""); break;
+        case 1: sample.front() = random.chance(0.5) ? infinity : -infinity; break;
         case 2:
             if (!input.is_embedding()) sample.front() = random.chance(0.5) ? 4.25 : -4.25;
             break;
-        default:
-            break;
+        default: break;
     }
     return sample;
 }

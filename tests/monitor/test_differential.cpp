@@ -3,6 +3,11 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cstdlib>
+#include <ostream>
+#include <string>
+
 #include "compare.hpp"
 #include "exhaustive.hpp"
 #include "loading.hpp"
@@ -62,11 +67,19 @@ struct RandomCase {
     int specs;
 };
 
+void PrintTo(const RandomCase& random, std::ostream* out) { *out << random.name; }
+
+/// How often the usual number of random specs is tried; ETLC_EFFORT=100 for a night.
+int effort() {
+    const char* text = std::getenv("ETLC_EFFORT");
+    return text == nullptr ? 1 : std::max(1, std::atoi(text));
+}
+
 class PlanRandom : public testing::TestWithParam<RandomCase> {};
 
 TEST_P(PlanRandom, AgreesWithTheReference) {
     const RandomCase& random = GetParam();
-    for (int n = 0; n < random.specs; ++n) {
+    for (int n = 0; n < random.specs * effort(); ++n) {
         const auto model = load(random_spec(n, random.shape));
         ASSERT_TRUE(model);
         PlanRunner runner(*model, kRoomy);

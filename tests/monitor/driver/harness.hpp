@@ -4,9 +4,9 @@
 // floats.
 //
 // Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and its samples (per input u8 present
-// and, where present, the elements). Answer: the first trace, the second, and the second once more. The first two run in turns on
-// two instances of the class; the third runs on the first instance after reset(). After the last request: u64, how
-// often memory was asked for while a monitor was constructed, stepped, finished or reset.
+// and, where present, the elements). Answer: the first trace, the second, and the second once more. The first two run
+// in turns on two instances of the class; the third runs on the first instance after reset(). After the last request:
+// u64, how often memory was asked for while a monitor was constructed, stepped, finished or reset.
 #pragma once
 
 #include <stddef.h>

@@ -1,0 +1,79 @@
+#include "generated_program.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+
+#include "generated_source.hpp"
+#include "loading.hpp"
+
+namespace etlc::tests {
+namespace {
+
+// As harsh as the promise in docs/generated-code.md.
+constexpr const char* kFlags =
+    "-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -fno-exceptions -fno-rtti";
+// All operators in one class are more than one class should hold.
+constexpr const char* kLimits = "--max-state 16777216 --max-code 16777216 --max-work 67108864";
+
+void write_text(const std::filesystem::path& path, const std::string& text) {
+    std::ofstream stream(path, std::ios::binary);
+    stream << text;
+    if (!stream.flush()) ADD_FAILURE() << path << " cannot be written";
+}
+
+}  // namespace
+
+GeneratedProgram::GeneratedProgram(const std::string& name)
+    : folder_(std::filesystem::path(ETLC_BINARY_DIR) / "tests/monitor/generated" / name) {
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+}
+
+bool GeneratedProgram::command(const std::string& line) {
+    const std::string log = (folder_ / "log.txt").string();
+    const int status = std::system(fmt::format("cd '{}' && {} 2> log.txt", folder_.string(), line).c_str());
+    if (status != 0) ADD_FAILURE() << line << "\nexited with " << status << "\n" << read_text(log);
+    return status == 0;
+}
+
+bool GeneratedProgram::add(const check::Model& model) {
+    models_.push_back(model);
+    write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
+    return command(fmt::format("'{}' {}.etl -o {}.hpp {}", ETLC_COMMAND, model.name, model.name, kLimits));
+}
+
+bool GeneratedProgram::compile(const Build& build) {
+    std::string parts[2];
+    std::vector<std::string> names;
+    for (std::size_t n = 0; n < models_.size(); ++n) {
+        parts[n % 2] += adaptor_source(models_[n]);
+        names.push_back(models_[n].name);
+    }
+    parts[1] = fmt::format("#include \"{}.hpp\"\n", names[0]) + parts[1];
+    for (int n = 0; n < 2; ++n)
+        write_text(folder_ / fmt::format("part{}.cpp", n), "#include \"harness.hpp\"\n" + parts[n]);
+    write_text(folder_ / "main.cpp", main_source(names));
+    return command(fmt::format(
+        "{0} {1} {2} {3} -I. -I'{4}/runtime/include' -I'{4}/tests/monitor/driver' main.cpp part0.cpp part1.cpp "
+        "'{4}/tests/monitor/driver/harness.cpp' -o program",
+        build.compiler, kFlags, build.flags, build.counts_malloc ? "-DHARNESS_COUNTS_MALLOC" : "", ETLC_SOURCE_DIR));
+}
+
+GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& requests, const std::string& arguments) {
+    std::string bytes;
+    for (const Request& request : requests) bytes += encode(models_[request.spec], request);
+    write_text(folder_ / "requests.bin", bytes);
+    Result result;
+    if (!command(fmt::format("./program {} < requests.bin > answers.bin", arguments))) return result;
+    const std::string answers = read_text((folder_ / "answers.bin").string());
+    Decoder decoder(answers);
+    for (const Request& request : requests) result.answers.push_back(decoder.answer(models_[request.spec], request));
+    result.allocations = decoder.allocations();
+    EXPECT_TRUE(decoder.at_end());
+    return result;
+}
+
+}  // namespace etlc::tests

@@ -1,0 +1,83 @@
+#include "generated_source.hpp"
+
+#include <fmt/format.h>
+
+namespace etlc::tests {
+namespace {
+
+using check::InputType;
+
+const char* element_type(InputType type) {
+    return type == InputType::f16 ? "uint16_t" : type == InputType::i8 ? "int8_t" : "float";
+}
+
+std::string members(const check::Model& model) {
+    std::string result;
+    for (const check::Input& input : model.inputs) result += fmt::format("  HARNESS_INPUT({});\n", input.name);
+    for (const check::Predicate& predicate : model.predicates)
+        if (!predicate.name.empty()) result += fmt::format("  HARNESS_PREDICATE({});\n", predicate.name);
+    return result;
+}
+
+std::string buffers(const check::Model& model) {
+    std::string result = "  struct Buffers {\n";
+    for (const check::Input& input : model.inputs)
+        if (input.type != InputType::boolean)
+            result += fmt::format("    {} {}[{}];\n", element_type(input.type), input.name, input.dimension);
+    return result + "  };\n";
+}
+
+std::string feeding(const check::Model& model) {
+    std::string result = "  static void feed(Inputs& in, Buffers& buffers) {\n    (void)buffers;\n";
+    for (const check::Input& input : model.inputs) {
+        const char* kind = input.type == InputType::scalar ? "scalar" : "vector";
+        if (input.type == InputType::boolean)
+            result += fmt::format("    harness::feed_flag<{}_input>(in);\n", input.name);
+        else
+            result += fmt::format("    harness::feed_{0}<{1}_input>(in, buffers.{1});\n", kind, input.name);
+    }
+    return result + "  }\n";
+}
+
+std::string reporting(const check::Model& model) {
+    std::string result = "  static void verdicts(const Verdicts& v) {\n";
+    for (const check::Monitor& monitor : model.monitors)
+        result += fmt::format("    harness::write_verdict(v.{});\n", monitor.name);
+    result += "  }\n  static void telemetry(const Monitor& m) {\n    (void)m;\n";
+    for (const check::Predicate& predicate : model.predicates)
+        if (!predicate.name.empty())
+            result += fmt::format("    harness::write_telemetry<{}_predicate>(m);\n", predicate.name);
+    return result + "  }\n";
+}
+
+}  // namespace
+
+std::string adaptor_source(const check::Model& model) {
+    const std::string aliases = fmt::format(
+        "  using Monitor = {0}::Monitor;\n"
+        "  using Inputs = {0}::Inputs;\n"
+        "  using Verdicts = {0}::Verdicts;\n",
+        model.name);
+    return fmt::format("#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
+                       aliases + members(model) + buffers(model) + feeding(model) + reporting(model)) +
+           fmt::format("void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); }}\n",
+                       model.name);
+}
+
+std::string main_source(const std::vector<std::string>& specs) {
+    std::string declarations;
+    std::string table;
+    for (const std::string& spec : specs) {
+        declarations += fmt::format("void answer_{}();\n", spec);
+        table += fmt::format("answer_{}, ", spec);
+    }
+    return fmt::format(
+        "#include \"harness.hpp\"\n{}"
+        "int main(int argc, char**) {{\n"
+        "  const harness::Answer specs[] = {{{}}};\n"
+        "  return harness::serve(specs, sizeof specs / sizeof *specs, argc);\n"
+        "}}\n",
+        declarations, table);
+}
+
+}  // namespace etlc::tests

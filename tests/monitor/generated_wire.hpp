@@ -1,0 +1,44 @@
+// Requests to the harness and its answers, as bytes; the protocol is described in driver/harness.hpp.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string>
+
+#include "check/model.hpp"
+#include "compare.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+/// Two traces of the same spec; the monitor runs the first, the second beside it, and the second again after a reset.
+struct Request {
+    std::uint32_t spec = 0;
+    reference::Trace first;
+    reference::Trace second;
+};
+using Answer = std::array<Observed, 3>;
+
+std::string encode(const check::Model& model, const Request& request);
+
+/// Takes the answer off the front of what the harness wrote. Throws std::out_of_range where the bytes end early.
+class Decoder {
+public:
+    explicit Decoder(const std::string& bytes) : bytes_(bytes) {}
+
+    Answer answer(const check::Model& model, const Request& request);
+    /// The number of allocations, which ends the answers.
+    std::uint64_t allocations() { return take<std::uint64_t>(); }
+    bool at_end() const { return position_ == bytes_.size(); }
+
+private:
+    const std::string& bytes_;
+    std::size_t position_ = 0;
+
+    template <class T>
+    T take();
+    reference::Verdict verdict();
+    Observed run(const check::Model& model, std::size_t steps);
+};
+
+}  // namespace etlc::tests

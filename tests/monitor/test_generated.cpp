@@ -1,0 +1,132 @@
+// The generated classes, compiled and stepped, held to the reference: g++ and clang++, under harsh warnings, with
+// sanitizers and with -ffast-math; two instances in turns, reset, many headers in one program, and no memory asked for.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "compare.hpp"
+#include "exhaustive.hpp"
+#include "generated_program.hpp"
+#include "loading.hpp"
+#include "random_spec.hpp"
+#include "random_trace.hpp"
+#include "reference/reference.hpp"
+
+namespace {
+
+using namespace etlc;
+using namespace etlc::tests;
+using Formulas = SpecShape::Formulas;
+
+/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
+constexpr double kRounding = 1e-5;
+
+struct Subject {
+    std::string spec;
+    bool exact = true;
+    bool exhaustive = false;
+};
+
+std::vector<Subject> subjects() {
+    std::vector<Subject> result{{exhaustive_spec(), true, true}, {exhaustive_sliding_spec(), true, true}};
+    const std::vector<SpecShape> shapes = {
+        {.formulas = Formulas::unnested, .depth = 3},
+        {.formulas = Formulas::unbounded_nesting, .depth = 3},
+        {.formulas = Formulas::prefix, .monitors = 6, .depth = 3, .window = 3},
+        {.formulas = Formulas::sliding, .depth = 4, .window = 3},
+        {.formulas = Formulas::unnested, .depth = 2, .exact = false},
+        {.formulas = Formulas::prefix, .monitors = 6, .depth = 2, .exact = false},
+        {.formulas = Formulas::sliding, .depth = 3, .exact = false},
+    };
+    for (std::size_t n = 0; n < 2 * shapes.size(); ++n) {
+        const SpecShape& shape = shapes[n % shapes.size()];
+        result.push_back({random_spec(9000 + n, shape), shape.exact});
+    }
+    return result;
+}
+
+/// Pairs of traces for one spec.
+std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec, const Subject& subject) {
+    std::vector<Request> result;
+    if (subject.exhaustive) {
+        for (const bool gaps : {false, true}) {
+            const AllTraces traces(gaps ? 3 : 5, gaps);
+            for (std::size_t n = 0; n < traces.size(); n += 2)
+                result.push_back({spec, traces[n], traces[std::min(n + 1, traces.size() - 1)]});
+        }
+        return result;
+    }
+    for (std::uint64_t n = 0; n < 12; ++n) {
+        TraceShape shape{.steps = 4 + 3 * n, .grid = subject.exact};
+        if (n % 3 > 0) shape.missing = 0.15;
+        if (n % 3 > 1) shape.invalid = 0.1;
+        Request request{spec, random_trace(model, 200 + n, shape), {}};
+        shape.steps = 30 - 2 * n;
+        request.second = random_trace(model, 300 + n, shape);
+        result.push_back(std::move(request));
+    }
+    return result;
+}
+
+void expect_answer(const check::Model& model, const reference::Trace& trace, const Observed& observed, const char* run,
+                   double rounding) {
+    const auto mismatch = first_mismatch(model, reference::evaluate(model, trace), observed, {rounding});
+    ASSERT_FALSE(mismatch) << run << ": " << *mismatch << "\n" << model.file.text() << "\n" << to_csv(model, trace);
+}
+
+void expect_answers(const check::Model& model, const Request& request, const Answer& answer, double rounding) {
+    expect_answer(model, request.first, answer[0], "first instance", rounding);
+    expect_answer(model, request.second, answer[1], "second instance, in turns", rounding);
+    expect_answer(model, request.second, answer[2], "first instance after reset", rounding);
+}
+
+struct Variant {
+    const char* name;
+    Build build;
+};
+
+class Generated : public testing::TestWithParam<Variant> {};
+
+TEST_P(Generated, AgreesWithTheReference) {
+    const std::vector<Subject> all = subjects();
+    GeneratedProgram program(GetParam().name);
+    std::vector<Request> requests;
+    for (const Subject& subject : all) {
+        const auto model = load(subject.spec);
+        ASSERT_TRUE(model);
+        ASSERT_TRUE(program.add(*model));
+        const auto more = requests_for(*model, static_cast<std::uint32_t>(program.size() - 1), subject);
+        requests.insert(requests.end(), more.begin(), more.end());
+    }
+    ASSERT_TRUE(program.compile(GetParam().build));
+    const auto result = program.run(requests);
+    ASSERT_EQ(result.answers.size(), requests.size());
+    for (std::size_t n = 0; n < requests.size(); ++n) {
+        const std::uint32_t spec = requests[n].spec;
+        expect_answers(program.model(spec), requests[n], result.answers[n], all[spec].exact ? 0 : kRounding);
+        if (HasFatalFailure()) return;
+    }
+    EXPECT_EQ(result.allocations, 0U);
+
+    // The counting works: a program that allocates on purpose is found out, with each way it does.
+    const auto control = program.run({requests[0]}, "misbehave");
+    const std::uint64_t watched = requests[0].first.size() + 2 * requests[0].second.size() + 3;
+    EXPECT_GE(control.allocations, watched * (GetParam().build.counts_malloc ? 3 : 1));
+}
+
+const std::string kSanitizers = "-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all";
+const Variant kVariants[] = {
+    {"GccSanitized", {"g++", kSanitizers}},
+    {"ClangSanitized", {"clang++", kSanitizers}},
+    {"GccFastMath", {"g++", "-O3 -ffast-math", true}},
+    {"ClangFastMath", {"clang++", "-O3 -ffast-math", true}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Compilers, Generated, testing::ValuesIn(kVariants),
+                         [](const auto& variant) { return std::string(variant.param.name); });
+
+}  // namespace
