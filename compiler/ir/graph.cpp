@@ -36,6 +36,10 @@ const OpInfo& info(Op op) {
     return kOperators[static_cast<std::size_t>(op)];
 }
 
+bool takes_max(Op op) {
+    return op == Op::eventually || op == Op::until || op == Op::once || op == Op::since;
+}
+
 bool Node::same_as(const Node& other) const {
     return op == other.op && negated == other.negated && index == other.index && interval == other.interval &&
            operands == other.operands;
@@ -105,10 +109,10 @@ NodeId Graph::combine(Op op, std::vector<NodeId> operands, Span span) {
 
 // The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it is false at the last step.
 NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
-    const bool seeks = op == Op::eventually || op == Op::once;  // a max, false over an empty window
-    const NodeId empty = constant(!seeks);
+    const bool max = takes_max(op);
+    const NodeId empty = constant(!max);
     if (operand == empty) return empty;
-    if (interval.low == 0 && (interval.high == 0 || operand == constant(seeks))) return operand;
+    if (interval.low == 0 && (interval.high == 0 || operand == constant(max))) return operand;
     const Node& inner = nodes_[operand];
     if (inner.op == op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
         const std::uint32_t low = add_steps(interval.low, inner.interval.low);
@@ -120,14 +124,14 @@ NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
 }
 
 NodeId Graph::binary(Op op, Interval interval, NodeId left, NodeId right, Span span) {
-    const bool seeks = op == Op::until || op == Op::since;
+    const bool max = takes_max(op);
     const bool future = info(op).tense == Tense::future;
-    const NodeId empty = constant(!seeks);
+    const NodeId empty = constant(!max);
     if (right == empty) return empty;
-    if (interval.low == 0 && (interval.high == 0 || right == constant(seeks) || left == empty)) return right;
+    if (interval.low == 0 && (interval.high == 0 || right == constant(max) || left == empty)) return right;
     if (left == empty) return empty;  // the left side breaks before the window opens
-    if (left == constant(seeks)) {
-        const Op one = future ? (seeks ? Op::eventually : Op::always) : (seeks ? Op::once : Op::historically);
+    if (left == constant(max)) {
+        const Op one = future ? (max ? Op::eventually : Op::always) : (max ? Op::once : Op::historically);
         return unary(one, interval, right, span);
     }
     return intern({.op = op, .interval = interval, .operands = {left, right}, .span = span});

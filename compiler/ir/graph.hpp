@@ -36,6 +36,8 @@ struct OpInfo {
     Op dual;
 };
 const OpInfo& info(Op op);
+/// F, U, O and S: a max over positions, false over no position. The other temporal operators are mins, true over none.
+bool takes_max(Op op);
 
 /// Steps from the present: [low, high], or [low, inf).
 struct Interval {

@@ -14,6 +14,9 @@ struct Program {
     std::vector<NodeId> monitors;  ///< per monitor of the model
 };
 
+/// Every node that a monitor reaches, operands first: `--emit graph`.
+std::string print(const Program& program);
+
 Program lower(const check::Model& model);
 
 }  // namespace etlc::ir

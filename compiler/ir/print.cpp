@@ -1,7 +1,7 @@
 // Graph nodes as formulas, for comments in generated code and for --emit graph.
 #include <fmt/format.h>
 
-#include "ir/graph.hpp"
+#include "ir/lower.hpp"
 
 namespace etlc::ir {
 
@@ -39,7 +39,35 @@ std::string join(const Graph& graph, const Node& node) {
     return result;
 }
 
+void mark(const Graph& graph, NodeId id, std::vector<bool>& reached) {
+    if (reached[id]) return;
+    reached[id] = true;
+    for (NodeId operand : graph[id].operands) mark(graph, operand, reached);
+}
+
+/// "n7 = F[0, 3] n2"
+std::string definition(const Graph& graph, NodeId id) {
+    const Node& node = graph[id];
+    if (info(node.op).arity == Arity::atom) return fmt::format("n{} = {}\n", id, graph.text(id));
+    std::string operands;
+    for (NodeId operand : node.operands) operands += fmt::format(" n{}", operand);
+    return fmt::format("n{} = {}{}{}  // {}\n", id, info(node.op).symbol, interval_text(node.interval), operands,
+                       graph.text(id));
+}
+
 }  // namespace
+
+std::string print(const Program& program) {
+    const Graph& graph = program.graph;
+    std::vector<bool> reached(graph.size(), false);
+    for (NodeId root : program.monitors) mark(graph, root, reached);
+    std::string text = fmt::format("graph {}\n", graph.model().name);
+    for (NodeId id = 0; id < graph.size(); ++id)
+        if (reached[id]) text += "  " + definition(graph, id);
+    for (std::size_t m = 0; m < program.monitors.size(); ++m)
+        text += fmt::format("  {} = n{}\n", graph.model().monitors[m].name, program.monitors[m]);
+    return text;
+}
 
 std::string Graph::text(NodeId id) const {
     const Node& node = nodes_[id];

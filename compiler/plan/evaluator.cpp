@@ -27,11 +27,6 @@ std::uint32_t saturating_increment(std::uint32_t x) {
     return x == std::numeric_limits<std::uint32_t>::max() ? x : x + 1;
 }
 
-bool over_pairs(StreamOp op) {
-    return op == StreamOp::window_since || op == StreamOp::window_trigger || op == StreamOp::window_until ||
-           op == StreamOp::window_release;
-}
-
 }  // namespace
 
 Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
@@ -239,7 +234,7 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
     switch (reading.kind) {
         case Reading::Kind::latch: state.registers.assign(1, kFalse); break;
         case Reading::Kind::fold:
-            state.registers = seeks(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
+            state.registers = ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
         case Reading::Kind::machine:
             state.registers.assign(reading.machine.states.size(), kFalse);
@@ -278,7 +273,7 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
 
 /// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left side before now.
 etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
-    const bool max_of = seeks(fold.op);
+    const bool max_of = ir::takes_max(fold.op);
     const bool open = fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
     const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
     Value& best = state.registers[0];
@@ -290,9 +285,9 @@ etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) c
     if (!reaches_past) return reading;
     const Value unseen = streams_[fold.unseen];
     if (max_of)
-        reading.upper = max(reading.upper, min(guard.high, unseen.high));
+        reading.upper = etlmon::max(reading.upper, etlmon::min(guard.high, unseen.high));
     else
-        reading.lower = min(reading.lower, max(guard.low, unseen.low));
+        reading.lower = etlmon::min(reading.lower, etlmon::max(guard.low, unseen.low));
     return reading;
 }
 
@@ -302,7 +297,7 @@ etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState&
     const Table& table = state.table;
     for (std::size_t g = 0; g < machine.guards.size(); ++g) {
         state.guards[g] = kTrue;
-        for (Slot slot : machine.guards[g]) state.guards[g] = min(state.guards[g], streams_[slot]);
+        for (Slot slot : machine.guards[g]) state.guards[g] = etlmon::min(state.guards[g], streams_[slot]);
     }
     std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1, low);
     std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);

@@ -34,7 +34,8 @@ public:
     /// False where a monitor is too large; the sink then says which part.
     bool add_monitor(Index index, diag::Sink& sink) {
         const check::Monitor& source = plan_.model->monitors[index];
-        Monitor monitor{.name = source.name, .sliding = source.sliding, .horizon = source.horizon, .index = index};
+        Monitor monitor{.name = source.name, .sliding = source.sliding, .horizon = source.horizon, .index = index,
+                        .node = program_.monitors[index]};
         if (source.sliding) {
             plan_.has_sliding = true;
             const Slot slot = streams_.of(program_.monitors[index]);

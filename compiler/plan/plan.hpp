@@ -106,6 +106,7 @@ struct Monitor {
     std::uint32_t reading = kNone;  ///< prefix monitors
     Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon
     Index index = 0;                ///< of the model's monitors
+    NodeId node = 0;                ///< its formula
 };
 
 /// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).

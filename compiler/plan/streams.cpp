@@ -26,10 +26,6 @@ bool equal(Value a, Value b) {
 
 }  // namespace
 
-bool seeks(Op op) {
-    return op == Op::eventually || op == Op::until || op == Op::once || op == Op::since;
-}
-
 Slot StreamBuilder::intern(Stream stream) {
     Identity identity{stream.op,        stream.operands,   stream.index, stream.length,
                       stream.value.low, stream.value.high, stream.lag};
@@ -135,7 +131,7 @@ Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_
 
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
 Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
-    const bool max = seeks(node.op);
+    const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
     const NodeId inner = low == 0 ? id : kNone;
@@ -150,7 +146,7 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
 
 /// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
 Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
-    const bool max = seeks(node.op);
+    const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
     const std::vector<Slot> operands = align(node.operands);
     const std::uint32_t lag = streams_[operands[0]].lag > streams_[operands[1]].lag ? streams_[operands[0]].lag
@@ -173,13 +169,13 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
 Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
-    const StreamOp op = seeks(node.op) ? StreamOp::window_max : StreamOp::window_min;
+    const StreamOp op = ir::takes_max(node.op) ? StreamOp::window_max : StreamOp::window_min;
     return window(op, {operand}, high - low + 1, streams_[operand].lag + high, id);
 }
 
 /// f U[a,b] g at k is (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual alike.
 Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
-    const bool max = seeks(node.op);
+    const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
     const std::vector<Slot> operands = align(node.operands);
     const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
@@ -223,7 +219,7 @@ Slot StreamBuilder::unseen(NodeId id) {
 /// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H and the dual of S: the
 /// other way round. What is known of the operand stays in sight of a past operator.
 Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
-    const bool max = seeks(node.op);
+    const bool max = ir::takes_max(node.op);
     const StreamOp narrow = max ? StreamOp::conjunction : StreamOp::disjunction;
     const StreamOp widen = max ? StreamOp::disjunction : StreamOp::conjunction;
     const Slot operand = unseen(node.operands.back());

@@ -49,7 +49,4 @@ private:
     std::map<Identity, Slot> interned_;
 };
 
-/// A max over positions (F, U, O, S), false over no position; the others are mins, true over none.
-bool seeks(ir::Op op);
-
 }  // namespace etlc::plan

@@ -1,0 +1,41 @@
+// The pipeline: .etl text -> tree -> model -> graph -> plan -> text.
+// Takes: a request. Gives: the text asked for, or findings in the sink. Keeps true: each stage is a function from value to
+// value; the pipeline stops after the first stage that found an error.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "check/check.hpp"
+#include "diag/diag.hpp"
+#include "ir/lower.hpp"
+#include "plan/plan.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+/// A spec through all stages. The model stays where it is: graph and plan point to it.
+struct Compiled {
+    std::unique_ptr<check::Model> model;
+    std::unique_ptr<ir::Program> program;
+    plan::Plan plan;
+};
+
+struct Request {
+    check::Options check;
+    plan::Limits limits;
+    std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
+    std::string name_space;
+};
+
+std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
+
+/// The text of request.emit; nothing where there was an error. `dependencies`: every file that the spec loads.
+std::optional<std::string> emit(const source::File& file, const Request& request, diag::Sink& sink,
+                                std::vector<std::string>& dependencies);
+
+/// What --emit takes, each with a summary for --help.
+std::vector<std::pair<std::string, std::string>> emittable();
+
+}  // namespace etlc::driver

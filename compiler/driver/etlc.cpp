@@ -1,0 +1,216 @@
+// The command line. Exit status: 0; 1 the spec or its data is wrong; 2 the call is wrong.
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <cstdio>
+
+#include "data/file.hpp"
+#include "diag/render.hpp"
+#include "driver/compile.hpp"
+#include "driver/run.hpp"
+#include "driver/version.hpp"
+#include "parse/parse.hpp"
+
+namespace {
+
+using namespace etlc;
+
+constexpr int kOk = 0;
+constexpr int kWrongSpec = 1;
+constexpr int kWrongCall = 2;
+
+struct Call {
+    std::string spec;
+    std::string output;
+    std::string depfile;
+    std::string diagnostics = "text";
+    std::vector<std::string> warnings;
+    bool check_only = false;
+    driver::Request request;
+    driver::RunRequest run;
+};
+
+bool warnings_are_errors(const Call& call) {
+    return std::find(call.warnings.begin(), call.warnings.end(), "error") != call.warnings.end();
+}
+
+/// Prints the findings; the exit status that they mean.
+int conclude(const Call& call, const source::File& file, const diag::Sink& sink) {
+    diag::RenderOptions options;
+    options.warnings_as_errors = warnings_are_errors(call);
+    options.colour = isatty(STDERR_FILENO) != 0;
+    const bool json = call.diagnostics == "json";
+    const std::string text = json ? diag::render_json(file, sink, options) : diag::render_text(file, sink, options);
+    fmt::print(stderr, "{}", text);
+    return sink.has_errors() || (options.warnings_as_errors && sink.warnings() > 0) ? kWrongSpec : kOk;
+}
+
+/// "monitor.hpp: spec.etl targets/a.npy", as make and ninja read it.
+std::string dependency_rule(const std::string& output, const std::string& spec, const std::vector<std::string>& files) {
+    const auto escaped = [](const std::string& path) {
+        std::string text;
+        for (char c : path) {
+            if (c == ' ' || c == '#') text += '\\';
+            if (c == '$') text += '$';
+            text += c;
+        }
+        return text;
+    };
+    std::string rule = escaped(output) + ": " + escaped(spec);
+    for (const std::string& file : files) rule += " \\\n  " + escaped(file);
+    return rule + "\n";
+}
+
+void write(const std::string& path, const std::string& text, diag::Sink& sink) {
+    const std::string& target = path == "-" ? "/dev/stdout" : path;
+    if (const auto failure = data::write_file_atomically(target, text, diag::Code::unwritable_output))
+        sink.report(data::in_file(*failure, path));
+}
+
+bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
+    auto text = data::read_file(path, parse::kMaxSpecBytes + 1, diag::Code::unreadable_spec);
+    file = source::File(path, text ? std::move(*text) : "");
+    if (!text) sink.report(data::in_file(text.failure(), path));
+    return static_cast<bool>(text);
+}
+
+int compile_spec(const Call& call) {
+    diag::Sink sink;
+    source::File file;
+    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
+    std::vector<std::string> dependencies;
+    const auto text = driver::emit(file, call.request, sink, dependencies);
+    const bool refused = !text || (warnings_are_errors(call) && sink.warnings() > 0);
+    if (!refused && !call.check_only) {
+        if (!call.depfile.empty()) write(call.depfile, dependency_rule(call.output, call.spec, dependencies), sink);
+        if (!sink.has_errors()) write(call.output, *text, sink);
+    }
+    return conclude(call, file, sink);
+}
+
+int run_trace(const Call& call) {
+    diag::Sink sink;
+    source::File file;
+    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
+    const auto compiled = driver::compile(file, call.request, sink);
+    const bool refused = !compiled || (warnings_are_errors(call) && sink.warnings() > 0);
+    if (!refused) {
+        driver::RunRequest request = call.run;
+        request.progress = isatty(STDERR_FILENO) != 0;
+        driver::run(*compiled, request, sink);
+    }
+    return conclude(call, file, sink);
+}
+
+void add_common_options(CLI::App& app, Call& call) {
+    app.add_option("spec", call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
+    app.add_option("--thresholds", call.request.check.thresholds_path,
+                   "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
+        ->type_name("FILE");
+    app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")->capture_default_str();
+    app.add_option("--max-code", call.request.limits.code_bytes, "most bytes of code, estimated, targets aside")
+        ->capture_default_str();
+    app.add_option("--max-work", call.request.limits.operations, "most operations of the temporal part a step")
+        ->capture_default_str();
+    app.add_option("-W", call.warnings, "-Werror: warnings are errors")->type_name("error")->check(CLI::IsMember({"error"}));
+    app.add_option("--diagnostics", call.diagnostics, "how to print them")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
+}
+
+/// a or a::b
+bool names_namespace(std::string_view name) {
+    bool starts = true;
+    for (std::size_t i = 0; i < name.size(); ++i) {
+        const auto c = static_cast<unsigned char>(name[i]);
+        const bool separator = starts ? false : name.substr(i, 2) == "::";
+        if (separator) ++i;
+        else if (starts ? std::isalpha(c) == 0 : std::isalnum(c) == 0 && c != '_') return false;
+        starts = separator;
+    }
+    return !starts;
+}
+
+std::string emit_help() {
+    std::string text = "print a stage instead of the header:";
+    for (const auto& [name, summary] : driver::emittable()) text += fmt::format("\n{:>30} {}", name + ":", summary);
+    return text;
+}
+
+void add_compile_options(CLI::App& app, Call& call) {
+    std::vector<std::string> stages;
+    for (const auto& [name, summary] : driver::emittable()) stages.push_back(name);
+    app.add_option("-o,--output", call.output, "where to write the result; - is standard output")->type_name("FILE");
+    app.add_flag("--check", call.check_only, "diagnostics only");
+    app.add_option("--emit", call.request.emit, emit_help())->check(CLI::IsMember(stages))->type_name("STAGE");
+    app.add_option("--namespace", call.request.name_space, "of the generated code (default: the spec's name)")
+        ->type_name("NAME")
+        ->check(CLI::Validator(
+            [](const std::string& name) {
+                return names_namespace(name) ? std::string() : fmt::format("'{}' is not the name of a namespace", name);
+            },
+            ""));
+    app.add_option("--depfile", call.depfile, "also write what the output depends on, for make and ninja")->type_name("FILE");
+}
+
+/// The call's own mistakes that CLI11 cannot see; empty where there are none.
+std::string mistake_in(const Call& call, const CLI::App& app) {
+    const bool prints_stage = app.count("--emit") > 0;
+    if (call.check_only && (prints_stage || !call.output.empty())) return "--check goes neither with --emit nor with -o";
+    if (!call.check_only && !prints_stage && call.output.empty()) return "say where to write the header with -o, or --check";
+    if (!call.depfile.empty() && (call.output.empty() || call.output == "-")) return "--depfile needs -o FILE";
+    return "";
+}
+
+int complain(const CLI::App& app, const std::string& mistake) {
+    fmt::print(stderr, "etlc: {}\nRun {} --help for more information.\n", mistake, app.get_name());
+    return kWrongCall;
+}
+
+int parse_arguments(CLI::App& app, int argc, char** argv) {
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::Success& wish) {  // --help, --version
+        app.exit(wish);
+        return kOk;
+    } catch (const CLI::ParseError& error) {
+        return complain(app, error.what());
+    }
+    return -1;
+}
+
+int compile_command(int argc, char** argv) {
+    Call call;
+    CLI::App app("etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
+                 "Other commands: etlc run SPEC.etl --trace FILE",
+                 "etlc");
+    app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
+    add_common_options(app, call);
+    add_compile_options(app, call);
+    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    if (const std::string mistake = mistake_in(call, app); !mistake.empty()) return complain(app, mistake);
+    if (call.output.empty()) call.output = "-";
+    return compile_spec(call);
+}
+
+int run_command(int argc, char** argv) {
+    Call call;
+    CLI::App app("Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.", "etlc run");
+    add_common_options(app, call);
+    app.add_option("--trace", call.run.trace, "the trace: .csv or .npz")->type_name("FILE")->required();
+    app.add_option("-o,--output", call.run.output, "where to write the verdicts, as CSV; - is standard output")
+        ->type_name("FILE")
+        ->capture_default_str();
+    app.add_flag("--finish", call.run.finish, "after the trace, also report the last positions of sliding monitors");
+    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    return run_trace(call);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    const bool run = argc > 1 && std::string_view(argv[1]) == "run";
+    return run ? run_command(argc - 1, argv + 1) : compile_command(argc, argv);
+}

@@ -1,0 +1,23 @@
+// `etlc run`: the plan, executed on a recorded trace.
+// Takes: a compiled spec and a trace file. Gives: one CSV row per step and monitor.
+// Keeps true: constant memory and linear time; the output file appears whole or not at all.
+#pragma once
+
+#include <string>
+
+#include "diag/diag.hpp"
+#include "driver/compile.hpp"
+
+namespace etlc::driver {
+
+struct RunRequest {
+    std::string trace;
+    std::string output = "-";
+    bool finish = false;    ///< also the positions that sliding monitors report after the end of the trace
+    bool progress = false;  ///< on stderr
+};
+
+/// False where the sink now says why not.
+bool run(const Compiled& compiled, const RunRequest& request, diag::Sink& sink);
+
+}  // namespace etlc::driver

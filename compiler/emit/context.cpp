@@ -1,0 +1,110 @@
+#include "emit/context.hpp"
+
+#include <cmath>
+
+namespace etlc::emit {
+
+namespace {
+
+using plan::StreamOp;
+
+constexpr std::size_t kLongestQuote = 90;
+
+/// Spec text on one line, shortened where it is long.
+std::string quoted(std::string_view text) {
+    std::string line;
+    for (char c : text) {
+        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+        if (!blank)
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    }
+    while (!line.empty() && (line.back() == ' ' || line.back() == '\\')) line.pop_back();
+    if (line.size() <= kLongestQuote) return line;
+    std::size_t cut = kLongestQuote - 4;
+    while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U) --cut;  // not inside a code point
+    return line.substr(0, cut) + " ...";
+}
+
+/// Streams whose value is one register: the register itself is the value of this step.
+bool is_register(StreamOp op) {
+    return op == StreamOp::running_max || op == StreamOp::running_min || op == StreamOp::since || op == StreamOp::trigger;
+}
+
+}  // namespace
+
+std::string float_literal(float x) {
+    if (std::isinf(x)) return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
+    std::string text = fmt::format("{}", x);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text + "f";
+}
+
+std::string key_literal(plan::Key key) {
+    if (key == etlmon::kTop) return "etlmon::kTop";
+    if (key == etlmon::kBottom) return "etlmon::kBottom";
+    return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
+}
+
+std::string value_literal(plan::Value value) {
+    if (value.low == value.high && value.low == etlmon::kTop) return "etlmon::kTrue";
+    if (value.low == value.high && value.low == etlmon::kBottom) return "etlmon::kFalse";
+    return fmt::format("Value{{{}, {}}}", key_literal(value.low), key_literal(value.high));
+}
+
+std::string nested(std::string_view function, const std::vector<std::string>& arguments) {
+    std::string text = arguments.front();
+    for (std::size_t i = 1; i < arguments.size(); ++i) text = fmt::format("{}({}, {})", function, text, arguments[i]);
+    return text;
+}
+
+void print_wrapped(Printer& out, const std::string& text) {
+    std::size_t begin = 0;
+    bool first = true;
+    while (begin < text.size()) {
+        const std::size_t room = kLineWidth - out.column() - (first ? 0 : 4);
+        std::size_t end = text.size();
+        if (end - begin > room) {
+            const std::size_t blank = text.rfind(' ', begin + room);
+            if (blank != std::string::npos && blank > begin) end = blank;
+        }
+        out.line("{}{}", first ? "" : "    ", text.substr(begin, end - begin));
+        begin = end + 1;
+        first = false;
+    }
+}
+
+std::string Context::value(plan::Slot slot) const {
+    const plan::Stream& stream = plan.streams[slot];
+    if (stream.op == StreamOp::constant) return value_literal(stream.value);
+    if (stream.op == StreamOp::predicate) return "now." + names.predicate_atom.at(stream.index);
+    if (stream.op == StreamOp::flag) return "now." + names.flag_atom.at(stream.index);
+    if (is_register(stream.op)) return names.stream_member.at(slot);
+    return names.stream_local.at(slot);
+}
+
+std::string Context::low(plan::Slot slot) const {
+    const plan::Stream& stream = plan.streams[slot];
+    return stream.op == StreamOp::constant ? key_literal(stream.value.low) : value(slot) + ".low";
+}
+
+std::string Context::high(plan::Slot slot) const {
+    const plan::Stream& stream = plan.streams[slot];
+    return stream.op == StreamOp::constant ? key_literal(stream.value.high) : value(slot) + ".high";
+}
+
+std::string Context::place(source::Span span) const {
+    return fmt::format("{}:{}: {}", spec_file, model.file.position(span.begin).line, quoted(model.file.text(span)));
+}
+
+std::string Context::place(plan::NodeId node) const {
+    const std::string text = graph.text(node);
+    const std::string words = place(graph[node].span);
+    const bool as_written = words.size() >= text.size() && words.compare(words.size() - text.size(), text.size(), text) == 0;
+    if (as_written || graph[node].span == source::Span{}) return words;
+    return quoted(text) == quoted(model.file.text(graph[node].span)) ? words
+                                                                    : fmt::format("{}  ({})", words, quoted(text));
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,209 @@
+// The generated header, part by part in the order of the file.
+#include <algorithm>
+#include <set>
+
+#include "emit/context.hpp"
+#include "emit/emit.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+using check::InputType;
+using plan::StreamOp;
+
+std::string file_name(const std::string& path) {
+    return path.substr(path.find_last_of('/') + 1);
+}
+
+// ---- includes
+
+bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
+    return std::any_of(plan.streams.begin(), plan.streams.end(), [&](const plan::Stream& stream) {
+        return std::find(ops.begin(), ops.end(), stream.op) != ops.end();
+    });
+}
+
+std::set<std::string> runtime_headers(const Context& context) {
+    const plan::Plan& plan = context.plan;
+    std::set<std::string> headers{"predicate", "reading", "verdict", "version", "views"};
+    if (!plan.distances.empty()) headers.insert("kernel");
+    for (Index p : plan.predicates)
+        if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
+    for (Index i : plan.inputs) {
+        const check::Input& input = context.model.inputs[i];
+        if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("storage");
+        if (input.hold > 0) headers.insert("hold");
+    }
+    if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert("delay");
+    if (any_stream(plan, {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since, StreamOp::window_trigger,
+                          StreamOp::window_until, StreamOp::window_release}))
+        headers.insert("window");
+    if (!context.names.table_locals.empty()) headers.insert("machine");
+    return headers;
+}
+
+void print_includes(Printer& out, const Context& context, const std::string& version) {
+    out.line("#pragma once");
+    out.line();
+    out.line("#include <stddef.h>");
+    out.line("#include <stdint.h>");
+    out.line();
+    for (const std::string& header : runtime_headers(context)) out.line("#include \"etlmon/{}.hpp\"", header);
+    const std::size_t dot = version.find('.');
+    const std::string major = version.substr(0, dot);
+    const std::string minor = version.substr(dot + 1, version.find('.', dot + 1) - dot - 1);
+    out.line();
+    out.line("#if ETLMON_VERSION_MAJOR != {} || ETLMON_VERSION_MINOR != {}", major, minor);
+    out.line("#error \"made by etlc {0}.{1}: run etlc again, or use the etlmon {0}.{1} that it was made for\"", major, minor);
+    out.line("#endif");
+    out.line();
+}
+
+// ---- the class
+
+std::vector<Member> own_members(const Context& context) {
+    const plan::Plan& plan = context.plan;
+    std::vector<Member> result;
+    for (Index i : plan.inputs) {
+        const auto held = context.names.hold_member.find(i);
+        if (held == context.names.hold_member.end()) continue;
+        const check::Input& input = context.model.inputs[i];
+        const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
+        result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second, "",
+                          fmt::format("the last {} that was there", input.name), held->second + ".reset();"});
+    }
+    for (const auto& [p, name] : context.names.predicate_member) {
+        const bool plain = context.model.predicates[p].plain_distance();
+        result.push_back({plain ? "etlmon::Measured" : "float", name, "", "telemetry",
+                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing")});
+    }
+    for (const auto& [m, name] : context.names.verdict_member)
+        result.push_back({"etlmon::Verdict", name, "", "the last one, for finish()", name + " = etlmon::Verdict();"});
+    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "", "index of the step; saturates", "step_ = 0;"});
+    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "", "calls of finish()", "finished_ = 0;"});
+    result.push_back({"uint32_t", "missing_steps_", "", "saturates", "missing_steps_ = 0;"});
+    return result;
+}
+
+void print_telemetry(Printer& out, const Context& context) {
+    for (const auto& [p, member] : context.names.predicate_member) {
+        const check::Predicate& predicate = context.model.predicates[p];
+        const bool plain = predicate.plain_distance();
+        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member, plain ? ".delta" : "");
+        if (plain) out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}", predicate.name, member);
+    }
+}
+
+void print_exists(Printer& out) {
+    out.line("/// Whether the trace has the position `lag` steps before this one.");
+    out.line("bool exists(uint32_t lag) const noexcept { return step_ >= lag && finished_ <= lag; }");
+    out.line();
+}
+
+void print_atoms(Printer& out, const Context& context) {
+    out.line("/// What this step says about each predicate.");
+    out.open("struct Atoms {");
+    for (const auto& [p, name] : context.names.predicate_atom) out.line("Value {}{{}};", name);
+    for (const auto& [i, name] : context.names.flag_atom) out.line("Value {}{{}};", name);
+    out.close("};");
+    out.line();
+}
+
+void print_public_part(Printer& out, const Context& context, const std::vector<Member>& all) {
+    const plan::Cost& cost = context.plan.cost;
+    out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)", cost.state_bytes);
+    out.line("static constexpr uint32_t kOperations = {};  ///< of the temporal part in the worst step: min, max, compare",
+             cost.operations);
+    out.line("static constexpr uint32_t kDistanceElements = {};  ///< target elements measured in a step",
+             cost.distance_operations);
+    out.line();
+    out.line("Monitor() noexcept { reset(); }");
+    out.line();
+    out.line("/// A new episode.");
+    out.open("void reset() noexcept {");
+    for (const Member& member : all) out.line(member.reset);
+    out.close();
+    out.line();
+    out.line("/// One call, one time step.");
+    out.line("Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }");
+    out.line();
+    if (context.plan.has_sliding) {
+        out.line("/// The trace has ended: each call reports one of the last positions of the sliding monitors, cut at the end;");
+        out.line("/// a monitor that has reported its last is undecided from then on. Prefix monitors repeat their verdict.");
+        out.open("Verdicts finish() noexcept {");
+        out.line("if (finished_ != 0xffffffffu) ++finished_;");
+        out.line("return judge(Atoms());");
+        out.close();
+        out.line();
+    }
+    if (!context.names.predicate_member.empty()) {
+        out.line("/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, and the row of");
+        out.line("/// the nearest target.");
+        print_telemetry(out, context);
+        out.line();
+    }
+    out.line("/// Steps on which some predicate or bool input was unknown; saturates.");
+    out.line("uint32_t missing_steps() const noexcept { return missing_steps_; }");
+}
+
+void print_class(Printer& out, const Context& context) {
+    const std::vector<Member> all = members(context);
+    out.line("/// Every monitor of the spec, stepped together. Any number of instances; none of them shares anything.");
+    out.open("class Monitor {");
+    out.label("public:");
+    print_public_part(out, context, all);
+    out.line();
+    out.label("private:");
+    out.line("using Value = etlmon::Value;");
+    out.line("using Key = etlmon::Key;");
+    out.line("using Reading = etlmon::Reading;");
+    out.line();
+    print_atoms(out, context);
+    if (context.plan.has_sliding) print_exists(out);
+    print_measure(out, context);
+    out.line();
+    print_judge(out, context);
+    out.line();
+    for (const Member& member : all)
+        out.line("{} {}{};{}", member.type, member.name, member.dimensions,
+                 member.comment.empty() ? "" : "  // " + member.comment);
+    out.close("};");
+    out.line("static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");
+    out.line();
+}
+
+}  // namespace
+
+std::vector<Member> members(const Context& context) {
+    std::vector<Member> all = reading_members(context);
+    for (const std::vector<Member>& more : {stream_members(context), own_members(context)})
+        all.insert(all.end(), more.begin(), more.end());
+    return all;
+}
+
+std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
+    const check::Model& model = *plan.model;
+    const Context context{plan,
+                          graph,
+                          model,
+                          make_names(plan, graph),
+                          file_name(model.file.path()),
+                          options.name_space.empty() ? model.name : options.name_space};
+    Printer out;
+    out.line("// Made by etlc {} from {}: change that, and run etlc again.", options.version, context.spec_file);
+    print_summary(out, context);
+    print_includes(out, context, options.version);
+    out.line("namespace {} {{", context.name_space);
+    out.line();
+    print_inputs_and_verdicts(out, context);
+    print_constants(out, context);
+    print_tables(out, context);
+    print_class(out, context);
+    out.line("}}  // namespace {}", context.name_space);
+    return out.take();
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,95 @@
+// What the user of the class fills in and gets back, and the constants behind it.
+#include "emit/context.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+using check::InputType;
+
+std::string type_of(const check::Input& input) {
+    switch (input.type) {
+        case InputType::scalar: return "float";
+        case InputType::boolean: return "etlmon::Flag";
+        case InputType::f32: return fmt::format("etlmon::Vector<float, {}>", input.dimension);
+        case InputType::f16: return fmt::format("etlmon::Vector<uint16_t, {}>", input.dimension);
+        case InputType::i8: return fmt::format("etlmon::Vector<int8_t, {}>", input.dimension);
+    }
+    return "";
+}
+
+std::string remark_on(const check::Input& input) {
+    std::string text;
+    const auto add = [&](const std::string& remark) { text += (text.empty() ? "  // " : "; ") + remark; };
+    if (input.has_range) add(fmt::format("in [{}, {}]; outside counts as missing", input.range.low, input.range.high));
+    if (input.type == InputType::f16) add("IEEE bits of float16");
+    if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
+    if (input.hold > 0) add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
+    return text;
+}
+
+void print_numbers(Printer& out, const std::string& name, const std::string& size, const std::vector<float>& numbers) {
+    out.line("alignas(64) inline constexpr float {}[{}] = {{", name, size);
+    out.indent();
+    std::string line;
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+        const std::string number = float_literal(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
+        if (!line.empty() && out.column() + line.size() + 1 + number.size() > kLineWidth) {
+            out.line(line);
+            line.clear();
+        }
+        line += (line.empty() ? "" : " ") + number;
+    }
+    out.line(line);
+    out.close("};");
+}
+
+void print_rows(Printer& out, const Context& context, Index d) {
+    const check::Distance& distance = context.model.distances[d];
+    const check::Target& target = context.model.targets[distance.target];
+    out.line("/// {}: {} of {} elements{}", target.origin, target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
+             target.dimension, plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+    print_numbers(out, context.names.target_array.at(d), fmt::format("{} * {}", target.rows, target.dimension),
+                  plan::prepared_rows(context.model, distance));
+}
+
+}  // namespace
+
+void print_inputs_and_verdicts(Printer& out, const Context& context) {
+    out.line("/// What the monitors see at one step. Inputs{} lacks everything.");
+    out.open("struct Inputs {");
+    for (Index i : context.plan.inputs) {
+        const check::Input& input = context.model.inputs[i];
+        out.line("{} {}{};{}", type_of(input), input.name, input.type == InputType::scalar ? " = etlmon::kMissing" : "",
+                 remark_on(input));
+    }
+    out.close("};");
+    out.line();
+    out.line("/// What they answer: about the prefix so far or, sliding, about the position their horizon ago.");
+    out.open("struct Verdicts {");
+    for (const plan::Monitor& monitor : context.plan.monitors)
+        out.line("etlmon::Verdict {};  // {}", monitor.name, context.place(context.model.monitors[monitor.index].span));
+    out.close("};");
+    out.line();
+}
+
+void print_constants(Printer& out, const Context& context) {
+    if (context.plan.distances.empty()) return;
+    out.line("/// Target sets, a row after the other.");
+    out.line("namespace targets {");
+    std::set<std::string> done;
+    for (Index d : context.plan.distances) {
+        if (done.insert(context.names.target_array.at(d)).second) print_rows(out, context, d);
+        const auto weights = context.names.weight_array.find(d);
+        if (weights == context.names.weight_array.end()) continue;
+        const check::Distance& distance = context.model.distances[d];
+        out.line("/// the weights of {}", distance.text);
+        print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()), distance.weights);
+    }
+    out.line("}  // namespace targets");
+    out.line();
+}
+
+}  // namespace etlc::emit

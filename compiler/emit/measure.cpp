@@ -1,0 +1,230 @@
+// measure(): from the samples of a step to the robustness of every predicate.
+#include "emit/context.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Expr;
+using check::Index;
+using check::InputType;
+
+/// The conditions under which all of some inputs are there: "z != nullptr && gripper != nullptr".
+std::string all_present(const Context& context, const std::vector<Index>& inputs) {
+    std::string text;
+    for (Index i : inputs) {
+        if (!text.empty()) text += " && ";
+        text += context.names.input_local.at(i) + " != nullptr";
+    }
+    return text;
+}
+
+std::string present(const check::Input& input) {
+    if (input.type != InputType::scalar) return fmt::format("etlmon::present(in.{})", input.name);
+    if (!input.has_range) return fmt::format("etlmon::present_scalar(in.{})", input.name);
+    return fmt::format("etlmon::present_scalar(in.{}, {}, {})", input.name, float_literal(input.range.low),
+                       float_literal(input.range.high));
+}
+
+void print_widened(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    const std::string& buffer = context.names.input_buffer.at(i);
+    out.line("float {}[{}];", buffer, input.dimension);
+    out.line("const float* {} = nullptr;", local);
+    out.open(fmt::format("if ({}) {{", present(input)));
+    if (input.type == InputType::f16)
+        out.line("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer, input.dimension);
+    else
+        out.line("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name, float_literal(input.scale), buffer,
+                 input.dimension);
+    out.line("{} = {};", local, buffer);
+    out.close();
+}
+
+void print_flag(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (input.hold == 0) {
+        out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
+        out.line("missing |= !in.{}.present();", input.name);
+        return;
+    }
+    const std::string& word = context.names.input_buffer.at(i);
+    out.line("const uint32_t {} = in.{}.value();", word, input.name);
+    out.line("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : nullptr);", local,
+             context.names.hold_member.at(i), input.name, word);
+    out.line("now.{} = etlmon::value_of({} != nullptr ? etlmon::Flag(*{} != 0) : etlmon::Flag());",
+             context.names.flag_atom.at(i), local, local);
+    out.line("missing |= {} == nullptr;", local);
+}
+
+void print_input(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (input.type == InputType::boolean) return print_flag(out, context, i);
+    const bool held = input.hold > 0;
+    if (input.type == InputType::f16 || input.type == InputType::i8)
+        print_widened(out, context, i);
+    else
+        out.line("const float* {}{} = {} ? {} : nullptr;", held ? "" : "const ", local, present(input),
+                 input.is_embedding() ? fmt::format("in.{}.data()", input.name) : fmt::format("&in.{}", input.name));
+    if (held) out.line("{} = {}.take({});", local, context.names.hold_member.at(i), local);
+}
+
+std::string aggregation(const check::Distance& distance) {
+    using enum check::Aggregation;
+    switch (distance.aggregation) {
+        case min: return "etlmon::Min";
+        case max: return "etlmon::Max";
+        case mean: return "etlmon::Mean";
+        case kth: break;
+    }
+    return fmt::format("etlmon::Kth<{}>", distance.kth);
+}
+
+/// The kernel's call on the point that `z` names.
+std::string kernel_call(const Context& context, Index d, const std::string& z) {
+    const check::Distance& distance = context.model.distances[d];
+    const check::Target& target = context.model.targets[distance.target];
+    const auto weights = context.names.weight_array.find(d);
+    return fmt::format("etlmon::measure<etlmon::{}, {}, {}, {}>({}, targets::{}{})", plan::metric_name(distance),
+                       aggregation(distance), target.rows, target.dimension, z, context.names.target_array.at(d),
+                       weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
+}
+
+/// `into = measure(...)`, only where the inputs are there.
+void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
+    const check::Distance& distance = context.model.distances[d];
+    if (!distance.point_is_vector) {
+        const std::string& z = context.names.input_local.at(distance.point[0]);
+        print_wrapped(out, fmt::format("if ({} != nullptr) {} = {};", z, into, kernel_call(context, d, z)));
+        return;
+    }
+    std::string elements;
+    for (Index i : distance.point)
+        elements += (elements.empty() ? "*" : ", *") + context.names.input_local.at(i);
+    print_wrapped(out, fmt::format("if ({}) {{", all_present(context, distance.point)));
+    out.indent();
+    print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
+    print_wrapped(out, fmt::format("{} = {};", into, kernel_call(context, d, "point")));
+    out.close();
+}
+
+std::string expression(const Context& context, const Expr& e) {
+    const auto call = [&](std::string_view function) {
+        std::vector<std::string> arguments;
+        for (const Expr& argument : e.arguments) arguments.push_back(expression(context, argument));
+        if (arguments.size() == 1) return fmt::format("etlmon::{}({})", function, arguments[0]);
+        return nested(fmt::format("etlmon::{}", function), arguments);
+    };
+    switch (e.kind) {
+        case Expr::Kind::number: return float_literal(e.number32);
+        case Expr::Kind::scalar: return "*" + context.names.input_local.at(e.index);
+        case Expr::Kind::distance: return context.names.distance_local.at(e.index) + ".delta";
+        case Expr::Kind::negate: return call("negate");
+        case Expr::Kind::add: return call("add");
+        case Expr::Kind::subtract: return call("subtract");
+        case Expr::Kind::multiply: return call("multiply");
+        case Expr::Kind::divide: return call("divide");
+        case Expr::Kind::abs: return call("absolute");
+        case Expr::Kind::sqrt: return call("root");
+        case Expr::Kind::min: return call("smaller");
+        case Expr::Kind::max: return call("greater");
+    }
+    return "";
+}
+
+/// Distances that an expression or more than one predicate reads get a local; the others go straight into telemetry.
+std::map<Index, int> uses_of_distances(const Context& context) {
+    std::map<Index, int> uses;
+    const auto visit = [&](const auto& self, const Expr& e, int weight) -> void {
+        if (e.kind == Expr::Kind::distance) uses[e.index] += weight;
+        for (const Expr& argument : e.arguments) self(self, argument, 2);
+    };
+    for (Index p : context.plan.predicates) visit(visit, context.model.predicates[p].expression, 1);
+    return uses;
+}
+
+class MeasurePrinter {
+public:
+    MeasurePrinter(Printer& out, const Context& context)
+        : out_(out), context_(context), uses_(uses_of_distances(context)) {}
+
+    void print() {
+        for (Index i : context_.plan.inputs) print_input(out_, context_, i);
+        for (Index d : context_.plan.distances)
+            if (uses_[d] > 1) print_shared(d);
+        for (Index p : context_.plan.predicates) print_predicate(p);
+    }
+
+private:
+    void print_shared(Index d) {
+        const std::string& local = context_.names.distance_local.at(d);
+        out_.line();
+        out_.line("// {}", context_.model.distances[d].text);
+        out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
+        print_distance(out_, context_, d, local);
+    }
+
+    void print_predicate(Index p) {
+        const check::Predicate& predicate = context_.model.predicates[p];
+        const auto telemetry = context_.names.predicate_member.find(p);
+        const bool kept = telemetry != context_.names.predicate_member.end();
+        const std::string& variable = kept ? telemetry->second : context_.names.predicate_local.at(p);
+        out_.line();
+        out_.line("// {}", context_.place(predicate.span));
+        const std::string delta =
+            predicate.plain_distance() ? plain(predicate, variable, kept) : general(predicate, variable, kept);
+        const std::string range = value_literal({etlmon::key_of(predicate.robustness.low), etlmon::key_of(predicate.robustness.high)});
+        print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", context_.names.predicate_atom.at(p),
+                                        predicate.upper_bound() ? "at_most" : "at_least", delta,
+                                        float_literal(predicate.threshold.value), range));
+        out_.line("missing |= etlmon::is_nan({});", delta);
+    }
+
+    /// AGG DIST(point, target): kept with its nearest row.
+    std::string plain(const check::Predicate& predicate, const std::string& variable, bool kept) {
+        const Index d = predicate.expression.index;
+        const std::string& shared = context_.names.distance_local.at(d);
+        if (uses_[d] > 1) {
+            if (kept) out_.line("{} = {};", variable, shared);
+            return (kept ? variable : shared) + ".delta";
+        }
+        out_.line("{}{} = etlmon::kUnmeasured;", kept ? "" : "etlmon::Measured ", variable);
+        print_distance(out_, context_, d, variable);
+        return variable + ".delta";
+    }
+
+    std::string general(const check::Predicate& predicate, const std::string& variable, bool kept) {
+        out_.line("{}{} = etlmon::kMissing;", kept ? "" : "float ", variable);
+        const std::string value = expression(context_, predicate.expression);
+        const std::string assignment = fmt::format("{} = {};", variable, value);
+        print_wrapped(out_, predicate.inputs.empty()
+                                ? assignment
+                                : fmt::format("if ({}) {}", all_present(context_, predicate.inputs), assignment));
+        return variable;
+    }
+
+    Printer& out_;
+    const Context& context_;
+    std::map<Index, int> uses_;
+};
+
+}  // namespace
+
+void print_measure(Printer& out, const Context& context) {
+    const bool reads_inputs = !context.plan.inputs.empty();
+    out.line("/// The robustness of every predicate at this step; counts the step if something was missing.");
+    out.open(fmt::format("Atoms measure({}const Inputs& in) noexcept {{", reads_inputs ? "" : "[[maybe_unused]] "));
+    out.line("Atoms now;");
+    out.line("bool missing = false;");
+    MeasurePrinter(out, context).print();
+    out.line();
+    out.line("if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;");
+    out.line("return now;");
+    out.close();
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,206 @@
+#include "emit/names.hpp"
+
+#include <fmt/format.h>
+
+#include <cctype>
+
+#include "plan/budget.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+constexpr std::size_t kLongestName = 40;
+
+/// Words for the symbols of formulas and expressions.
+std::string_view word_for(char symbol) {
+    switch (symbol) {
+        case '!': return "not";
+        case '&': return "and";
+        case '|': return "or";
+        case '<': return "below";
+        case '>': return "above";
+        case '+': return "plus";
+        case '-': return "minus";
+        case '*': return "times";
+        case '/': return "over";
+        default: return "";
+    }
+}
+
+std::string_view word_for_operator(std::string_view letter) {
+    if (letter == "F") return "eventually";
+    if (letter == "G") return "always";
+    if (letter == "U") return "until";
+    if (letter == "R") return "release";
+    if (letter == "O") return "once";
+    if (letter == "H") return "historically";
+    if (letter == "S") return "since";
+    return letter;
+}
+
+void append_word(std::string& name, std::string_view word) {
+    if (word.empty()) return;
+    if (!name.empty()) name += '_';
+    name += word;
+}
+
+std::string without_trailing_underscore(std::string name) {
+    while (!name.empty() && name.back() == '_') name.pop_back();
+    return name;
+}
+
+/// A data member: its name and an underscore, of which C++ allows no two in a row.
+std::string member(Scope& scope, const std::string& name) {
+    return scope.claim(without_trailing_underscore(name)) + '_';
+}
+
+class Naming {
+public:
+    Naming(const plan::Plan& plan, const ir::Graph& graph) : plan_(plan), model_(*plan.model), graph_(graph) {}
+
+    Names name_all() {
+        name_measurements();
+        name_streams();
+        name_readings();
+        name_constants();
+        return std::move(names_);
+    }
+
+private:
+    void name_measurements() {
+        for (check::Index i : plan_.inputs) {
+            names_.input_local[i] = measure_.claim(model_.inputs[i].name);
+            names_.input_buffer[i] = measure_.claim(model_.inputs[i].name + "_values");
+            if (model_.inputs[i].hold > 0) names_.hold_member[i] = member(members_, model_.inputs[i].name + "_held");
+        }
+        for (check::Index p : plan_.predicates) {
+            const check::Predicate& predicate = model_.predicates[p];
+            if (!predicate.name.empty()) names_.predicate_member[p] = member(members_, predicate.name);
+            const std::string name = predicate.name.empty()
+                                         ? identifier(predicate.text + predicate.threshold.text, "comparison")
+                                         : predicate.name;
+            names_.predicate_atom[p] = atoms_.claim(name);
+            if (predicate.name.empty()) names_.predicate_local[p] = measure_.claim(name);
+        }
+        for (check::Index d : plan_.distances)
+            names_.distance_local[d] = measure_.claim(identifier(model_.distances[d].text, "distance"));
+        for (const plan::Stream& stream : plan_.streams)
+            if (stream.op == plan::StreamOp::flag)
+                names_.flag_atom[stream.index] = atoms_.claim(model_.inputs[stream.index].name);
+    }
+
+    void name_streams() {
+        for (plan::Slot slot = 0; slot < plan_.streams.size(); ++slot) {
+            const plan::Stream& stream = plan_.streams[slot];
+            const std::string name = stream_name(stream);
+            names_.stream_local[slot] = judge_.claim(name);
+            if (plan::cost_of(plan_, stream).state_bytes > 0) names_.stream_member[slot] = member(members_, name);
+        }
+    }
+
+    std::string stream_name(const plan::Stream& stream) const {
+        if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
+        if (stream.op == plan::StreamOp::delay) {
+            const plan::Stream& operand = plan_.streams[stream.operands[0]];
+            return without_trailing_underscore(stream_name(operand)) + "_delayed";
+        }
+        if (stream.op == plan::StreamOp::predicate) return names_.predicate_atom.at(stream.index);
+        return "value";
+    }
+
+    void name_readings() {
+        std::map<std::uint32_t, std::string> wanted;
+        for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
+            const plan::Monitor& monitor = plan_.monitors[m];
+            if (!monitor.sliding) wanted.emplace(monitor.reading, monitor.name);
+            if (plan_.has_sliding && !monitor.sliding)
+                names_.verdict_member[m] = member(members_, monitor.name + "_verdict");
+        }
+        for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
+            const auto given = wanted.find(r);
+            const std::string name =
+                given == wanted.end() ? identifier(graph_.text(plan_.readings[r].node), "part") : given->second;
+            names_.reading_local[r] = judge_.claim(name);
+            if (plan::cost_of(plan_, plan_.readings[r]).state_bytes > 0) name_registers(r, name);
+        }
+    }
+
+    void name_registers(std::uint32_t r, const std::string& name) {
+        const plan::Reading& reading = plan_.readings[r];
+        if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
+            names_.reading_member[r] = member(members_, name);
+            if (reading.fold.left != plan::kNone) names_.guard_member[r] = member(members_, name + "_guard");
+            if (reading.kind == plan::Reading::Kind::machine)
+                names_.table_locals[r] = {judge_.claim(name + "_guards"), judge_.claim(name + "_weak"),
+                                          judge_.claim(name + "_strong")};
+            return;
+        }
+        std::vector<std::string>& registers = names_.register_member[r];
+        int owing = 0;
+        for (const auto& obligations : reading.machine.automaton.states) {
+            const std::string state = obligations.empty() ? name + "_met" : fmt::format("{}_owing_{}", name, ++owing);
+            registers.push_back(member(members_, state));
+            names_.register_next[r].push_back(judge_.claim(state));
+        }
+    }
+
+    void name_constants() {
+        std::map<std::pair<check::Index, bool>, std::string> arrays;
+        for (check::Index d : plan_.distances) {
+            const check::Distance& distance = model_.distances[d];
+            const bool as_given = plan::rows_as_given(distance);
+            const std::string& target = model_.targets[distance.target].name;
+            auto [entry, added] = arrays.try_emplace({distance.target, as_given});
+            if (added) entry->second = constants_.claim(as_given ? target : target + "_unit");
+            names_.target_array[d] = entry->second;
+            if (!distance.weights.empty()) names_.weight_array[d] = constants_.claim(target + "_weights");
+        }
+    }
+
+    const plan::Plan& plan_;
+    const check::Model& model_;
+    const ir::Graph& graph_;
+    Names names_;
+    Scope measure_{{"in", "now", "missing", "point", "Value", "Atoms"}};
+    Scope atoms_{{"Value", "Key", "Reading"}};
+    Scope judge_{{"now", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue", "kFalse", "guards", "weak",
+                  "strong", "measure", "judge", "advance"}};
+    Scope members_;
+    Scope constants_;
+};
+
+}  // namespace
+
+std::string Scope::claim(const std::string& wanted) {
+    std::string name = wanted;
+    const std::string stem = without_trailing_underscore(wanted);
+    for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
+    return name;
+}
+
+std::string identifier(std::string_view text, const std::string& otherwise) {
+    std::string name;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t end = i;
+        while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_')) ++end;
+        if (end > i) {
+            append_word(name, word_for_operator(without_trailing_underscore(std::string(text.substr(i, end - i)))));
+        } else {
+            end = i + 1;
+            append_word(name, word_for(text[i]));
+            while (end < text.size() && text[end] == text[i]) ++end;  // && and ||
+        }
+        i = end;
+    }
+    const bool legal = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 && name[0] != '_' &&
+                       name.find("__") == std::string::npos && name.size() <= kLongestName;
+    return legal ? name : otherwise;
+}
+
+Names make_names(const plan::Plan& plan, const ir::Graph& graph) {
+    return Naming(plan, graph).name_all();
+}
+
+}  // namespace etlc::emit

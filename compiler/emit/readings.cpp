@@ -1,0 +1,305 @@
+// The readings of judge(): what the prefix says about position 0.
+#include <algorithm>
+
+#include "emit/context.hpp"
+#include "plan/table.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using plan::Fold;
+using plan::kNone;
+using plan::Machine;
+using plan::Reading;
+using plan::Slot;
+using plan::Transition;
+
+std::string local(const Context& context, std::uint32_t r) {
+    return "const Reading " + context.names.reading_local.at(r);
+}
+
+// ---- latches and folds
+
+void print_latch(Printer& out, const Context& context, std::uint32_t r) {
+    const std::string& kept = context.names.reading_member.at(r);
+    out.line("if (step_ == 0) {} = {};", kept, context.value(context.plan.readings[r].latch.operand));
+    out.line("{} = etlmon::settled({});", local(context, r), kept);
+}
+
+/// "step_ >= 2 && step_ <= 5", empty where the window is always open.
+std::string open_condition(ir::Interval interval) {
+    std::string text;
+    if (interval.low > 0) text = fmt::format("step_ >= {}", interval.low);
+    if (interval.bounded()) text += fmt::format("{}step_ <= {}", text.empty() ? "" : " && ", interval.high);
+    return text;
+}
+
+void print_fold(Printer& out, const Context& context, std::uint32_t r) {
+    const Fold& fold = context.plan.readings[r].fold;
+    const std::string& best = context.names.reading_member.at(r);
+    const bool takes_max = ir::takes_max(fold.op);
+    const char* widen = takes_max ? "max" : "min";
+    const char* narrow = takes_max ? "min" : "max";
+    const char* end = takes_max ? "high" : "low";
+    const bool binary = fold.left != kNone;
+    const std::string guard = binary ? context.names.guard_member.at(r) : "";
+    const std::string right = context.value(fold.right);
+    const std::string step = binary ? fmt::format("{}({}, {})", narrow, guard, right) : right;
+    const std::string open = open_condition(fold.interval);
+
+    print_wrapped(out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open), best, widen, best,
+                                   step));
+    if (binary) print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard, context.value(fold.left)));
+
+    const std::string unseen_key = takes_max ? context.high(fold.unseen) : context.low(fold.unseen);
+    const std::string unseen = binary ? fmt::format("{}({}.{}, {})", narrow, guard, end, unseen_key) : unseen_key;
+    std::string bound = fmt::format("{}({}.{}, {})", widen, best, end, unseen);
+    if (fold.interval.bounded()) bound = fmt::format("step_ < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
+    const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
+    print_wrapped(out, fmt::format("{} = {{{}, {}, {}}};", local(context, r), best, takes_max ? known : bound,
+                                   takes_max ? bound : known));
+}
+
+// ---- unrolled machines
+
+/// Transitions into one state, grouped by guard: min(max of the sources, literals) each.
+std::vector<std::string> incoming(const Context& context, std::uint32_t r, std::uint32_t state) {
+    const Machine& machine = context.plan.readings[r].machine;
+    const std::vector<std::string>& registers = context.names.register_member.at(r);
+    const std::vector<Transition>& transitions = machine.automaton.transitions;
+    std::vector<std::string> groups;
+    for (std::size_t i = 0; i < transitions.size();) {
+        const std::uint32_t guard = transitions[i].guard;
+        if (transitions[i].target != state) {
+            ++i;
+            continue;
+        }
+        std::vector<std::string> sources;
+        bool free = false;  // a source that is always true leaves the literals alone
+        for (; i < transitions.size() && transitions[i].target == state && transitions[i].guard == guard; ++i) {
+            if (machine.states[transitions[i].source].always_true)
+                free = true;
+            else
+                sources.push_back(registers[transitions[i].source]);
+        }
+        std::vector<std::string> factors;
+        if (!free) factors.push_back(nested("max", sources));
+        for (Slot slot : machine.guards[guard]) factors.push_back(context.value(slot));
+        groups.push_back(factors.empty() ? "etlmon::kTrue" : nested("min", factors));
+    }
+    return groups;
+}
+
+/// An order in which every register is written after the registers that read it; empty where they read each other.
+std::vector<std::uint32_t> in_place_order(const Machine& machine) {
+    const auto count = static_cast<std::uint32_t>(machine.states.size());
+    std::vector<std::uint32_t> readers(count, 0);
+    for (const Transition& t : machine.automaton.transitions)
+        if (t.source != t.target) ++readers[t.source];
+    std::vector<std::uint32_t> order;
+    for (std::uint32_t q = 0; q < count; ++q)
+        if (readers[q] == 0) order.push_back(q);
+    for (std::size_t i = 0; i < order.size(); ++i)
+        for (const Transition& t : machine.automaton.transitions)
+            if (t.target == order[i] && t.source != t.target && --readers[t.source] == 0) order.push_back(t.source);
+    return order.size() == count ? order : std::vector<std::uint32_t>{};
+}
+
+void print_update(Printer& out, const std::string& target, const std::vector<std::string>& groups) {
+    if (groups.empty()) return out.line("{} = etlmon::kFalse;", target);
+    print_wrapped(out, fmt::format("{} = {};", target, nested("max", groups)));
+}
+
+void print_registers(Printer& out, const Context& context, std::uint32_t r) {
+    const Machine& machine = context.plan.readings[r].machine;
+    const std::vector<std::string>& registers = context.names.register_member.at(r);
+    const std::vector<std::uint32_t> order = in_place_order(machine);
+    for (std::uint32_t q : order)
+        if (!machine.states[q].always_true) print_update(out, registers[q], incoming(context, r, q));
+    if (!order.empty()) return;
+    const std::vector<std::string>& next = context.names.register_next.at(r);
+    for (std::uint32_t q = 0; q < machine.states.size(); ++q)
+        if (!machine.states[q].always_true)
+            print_update(out, "const Value " + next[q], incoming(context, r, q));
+    for (std::uint32_t q = 0; q < machine.states.size(); ++q)
+        if (!machine.states[q].always_true) out.line("{} = {};", registers[q], next[q]);
+}
+
+/// The max over states of min(register, key), states with the same key together.
+std::string best_of(const std::vector<std::pair<std::string, std::string>>& registers_and_keys) {
+    std::vector<std::string> terms;
+    std::vector<bool> done(registers_and_keys.size(), false);
+    for (std::size_t i = 0; i < registers_and_keys.size(); ++i) {
+        if (done[i]) continue;
+        const std::string& key = registers_and_keys[i].second;
+        std::vector<std::string> same;
+        for (std::size_t j = i; j < registers_and_keys.size(); ++j) {
+            if (registers_and_keys[j].second != key) continue;
+            done[j] = true;
+            if (!registers_and_keys[j].first.empty()) same.push_back(registers_and_keys[j].first);
+        }
+        const bool holds_true = std::any_of(registers_and_keys.begin(), registers_and_keys.end(),
+                                            [&](const auto& e) { return e.second == key && e.first.empty(); });
+        if (holds_true)
+            terms.push_back(key.empty() ? "etlmon::kTop" : key);
+        else
+            terms.push_back(key.empty() ? nested("max", same) : fmt::format("min({}, {})", nested("max", same), key));
+    }
+    return terms.empty() ? "etlmon::kBottom" : nested("max", terms);
+}
+
+void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
+    print_registers(out, context, r);
+    const Machine& machine = context.plan.readings[r].machine;
+    const std::vector<std::string>& registers = context.names.register_member.at(r);
+    std::vector<std::string> rho;
+    std::vector<std::pair<std::string, std::string>> lower;  // register, key; an empty register is always true
+    std::vector<std::pair<std::string, std::string>> upper;
+    for (std::size_t q = 0; q < machine.states.size(); ++q) {
+        const Machine::State& owed = machine.states[q];
+        const std::string strong = owed.strong_unseen == kNone ? "" : context.high(owed.strong_unseen);
+        const std::string weak = owed.weak_unseen == kNone ? "" : context.low(owed.weak_unseen);
+        upper.emplace_back(owed.always_true ? "" : registers[q] + ".high", strong == "etlmon::kTop" ? "" : strong);
+        if (owed.strong) continue;
+        rho.push_back(owed.always_true ? "etlmon::kTrue" : registers[q]);
+        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == "etlmon::kTop" ? "" : weak);
+    }
+    print_wrapped(out, fmt::format("{} = {{{}, {}, {}}};", local(context, r),
+                                   rho.empty() ? "etlmon::kFalse" : nested("max", rho), best_of(lower), best_of(upper)));
+}
+
+// ---- machines as tables
+
+std::string table_name(const Context& context, std::uint32_t r) {
+    return context.names.reading_local.at(r) + "_table";
+}
+
+std::vector<std::string> keys(const Context& context, const std::vector<Slot>& slots, bool high) {
+    std::vector<std::string> result{"etlmon::kTop"};
+    for (Slot slot : slots) result.push_back(high ? context.high(slot) : context.low(slot));
+    return result;
+}
+
+std::string list(const std::vector<std::string>& items) {
+    std::string text;
+    for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
+    return "{" + text + "}";
+}
+
+void print_table_machine(Printer& out, const Context& context, std::uint32_t r) {
+    const Machine& machine = context.plan.readings[r].machine;
+    const plan::Table table = plan::make_table(machine);
+    const Names::TableLocals& locals = context.names.table_locals.at(r);
+    const std::string& kept = context.names.reading_member.at(r);
+    std::vector<std::string> guards;
+    for (const auto& literals : machine.guards) {
+        std::vector<std::string> values;
+        for (Slot slot : literals) values.push_back(context.value(slot));
+        guards.push_back(values.empty() ? "etlmon::kTrue" : nested("min", values));
+    }
+    print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak, list(keys(context, table.weak, false))));
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong, list(keys(context, table.strong, true))));
+    const std::string tables = "tables::" + table_name(context, r);
+    out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, locals.guards);
+    out.line("{} = {}.read({}_owed, {}, {});", local(context, r), kept, tables, locals.weak, locals.strong);
+}
+
+template <class Items, class Spell>
+void print_array(Printer& out, const std::string& type, const std::string& name, const Items& items, Spell spell) {
+    std::string text = fmt::format("inline constexpr {} {}[] = {{", type, name);
+    for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "" : ", ") + spell(items[i]);
+    print_wrapped(out, text + "};");
+}
+
+void print_table(Printer& out, const Context& context, std::uint32_t r) {
+    const Reading& reading = context.plan.readings[r];
+    const plan::Table table = plan::make_table(reading.machine);
+    const std::string name = table_name(context, r);
+    out.line("// {}: {} states, {} transitions", context.graph.text(reading.node), table.ends.size(),
+             table.transitions.size());
+    print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
+                [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });
+    print_array(out, "uint32_t", name + "_ends", table.ends, [](std::uint32_t end) { return fmt::format("{}", end); });
+    print_array(out, "etlmon::Owed", name + "_owed", table.owed, [](etlmon::Owed owed) {
+        return owed.weak == etlmon::kStrongly ? fmt::format("{{etlmon::kStrongly, {}}}", owed.strong)
+                                              : fmt::format("{{{}, {}}}", owed.weak, owed.strong);
+    });
+}
+
+bool is_table(const Reading& reading) {
+    return reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine);
+}
+
+std::string owed_text(const Context& context, const std::vector<plan::NodeId>& obligations) {
+    if (obligations.empty()) return "nothing is owed any more";
+    std::string text = "owed: ";
+    for (std::size_t i = 0; i < obligations.size(); ++i)
+        text += (i == 0 ? "" : ", ") + context.graph.text(obligations[i]);
+    return text;
+}
+
+}  // namespace
+
+void print_reading(Printer& out, const Context& context, std::uint32_t r) {
+    const Reading& reading = context.plan.readings[r];
+    switch (reading.kind) {
+        case Reading::Kind::latch: return print_latch(out, context, r);
+        case Reading::Kind::fold: return print_fold(out, context, r);
+        case Reading::Kind::machine:
+            return is_table(reading) ? print_table_machine(out, context, r) : print_unrolled(out, context, r);
+        case Reading::Kind::conjunction:
+        case Reading::Kind::disjunction: break;
+    }
+    std::vector<std::string> parts;
+    for (std::uint32_t operand : reading.operands) parts.push_back(context.names.reading_local.at(operand));
+    print_wrapped(out, fmt::format("{} = {};", local(context, r),
+                                   nested(reading.kind == Reading::Kind::conjunction ? "min" : "max", parts)));
+}
+
+void print_tables(Printer& out, const Context& context) {
+    const std::vector<Reading>& readings = context.plan.readings;
+    if (std::none_of(readings.begin(), readings.end(), is_table)) return;
+    out.line("/// State machines: the transitions into each state, where they end, what each state owes.");
+    out.line("namespace tables {");
+    for (std::uint32_t r = 0; r < readings.size(); ++r)
+        if (is_table(readings[r])) print_table(out, context, r);
+    out.line("}  // namespace tables");
+    out.line();
+}
+
+std::vector<Member> reading_members(const Context& context) {
+    std::vector<Member> result;
+    for (std::uint32_t r = 0; r < context.plan.readings.size(); ++r) {
+        const Reading& reading = context.plan.readings[r];
+        const std::string text = context.graph.text(reading.node);
+        if (const auto registers = context.names.register_member.find(r); registers != context.names.register_member.end()) {
+            for (std::size_t q = 0; q < registers->second.size(); ++q) {
+                if (reading.machine.states[q].always_true) continue;
+                const std::string& name = registers->second[q];
+                result.push_back({"Value", name, "", owed_text(context, reading.machine.automaton.states[q]),
+                                  fmt::format("{} = {};", name, q == 0 ? "etlmon::kTrue" : "etlmon::kFalse")});
+            }
+            continue;
+        }
+        const auto member = context.names.reading_member.find(r);
+        if (member == context.names.reading_member.end()) continue;
+        const std::string& name = member->second;
+        if (is_table(reading)) {
+            result.push_back({fmt::format("etlmon::Machine<{}>", reading.machine.states.size()), name, "", text,
+                              fmt::format("{}.reset();", name)});
+            continue;
+        }
+        const bool starts_true = reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
+        const char* first = starts_true ? "etlmon::kTrue" : "etlmon::kFalse";
+        const char* second = starts_true ? "etlmon::kFalse" : "etlmon::kTrue";
+        result.push_back({"Value", name, "", text, fmt::format("{} = {};", name, first)});
+        if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
+            result.push_back({"Value", context.names.guard_member.at(r), "", "what its left side lets through",
+                              fmt::format("{} = {};", context.names.guard_member.at(r), second)});
+    }
+    return result;
+}
+
+}  // namespace etlc::emit

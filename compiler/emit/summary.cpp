@@ -1,0 +1,116 @@
+// The head of the generated file: what it holds and what that costs; the same figures as --emit report.
+#include <algorithm>
+
+#include "emit/context.hpp"
+#include "emit/emit.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+using Row = std::vector<std::string>;
+
+/// Columns as wide as their widest cell; numbers (all columns from `first_number` on) to the right.
+void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows, std::size_t first_number) {
+    std::vector<std::size_t> widths(rows.front().size(), 0);
+    for (const Row& row : rows)
+        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    for (const Row& row : rows) {
+        std::string line = prefix;
+        for (std::size_t c = 0; c < row.size(); ++c)
+            line += c < first_number ? fmt::format("{:<{}}  ", row[c], widths[c]) : fmt::format("{:>{}}  ", row[c], widths[c]);
+        line.erase(line.find_last_not_of(' ') + 1);
+        out.line(line);
+    }
+}
+
+std::string number(std::uint64_t x) {
+    return fmt::format("{}", x);
+}
+
+Row cost_row(Row row, const plan::Cost& cost) {
+    for (std::uint64_t x : {cost.state_bytes, cost.constant_bytes, cost.operations, cost.distance_operations})
+        row.push_back(number(x));
+    return row;
+}
+
+std::vector<Row> monitor_rows(const plan::Plan& plan) {
+    std::vector<Row> rows{{"monitor", "about", "state B", "targets B", "operations", "distance elements"}};
+    for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
+        const plan::Monitor& monitor = plan.monitors[m];
+        const std::string about = monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
+        rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m]));
+    }
+    rows.push_back(cost_row({"all together", ""}, plan.cost));
+    return rows;
+}
+
+std::string origin(const check::Threshold& threshold) {
+    switch (threshold.origin) {
+        case check::ThresholdOrigin::literal: return "written in the spec; no guarantee";
+        case check::ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
+        case check::ThresholdOrigin::conformal: return "conformal, alpha = " + threshold.alpha;
+        case check::ThresholdOrigin::class_conditional: return "class-conditional, alpha = " + threshold.alpha;
+    }
+    return "";
+}
+
+std::vector<Row> threshold_rows(const plan::Plan& plan) {
+    std::vector<Row> rows{{"predicate", "measures", "threshold", "origin"}};
+    for (Index p : plan.predicates) {
+        const check::Predicate& predicate = plan.model->predicates[p];
+        rows.push_back({predicate.name.empty() ? "-" : predicate.name, predicate.text,
+                        fmt::format("{}", predicate.threshold.value), origin(predicate.threshold)});
+    }
+    return rows;
+}
+
+void print_tables(Printer& out, const std::string& prefix, const plan::Plan& plan) {
+    print_table(out, prefix, monitor_rows(plan), 2);
+    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
+}
+
+}  // namespace
+
+void print_summary(Printer& out, const Context& context) {
+    out.line("//");
+    print_tables(out, "//   ", context.plan);
+    out.line("//");
+    out.line("// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and comparisons of");
+    out.line("// robustness keys in the worst step. distance elements: target elements that a step compares with its input.");
+}
+
+std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options&) {
+    Printer out;
+    out.line("spec {}", plan.model->name);
+    print_tables(out, "  ", plan);
+    out.line();
+    out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
+    out.line();
+    std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
+    for (const plan::Reading& reading : plan.readings) {
+        const plan::Cost cost = plan::cost_of(plan, reading);
+        std::string as = "fold";
+        if (reading.kind == plan::Reading::Kind::latch) as = "latch";
+        if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
+        if (reading.kind == plan::Reading::Kind::disjunction) as = "max of parts";
+        if (reading.kind == plan::Reading::Kind::machine)
+            as = fmt::format("state machine, {} states, {} transitions{}", reading.machine.states.size(),
+                             reading.machine.automaton.transitions.size(),
+                             plan::unrolled(reading.machine) ? "" : ", as a table");
+        rows.push_back({graph.text(reading.node), as, number(cost.state_bytes), number(cost.code_bytes),
+                        number(cost.operations)});
+    }
+    for (const plan::Stream& stream : plan.streams) {
+        const plan::Cost cost = plan::cost_of(plan, stream);
+        if (cost.operations == 0 && cost.state_bytes == 0) continue;
+        rows.push_back({stream.node == plan::kNone ? "(in between)" : graph.text(stream.node), "stream",
+                        number(cost.state_bytes), number(cost.code_bytes), number(cost.operations)});
+    }
+    if (rows.size() > 1) print_table(out, "  ", rows, 2);
+    return out.take();
+}
+
+}  // namespace etlc::emit
