@@ -66,6 +66,12 @@ struct UnitPoint {
   float scale;
 };
 
+/// Rounded here: whether the product is fused with what follows would depend on how many rows share it.
+template <class V>
+ETLMON_INLINE V unit(UnitPoint point, V z) noexcept {
+  return rounded(z * point.scale);
+}
+
 }  // namespace detail
 
 /// sum (z - g)^2
@@ -126,7 +132,7 @@ struct Cosine : detail::Additive {
   static constexpr bool kDirection = true;
   template <class V>
   ETLMON_INLINE static void add(detail::Sum<V>& to, Point point, V z, V g, V) noexcept {
-    const V difference = z * point.scale - g;
+    const V difference = detail::unit(point, z) - g;
     to.sum = to.sum + difference * difference;
   }
   ETLMON_INLINE static float row(const detail::Sum<float>& s) noexcept {
@@ -145,7 +151,7 @@ struct Angular : detail::Additive {
   using Partial = detail::TwoSums<V>;
   template <class V>
   ETLMON_INLINE static void add(detail::TwoSums<V>& to, Point point, V z, V g, V) noexcept {
-    const V u = z * point.scale;
+    const V u = detail::unit(point, z);
     const V difference = u - g;
     const V total = u + g;
     to.apart = to.apart + difference * difference;

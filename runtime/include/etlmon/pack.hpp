@@ -1,5 +1,5 @@
 // Four floats that are added, multiplied and compared together.
-// Takes: pointers to floats of any alignment. Gives: Pack, load, magnitude, larger, lane<i>.
+// Takes: pointers to floats of any alignment. Gives: Pack, load, magnitude, larger, rounded, lane<i>.
 // Keeps true: the same operations in the same order on every compiler; where the machine has 16-byte vectors of IEEE
 // floats (SSE2, AArch64) a Pack is one, written with the vector extension because g++ before 12 vectorises no loop at
 // -O2. SPDX-License-Identifier: MIT
@@ -7,7 +7,7 @@
 
 #include "etlmon/bits.hpp"
 
-#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__))
+#if defined(__GNUC__) && (defined(__SSE2__) || defined(__aarch64__)) && !defined(ETLMON_NO_PACKS)
 #define ETLMON_HAS_PACKS 1
 #endif
 
@@ -24,12 +24,25 @@ ETLMON_INLINE Pack magnitude(Pack x) noexcept {
   return reinterpret_cast<Pack>(reinterpret_cast<PackBits>(x) & 0x7fffffff);
 }
 ETLMON_INLINE Pack larger(Pack a, Pack b) noexcept {
+#if defined(__clang__)  // before 11 it has no ?: for vectors; it finds the maximum in either form, g++ only in the
+                        // other
   const PackBits which = a > b;
   return reinterpret_cast<Pack>((which & reinterpret_cast<PackBits>(a)) | (~which & reinterpret_cast<PackBits>(b)));
+#else
+  return a > b ? a : b;
+#endif
 }
 template <uint32_t I>
 ETLMON_INLINE float lane(Pack x) noexcept {
   return x[I];
+}
+ETLMON_INLINE Pack rounded(Pack x) noexcept {
+#if defined(__aarch64__)
+  __asm__("" : "+w"(x));
+#else
+  __asm__("" : "+x"(x));
+#endif
+  return x;
 }
 
 #else
@@ -60,6 +73,7 @@ ETLMON_INLINE Pack magnitude(Pack x) noexcept {
 ETLMON_INLINE Pack larger(Pack x, Pack y) noexcept {
   return {larger(x.a, y.a), larger(x.b, y.b), larger(x.c, y.c), larger(x.d, y.d)};
 }
+ETLMON_INLINE Pack rounded(Pack x) noexcept { return {rounded(x.a), rounded(x.b), rounded(x.c), rounded(x.d)}; }
 template <uint32_t I>
 ETLMON_INLINE float lane(Pack x) noexcept {
   return I == 0 ? x.a : I == 1 ? x.b : I == 2 ? x.c : x.d;

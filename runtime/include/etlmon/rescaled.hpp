@@ -1,4 +1,4 @@
-// The same distances where squares leave the range of float32: huge, tiny, or exactly zero.
+// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny, or exactly zero.
 // Takes: what kernel.hpp takes. Gives: distances computed from differences scaled by a power of two, one row at a time.
 // Keeps true: a distance that float32 can represent does not overflow on the way, a tiny one does not vanish on the
 // way, and a vector of zeros has no direction. Kept out of line: it is one short scalar loop for every K and D.
@@ -6,7 +6,7 @@
 #pragma once
 
 #include "etlmon/aggregate.hpp"
-#include "etlmon/distances.hpp"
+#include "etlmon/rows.hpp"
 
 namespace etlmon {
 namespace detail {
@@ -119,19 +119,36 @@ class RescaledDirection {
   UnitPoint point_{};
 };
 
-template <class Metric, bool Direction = Metric::kDirection>
-struct Rescaled {
-  using Type = RescaledRoot<Metric>;
+/// Bits of a distance that needs no scaling itself; only the mean over its rows does.
+template <class Metric>
+class Unscaled {
+ public:
+  Unscaled(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+  uint32_t row(const float* g) const noexcept { return observe(one_row<Metric>({}, z_, g, z_, dimension_)); }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+};
+
+template <bool First, class A, class B>
+struct Choose {
+  using Type = A;
+};
+template <class A, class B>
+struct Choose<false, A, B> {
+  using Type = B;
 };
 template <class Metric>
-struct Rescaled<Metric, true> {
-  using Type = RescaledDirection<Metric>;
-};
+using Rescaled =
+    typename Choose<Metric::kDirection, RescaledDirection<Metric>,
+                    typename Choose<Metric::kRescales, RescaledRoot<Metric>, Unscaled<Metric>>::Type>::Type;
 
 template <class Metric, class Aggregation>
 ETLMON_COLD Measured measure_rescaled(const float* z, const float* targets, const float* weights, uint32_t rows,
                                       uint32_t dimension, Aggregation aggregation) noexcept {
-  const typename Rescaled<Metric>::Type distance(z, weights, dimension);
+  const Rescaled<Metric> distance(z, weights, dimension);
   if (!distance.known()) return {from_bits(kMissingBits), 0};
   Nearest nearest;
   for (uint32_t row = 0; row < rows; ++row) {
