@@ -37,7 +37,6 @@ const std::vector<Group>& groups() {
         {{EtlParser::HERTZ}, "'Hz'", true},
         {{EtlParser::LOAD, EtlParser::LBRACKET}, "load(\"FILE\") or a matrix [[...], ...]", false},
         {{EtlParser::STRING}, "a file name between double quotes", false},
-        {{EtlParser::NUMBER, EtlParser::LBRACKET}, "a number, or a row [...] of numbers", false},
         {{EtlParser::NUMBER}, "a number", false},
     };
     return all;
@@ -117,6 +116,19 @@ std::string spelling(std::size_t type) {
     }
 }
 
+/// Lists are read by loops too, so another item is not expected any more where the list may end.
+bool another_item_could_follow(const Stuck& stuck) {
+    switch (stuck.rule) {
+        case EtlParser::RuleDeclaration: return has(stuck, EtlParser::COLON);
+        case EtlParser::RuleCalibrated:
+        case EtlParser::RulePoint:
+        case EtlParser::RuleLiteral:
+        case EtlParser::RuleRow:
+        case EtlParser::RuleLoad: return has(stuck, EtlParser::RPAREN) || has(stuck, EtlParser::RBRACKET);
+        default: return false;
+    }
+}
+
 std::string joined(const std::vector<std::string>& words) {
     if (words.size() < 2) return words.empty() ? "something else" : words[0];
     return fmt::format("{} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
@@ -147,11 +159,13 @@ std::vector<std::string> listed(const Stuck& stuck) {
 }  // namespace
 
 std::string expected_words(const Stuck& stuck) {
-    if (stuck.looked_ahead && stuck.rule != EtlParser::RuleLiteral) return "an operator";
+    if (stuck.looked_ahead)
+        return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers" : "an operator";
     if (expects_operand(stuck)) return operand_words(stuck);
     if (expects_name(stuck)) return name_words(stuck);
     std::vector<std::string> words = listed(stuck);
     if (operators_could_follow(stuck)) words.insert(words.begin(), "an operator");
+    if (another_item_could_follow(stuck)) words.emplace_back("','");
     return joined(words);
 }
 

@@ -81,12 +81,6 @@ private:
         } catch (const Unexplained&) {
             add_unreadable(slice);
         }
-        // `specc a;` is an error already; that the spec is missing would be the same one again.
-        if (slice.begin == 0 && !is_spec) first_is_misspelt_ = is_misspelt_spec(first);
-    }
-
-    bool is_misspelt_spec(const Token& token) const {
-        return is_name(token) && diag::nearest_name(text_of(token, file_), {"spec"}).has_value();
     }
 
     /// Thrown for a declaration whose trouble has been reported already.
@@ -165,19 +159,25 @@ private:
         for (SyntaxError& error : errors_) {
             const bool follows =
                 error.diagnostic.code != Code::reserved_name && (is_misused(error.found) || is_misused(error.previous));
-            if (!follows) sink_.report(std::move(error.diagnostic));
+            if (!follows && !is_missing_spec(error)) sink_.report(std::move(error.diagnostic));
         }
     }
 
     void report_missing_spec() {
-        if (spec_seen_ || first_is_misspelt_) return;
-        const source::Span begin = span_of(*tokens_.front());
-        const bool empty = tokens_.size() == 1;
-        sink_
-            .report(Code::misplaced_spec, begin,
-                    empty ? "the file is empty"
-                          : fmt::format("expected 'spec NAME;', found {}", quoted(*tokens_.front(), file_)))
-            .note("a file begins with 'spec NAME;', which names the generated code");
+        if (spec_seen_) return;
+        const Token& first = *tokens_.front();
+        const bool empty = first.getType() == Token::EOF;
+        Diagnostic& missing = sink_.report(
+            Code::misplaced_spec, span_of(first),
+            empty ? "the file is empty" : fmt::format("expected 'spec NAME;', found {}", quoted(first, file_)));
+        if (diag::nearest_name(text_of(first, file_), {"spec"})) missing.note("did you mean 'spec'?");
+        missing.note("a file begins with 'spec NAME;', which names the generated code");
+    }
+
+    /// A first declaration that is none, in a file without `spec NAME;`: the missing spec is what is wrong with it.
+    bool is_missing_spec(const SyntaxError& error) const {
+        return !spec_seen_ && error.previous.empty() && !error.found.empty() &&
+               error.diagnostic.span == span_of(*tokens_.front());
     }
 
     const source::File& file_;
@@ -187,7 +187,6 @@ private:
     ast::Spec spec_;
     std::vector<SyntaxError> errors_;
     bool spec_seen_ = false;
-    bool first_is_misspelt_ = false;
 };
 
 }  // namespace

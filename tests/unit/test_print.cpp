@@ -1,0 +1,229 @@
+// ast::print: its text parses back to the same tree, and has no bracket that could be left out.
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "parsing.hpp"
+
+namespace {
+
+using namespace etlc;
+
+// ---- canonical form
+
+std::string canonical(const std::string& declaration) {
+    const Parsed parsed("spec a; " + declaration);
+    EXPECT_EQ(parsed.errors(), "") << declaration;
+    return ast::print(parsed.spec).substr(std::string("spec a;\n").size());
+}
+
+TEST(Print, CanonicalForm) {
+    const std::vector<std::pair<std::string, std::string>> cases{
+        {"rate 20Hz;", "rate 20 Hz;"},
+        {"period 2.50ms;", "period 2.50 ms;"},
+        {"input a,b:i8[4]scale 0.1 hold 2;", "input a, b : i8[4] scale 0.1 hold 2;"},
+        {"input x:f32 in[- 1,inf];", "input x : f32 in [-1, inf];"},
+        {"target t=load(\"a.npz\",\"k\");", "target t = load(\"a.npz\", \"k\");"},
+        {"target t=[[1,- 2],[3,4]];", "target t = [[1, -2], [3, 4]];"},
+        {"predicate p=kth( 2 )mahalanobis([1,2])([x,y],t)<=calibrated( f1,a=- 1,b=c);",
+         "predicate p = kth(2) mahalanobis([1, 2])([x, y], t) <= calibrated(f1, a = -1, b = c);"},
+        {"truth p=once[0,3]x>-1;", "truth p = O[0, 3] (x > -1);"},
+        {"let f=not a and b or c implies d iff e;", "let f = !a && b || c -> d <-> e;"},
+        {"let f=((a)until[0s,2 min](b since c));", "let f = a U[0s, 2min] b S c;"},
+        {"let f=(a U b)U c;", "let f = (a U b) U c;"},
+        {"let f=a && (b && c);", "let f = a && (b && c);"},
+        {"let f=!(a && b) -> (c -> d);", "let f = !(a && b) -> c -> d;"},
+        {"let f=next(previous(historically(always a)));", "let f = X Y H G a;"},
+        {"let f=x-(y-z)*-2/(a*b)>1;", "let f = x - (y - z) * -2 / (a * b) > 1;"},
+        {"let f=-(-x)+-(a+b)+-abs((x))>1;", "let f = --x + -(a + b) + -abs(x) > 1;"},
+        {"let f=min(max(a,(b)),sqrt(c+d))<2;", "let f = min(max(a, b), sqrt(c + d)) < 2;"},
+        {"sliding monitor m=G[0,20]a;", "sliding monitor m = G[0, 20] a;"},
+        {"monitor m=F a calibrated(conformal,alpha=0.1);", "monitor m = F a calibrated(conformal, alpha = 0.1);"},
+    };
+    for (const auto& [text, printed] : cases) EXPECT_EQ(canonical(text), printed + "\n");
+}
+
+// ---- random trees
+
+/// Trees of every kind that the parser can build, at random.
+class Generator {
+public:
+    explicit Generator(unsigned seed) : random_(seed) {}
+
+    ast::ExprPtr expression(int depth) {
+        using Kind = ast::Expr::Kind;
+        auto e = std::make_unique<ast::Expr>();
+        e->kind = depth == 0 ? static_cast<Kind>(below(3)) : static_cast<Kind>(below(12));
+        const auto arguments = [&](int n) {
+            for (int i = 0; i < n; ++i) e->arguments.push_back(expression(depth - 1));
+        };
+        switch (e->kind) {
+            case Kind::number: e->text = number(); break;
+            case Kind::name: e->text = name(); break;
+            case Kind::distance: e->distance = distance(); break;
+            case Kind::negate:
+            case Kind::abs:
+            case Kind::sqrt: arguments(1); break;
+            case Kind::min:
+            case Kind::max: arguments(2 + below(2)); break;
+            default: arguments(2); break;
+        }
+        return e;
+    }
+
+    ast::FormulaPtr formula(int depth) {
+        using Kind = ast::Formula::Kind;
+        auto f = std::make_unique<ast::Formula>();
+        f->kind = depth == 0 ? static_cast<Kind>(below(4)) : static_cast<Kind>(below(19));
+        const auto operands = [&](int n) {
+            for (int i = 0; i < n; ++i) f->operands.push_back(formula(depth - 1));
+        };
+        switch (f->kind) {
+            case Kind::constant_true:
+            case Kind::constant_false: break;
+            case Kind::name: f->name = name(); break;
+            case Kind::comparison:
+                f->left = expression(depth == 0 ? 1 : depth);
+                f->comparison = static_cast<ast::Comparison>(below(4));
+                f->right.text = below(2) != 0 ? "-" : "";
+                f->right.text += number();
+                break;
+            case Kind::conjunction:
+            case Kind::disjunction: operands(2 + below(3)); break;
+            case Kind::negation:
+            case Kind::next:
+            case Kind::previous: operands(1); break;
+            case Kind::eventually:
+            case Kind::always:
+            case Kind::once:
+            case Kind::historically:
+                operands(1);
+                maybe_interval(*f);
+                break;
+            case Kind::until:
+            case Kind::release:
+            case Kind::since:
+                operands(2);
+                maybe_interval(*f);
+                break;
+            default: operands(2); break;
+        }
+        return f;
+    }
+
+private:
+    int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
+
+    std::string pick(const std::vector<std::string>& from) {
+        return from[static_cast<std::size_t>(below(static_cast<int>(from.size())))];
+    }
+
+    std::string name() {
+        return pick({"a", "b", "goal_a", "s", "min", "max", "l2", "kth", "mean", "abs", "in", "f32", "Hz"});
+    }
+
+    std::string number() { return pick({"0", "1", "2.5", "1e-3", "12.0E+4", "007"}); }
+
+    std::unique_ptr<ast::Distance> distance() {
+        auto d = std::make_unique<ast::Distance>();
+        if (below(2) != 0) {
+            ast::Aggregation aggregation;
+            aggregation.kind = static_cast<ast::Aggregation::Kind>(below(4));
+            if (aggregation.kind == ast::Aggregation::Kind::kth) aggregation.n = ast::Number{"2", {}};
+            d->aggregation = aggregation;
+        }
+        d->metric.text = pick({"l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis"});
+        if (d->metric.text == "mahalanobis") d->weights = weights();
+        d->point_is_vector = below(2) != 0;
+        const int size = d->point_is_vector ? 1 + below(3) : 1;
+        for (int i = 0; i < size; ++i) d->point.push_back({name(), {}});
+        d->target.text = name();
+        return d;
+    }
+
+    ast::Weights weights() {
+        switch (below(4)) {
+            case 0: return ast::Load{"w.npy", below(2) != 0 ? "key" : "", {}, {}, {}};
+            case 1: return ast::MatrixLiteral{{{{"1", {}}, {"-2", {}}}, {{"3", {}}, {"4", {}}}}, {}};
+            case 2: return ast::VectorLiteral{{{"1", {}}, {"-2", {}}}, {}};
+            default: return ast::Name{name(), {}};
+        }
+    }
+
+    void maybe_interval(ast::Formula& f) {
+        if (below(2) == 0) return;
+        const auto bound = [this] {
+            const std::string unit = pick({"", "us", "ms", "s", "min", "inf"});
+            return unit == "inf" ? ast::Bound{{"inf", {}}, "", {}} : ast::Bound{{number(), {}}, unit, {}};
+        };
+        f.interval = ast::Interval{bound(), bound(), {}};
+    }
+
+    std::mt19937 random_;
+};
+
+TEST(Print, RandomFormulasReadBackAsTheyWere) {
+    for (unsigned seed = 0; seed < 3000; ++seed) {
+        const ast::FormulaPtr formula = Generator(seed).formula(1 + static_cast<int>(seed % 5));
+        const std::string printed = ast::print(*formula);
+        ASSERT_EQ(tree_of_formula(printed), tree_text::of(*formula)) << printed;
+    }
+}
+
+TEST(Print, RandomExpressionsReadBackAsTheyWere) {
+    for (unsigned seed = 0; seed < 3000; ++seed) {
+        const ast::ExprPtr expression = Generator(seed).expression(1 + static_cast<int>(seed % 5));
+        const std::string printed = ast::print(*expression);
+        ASSERT_EQ(tree_of_expression(printed), tree_text::of(*expression)) << printed;
+    }
+}
+
+/// `text` without the bracket at `open` and its partner; empty where the bracket is not one of grouping.
+std::string without_brackets(const std::string& text, std::size_t open) {
+    const bool call = open > 0 && (std::isalnum(static_cast<unsigned char>(text[open - 1])) != 0 ||
+                                   text[open - 1] == ')' || text[open - 1] == '_');
+    if (text[open] != '(' || call) return {};
+    int depth = 0;
+    for (std::size_t i = open; i < text.size(); ++i) {
+        depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
+        if (depth == 0) return text.substr(0, open) + text.substr(open + 1, i - open - 1) + text.substr(i + 1);
+    }
+    return {};
+}
+
+TEST(Print, NoBracketCouldBeLeftOut) {
+    // But those of a comparison under a prefix operator, which are there for the reader.
+    const auto compared = [](const std::string& text, std::size_t open) {
+        const std::string inner = text.substr(open, text.find(')', open) - open);
+        const bool prefixed = open > 0 && (text[open - 1] == '!' || text[open - 1] == ' ' || text[open - 1] == ']');
+        return prefixed && (inner.find('<') != std::string::npos || inner.find('>') != std::string::npos ||
+                            inner.find_first_of("+-*/(", 1) != std::string::npos);
+    };
+    int tried = 0;
+    for (unsigned seed = 0; seed < 3000; ++seed) {
+        const ast::FormulaPtr formula = Generator(seed).formula(4);
+        const std::string printed = ast::print(*formula);
+        for (std::size_t i = 0; i < printed.size(); ++i) {
+            const std::string fewer = without_brackets(printed, i);
+            if (fewer.empty() || compared(printed, i)) continue;
+            ++tried;
+            ASSERT_NE(tree_of_formula(fewer), tree_text::of(*formula)) << printed << "\n" << fewer;
+        }
+    }
+    EXPECT_GT(tried, 1000);
+}
+
+TEST(Print, WholeSpecsReadBackAsTheyWere) {
+    const Parsed parsed(
+        "spec a; rate 20 Hz; period 3 ms; input z : f16[3] hold 2; input x, y : f32 in [0, 1]; input b : bool; "
+        "target t = load(\"t.npy\"); target u = [[1, 2]]; target v = [1]; predicate p = min l1(z, t) <= 1; "
+        "predicate q = x > calibrated(conformal, alpha = 0.10); truth q = H (x > 1); let f = p && q; "
+        "monitor m = F f; monitor n = G f calibrated(conformal, alpha = 0.1); sliding monitor k = F[0, 3] f;");
+    ASSERT_EQ(parsed.errors(), "");
+    const Parsed again(ast::print(parsed.spec));
+    EXPECT_EQ(again.errors(), "");
+    EXPECT_EQ(again.tree(), parsed.tree());
+    EXPECT_EQ(ast::print(again.spec), ast::print(parsed.spec));
+}
+
+}  // namespace

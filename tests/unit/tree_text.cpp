@@ -1,0 +1,195 @@
+#include "tree_text.hpp"
+
+#include <fmt/format.h>
+
+#include <variant>
+
+namespace etlc::tree_text {
+
+namespace {
+
+using namespace ast;
+
+std::string list(const std::string& head, const std::vector<std::string>& items) {
+    std::string text = "(" + head;
+    for (const std::string& item : items) text += " " + item;
+    return text + ")";
+}
+
+std::string word(const Name& name) {
+    return name.text;
+}
+
+std::string word(const Number& number) {
+    return number.text;
+}
+
+std::string word(const VectorLiteral& vector) {
+    std::vector<std::string> items;
+    for (const Number& n : vector.values) items.push_back(n.text);
+    return list("vector", items);
+}
+
+std::string word(const MatrixLiteral& matrix) {
+    std::vector<std::string> rows;
+    for (const auto& row : matrix.rows) rows.push_back(word(VectorLiteral{row, {}}));
+    return list("matrix", rows);
+}
+
+std::string word(const Load& load) {
+    return list("load", {"\"" + load.path + "\"", "\"" + load.key + "\""});
+}
+
+std::string word(const Calibrated& calibrated) {
+    std::vector<std::string> items{calibrated.method.text};
+    for (const Calibrated::Argument& a : calibrated.arguments)
+        items.push_back(list(a.key.text, {std::visit([](const auto& v) { return v.text; }, a.value)}));
+    return list("calibrated", items);
+}
+
+std::string word(const std::variant<Number, Calibrated>& threshold) {
+    return std::visit([](const auto& t) { return word(t); }, threshold);
+}
+
+std::string word(Comparison comparison) {
+    switch (comparison) {
+        case Comparison::less_equal: return "<=";
+        case Comparison::less: return "<";
+        case Comparison::greater_equal: return ">=";
+        case Comparison::greater: return ">";
+    }
+    return "?";
+}
+
+std::string word(const Distance& distance) {
+    std::vector<std::string> items;
+    if (distance.aggregation) {
+        const char* const kinds[] = {"min", "max", "mean", "kth"};
+        items.emplace_back(kinds[static_cast<int>(distance.aggregation->kind)]);
+        if (distance.aggregation->n) items.push_back(distance.aggregation->n->text);
+    }
+    items.push_back(distance.metric.text);
+    if (distance.weights)
+        items.push_back(std::visit([](const auto& w) { return list("weights", {word(w)}); }, *distance.weights));
+    std::vector<std::string> point;
+    for (const Name& n : distance.point) point.push_back(n.text);
+    items.push_back(list(distance.point_is_vector ? "vector" : "input", point));
+    items.push_back(distance.target.text);
+    return list("distance", items);
+}
+
+std::string head(Expr::Kind kind) {
+    switch (kind) {
+        case Expr::Kind::number: return "number";
+        case Expr::Kind::name: return "name";
+        case Expr::Kind::distance: return "distance";
+        case Expr::Kind::negate: return "negate";
+        case Expr::Kind::add: return "+";
+        case Expr::Kind::subtract: return "-";
+        case Expr::Kind::multiply: return "*";
+        case Expr::Kind::divide: return "/";
+        case Expr::Kind::abs: return "abs";
+        case Expr::Kind::sqrt: return "sqrt";
+        case Expr::Kind::min: return "min";
+        case Expr::Kind::max: return "max";
+    }
+    return "?";
+}
+
+std::string head(Formula::Kind kind) {
+    switch (kind) {
+        case Formula::Kind::constant_true: return "true";
+        case Formula::Kind::constant_false: return "false";
+        case Formula::Kind::name: return "name";
+        case Formula::Kind::comparison: return "compare";
+        case Formula::Kind::negation: return "!";
+        case Formula::Kind::conjunction: return "&&";
+        case Formula::Kind::disjunction: return "||";
+        case Formula::Kind::implication: return "->";
+        case Formula::Kind::equivalence: return "<->";
+        case Formula::Kind::next: return "X";
+        case Formula::Kind::eventually: return "F";
+        case Formula::Kind::always: return "G";
+        case Formula::Kind::until: return "U";
+        case Formula::Kind::weak_until: return "W";
+        case Formula::Kind::release: return "R";
+        case Formula::Kind::previous: return "Y";
+        case Formula::Kind::once: return "O";
+        case Formula::Kind::historically: return "H";
+        case Formula::Kind::since: return "S";
+    }
+    return "?";
+}
+
+std::string word(const Rate& d) {
+    return list(d.is_period ? "period" : "rate", {d.number.text, d.unit});
+}
+
+std::string word(const Input& d) {
+    const char* const types[] = {"f32", "f16", "i8", "bool"};
+    std::vector<std::string> items;
+    for (const Name& n : d.names) items.push_back(n.text);
+    items.push_back(std::string(":") + types[static_cast<int>(d.type.kind)]);
+    if (d.type.dimension) items.push_back(list("dimension", {d.type.dimension->text}));
+    if (d.type.scale) items.push_back(list("scale", {d.type.scale->text}));
+    if (d.range) items.push_back(list("range", {d.range->low.text, d.range->high.text}));
+    if (d.hold) items.push_back(list("hold", {d.hold->text}));
+    return list("input", items);
+}
+
+std::string word(const Target& d) {
+    return list("target", {d.name.text, std::visit([](const auto& v) { return word(v); }, d.value)});
+}
+
+std::string word(const Predicate& d) {
+    return list("predicate", {d.name.text, word(d.comparison), of(*d.expression), word(d.threshold)});
+}
+
+std::string word(const Truth& d) {
+    return list("truth", {d.predicate.text, of(*d.formula)});
+}
+
+std::string word(const Let& d) {
+    return list("let", {d.name.text, of(*d.formula)});
+}
+
+std::string word(const Monitor& d) {
+    std::vector<std::string> items{d.name.text, of(*d.formula)};
+    if (d.calibrated) items.push_back(word(*d.calibrated));
+    return list(d.sliding ? "sliding" : "monitor", items);
+}
+
+}  // namespace
+
+std::string of(const Expr& e) {
+    if (e.kind == Expr::Kind::number || e.kind == Expr::Kind::name) return e.text;
+    if (e.kind == Expr::Kind::distance) return word(*e.distance);
+    std::vector<std::string> items;
+    for (const ExprPtr& argument : e.arguments) items.push_back(of(*argument));
+    return list(head(e.kind), items);
+}
+
+std::string of(const Formula& f) {
+    if (f.kind == Formula::Kind::name) return f.name;
+    if (f.kind == Formula::Kind::comparison) return list(word(f.comparison), {of(*f.left), f.right.text});
+    if (f.operands.empty()) return head(f.kind);
+    std::vector<std::string> items;
+    if (f.interval) {
+        const auto bound = [](const Bound& b) { return b.number.text + b.unit; };
+        items.push_back(fmt::format("[{},{}]", bound(f.interval->low), bound(f.interval->high)));
+    }
+    for (const FormulaPtr& operand : f.operands) items.push_back(of(*operand));
+    return list(head(f.kind), items);
+}
+
+std::string of(const Declaration& declaration) {
+    return std::visit([](const auto& d) { return word(d); }, declaration);
+}
+
+std::string of(const Spec& spec) {
+    std::string text = "spec " + spec.name.text + "\n";
+    for (const Declaration& declaration : spec.declarations) text += of(declaration) + "\n";
+    return text;
+}
+
+}  // namespace etlc::tree_text
