@@ -1,0 +1,16 @@
+#!/bin/sh
+# campaign.sh SECONDS [TARGET...]: fuzzes every target, or those named, for SECONDS each and stops at the first finding.
+# Run it in a build folder of the preset `fuzz`; what the targets learn is kept in its tests/fuzz/found for the next time.
+set -eu
+seconds=${1:?usage: campaign.sh SECONDS [TARGET...]}
+shift
+here=$(cd "$(dirname "$0")" && pwd)
+[ -d tests/fuzz ] || { echo "campaign.sh: no tests/fuzz here: run it in a build folder of the preset fuzz" >&2; exit 2; }
+[ $# -gt 0 ] || set -- $(ls "$here/corpus")
+for target in "$@"; do
+  echo "$target: $seconds s"
+  mkdir -p "tests/fuzz/found/$target"
+  "tests/fuzz/$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 \
+    -artifact_prefix="tests/fuzz/$target-" "tests/fuzz/found/$target" "$here/corpus/$target"
+done
+echo "no findings"

@@ -1,0 +1,17 @@
+// .npy from memory: any bytes are an array that holds what its shape says, or a message.
+#include "data/array.hpp"
+#include "fuzz_target.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+    namespace fuzz = etlc::fuzz;
+    const auto array = etlc::data::parse_npy(fuzz::text(data, size), "x.npy");
+    if (!array) {
+        fuzz::require_printable(array.failure().message);
+        return 0;
+    }
+    std::uint64_t count = 1;
+    for (const std::uint64_t n : array->shape) count *= n;
+    fuzz::require(array->values.size() == count, "the number of values is the product of the shape");
+    fuzz::require(count <= size, "there is no value without a byte");
+    return 0;
+}

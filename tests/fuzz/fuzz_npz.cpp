@@ -1,0 +1,46 @@
+// .npz from memory, as an array to load and as a trace to step through.
+#include "data/array.hpp"
+#include "data/trace_formats.hpp"
+#include "fuzz_target.hpp"
+
+namespace {
+
+using namespace etlc;
+using Kind = data::Channel::Kind;
+
+void load(std::string_view bytes) {
+    for (const char* key : {"", "z", "g"}) {
+        const auto array = data::parse_npz(bytes, "x.npz", key);
+        if (!array) {
+            fuzz::require_printable(array.failure().message);
+            continue;
+        }
+        std::uint64_t count = 1;
+        for (const std::uint64_t n : array->shape) count *= n;
+        fuzz::require(array->values.size() == count, "the number of values is the product of the shape");
+    }
+}
+
+void step_through(std::string_view bytes, const std::vector<data::Channel>& channels) {
+    auto trace = data::open_npz_trace({"x.npz", bytes, true}, channels);
+    if (!trace) return fuzz::require_printable(trace.failure().message);
+    data::Sample sample;
+    for (std::uint64_t steps = 0;; ++steps) {
+        const auto more = (*trace)->next(sample);
+        if (!more) return fuzz::require_printable(more.failure().message);
+        if (!*more) return fuzz::require(steps == (*trace)->length(), "there are as many steps as announced");
+        fuzz::require(sample.values.size() == channels.size(), "every channel has its values");
+        for (std::size_t c = 0; c < channels.size(); ++c)
+            fuzz::require(sample.values[c].size() == channels[c].width, "a sample is as wide as its channel");
+    }
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    const std::string_view text = fuzz::text(bytes, size);
+    load(text);
+    step_through(text, {{"z", Kind::vector, 2}});
+    step_through(text, {{"z", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}});
+    return 0;
+}

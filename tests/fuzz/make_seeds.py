@@ -1,0 +1,68 @@
+#!/usr/bin/env python3
+"""Writes the seeds of the data targets under corpus/, from the files of tests/unit/data and from here."""
+import pathlib
+import struct
+import zipfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+ARRAYS = HERE.parent / "unit" / "data"
+
+
+def seed(target, name, content):
+    folder = HERE / "corpus" / target
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / name).write_bytes(content)
+
+
+def npy(descr, shape, data, fortran=False):
+    header = f"{{'descr': '{descr}', 'fortran_order': {fortran}, 'shape': {shape}, }}".encode()
+    header += b" " * (-(10 + len(header) + 1) % 16) + b"\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", len(header)) + header + data
+
+
+for path in sorted(ARRAYS.glob("*.npy")):
+    seed("fuzz_npy", path.name, path.read_bytes())
+for name in ("stored.npz", "single.npz", "bzip2.npz"):
+    seed("fuzz_npz", name, (ARRAYS / name).read_bytes())
+
+MEMBERS = {
+    "z.npy": npy("<f4", "(2, 2)", struct.pack("<4f", 1, 2, 3, 4)),
+    "g.npy": npy("<f2", "(2,)", struct.pack("<2e", 0.5, 1)),
+    "b.npy": npy("|b1", "(2, 1)", b"\x00\x01"),
+}
+TURNED = dict(MEMBERS, **{"z.npy": npy("<f8", "(2, 2)", struct.pack("<4d", 1, 2, 3, 4), True)})
+for name, compression, members in (
+    ("trace_stored.npz", zipfile.ZIP_STORED, MEMBERS),
+    ("trace_deflated.npz", zipfile.ZIP_DEFLATED, MEMBERS),
+    ("trace_turned.npz", zipfile.ZIP_STORED, TURNED),
+):
+    path = HERE / "corpus" / "fuzz_npz" / name
+    with zipfile.ZipFile(path, "w", compression) as archive:
+        for key, data in members.items():
+            archive.writestr(zipfile.ZipInfo(key, (1980, 1, 1, 0, 0, 0)), data, compression)
+
+for name, text in {
+    "plain.csv": "z[0],z[1],g,b\n1,2,0.5,1\n-3e-4,.25,1e300,0\n",
+    "crlf.csv": "\ufeffz[0],z[1],g,b\r\n1,2,0.5,1\r\n",
+    "missing.csv": "t,b,g,z[1],z[0]\n0,,,1,\n1,nan,inf,-Infinity,NaN\n",
+    "quoted.csv": '"z[0]",z[1],g,b,"a ""note"""\n"1",2,3,0,"two\nlines, and a comma"\n',
+    "ragged.csv": "z[0],z[1],g,b\n1,2,0.5\n",
+    "words.csv": "z[0],z[1],g,b\n1,two,0.5,1\n",
+    "range.csv": "z[0],z[1],g,b\n1e999,1e-999,0,1\n",
+}.items():
+    seed("fuzz_csv", name, text.encode())
+
+ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, "scores": [0.1, "inf"],
+ "predicate": "min l2(z, goal) <= ", "truth": "array", "targets": {"goal": "0123456789abcdef"}"""
+for name, text in {
+    "whole.json": f"""{{"format": 1, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, "monitors": {{}},
+ "episodes": ["0123456789abcdef"], "etlc": "0.1.0"}}""",
+    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": {{{ENTRY.replace('"predicate"', '"formula"')}}}}},
+ "etlc": "0.1.0"}}""",
+    "f1.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "f1", "epsilon": -0.0, "n": 1, "k": 0,
+ "scores": [], "predicate": "g > ", "truth": "g > 0.5", "targets": {}}}, "etlc": "0.1.0"}""",
+    "format2.json": '{"format": 2}',
+    "nested.json": "[" * 40,
+    "escapes.json": '{"format": 1, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "etlc": ""}',
+}.items():
+    seed("fuzz_thresholds", name, text.encode())

@@ -1,0 +1,36 @@
+// Runs a fuzz target on files, for compilers without libFuzzer.
+// Takes: files and folders. Gives: exit status 0 where every file went through the target; a finding stops the program.
+#include <algorithm>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+#include <vector>
+
+#include "fuzz_target.hpp"
+
+int main(int argc, char** argv) {
+    namespace fs = std::filesystem;
+    std::vector<fs::path> files;
+    for (int i = 1; i < argc; ++i) {
+        if (fs::is_directory(argv[i]))
+            std::copy(fs::directory_iterator(argv[i]), {}, std::back_inserter(files));
+        else
+            files.emplace_back(argv[i]);
+    }
+    std::sort(files.begin(), files.end());
+    for (const fs::path& path : files) {
+        std::printf("%s\n", path.filename().c_str());
+        std::fflush(stdout);  // so that the last line names the finding
+        std::ifstream file(path, std::ios::binary);
+        if (!file) {
+            std::printf("cannot be read\n");
+            return 1;
+        }
+        const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+        LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+    }
+    std::printf("%zu files\n", files.size());
+    return files.empty() ? 1 : 0;
+}
