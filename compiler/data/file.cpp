@@ -94,6 +94,12 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
         const bool no_folder = error == ENOENT || error == ENOTDIR;
         return diag::Failure{code, fmt::format("cannot be written: {}", no_folder ? "no such folder" : words(error))};
     };
+    // Standard output is written where it stands: behind it may be a file that others write to as well.
+    if (path == "/dev/stdout") {
+        const int descriptor = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, 0);
+        if (descriptor < 0) return refuse(errno);
+        return AtomicFile(path, {}, descriptor, code);
+    }
     struct stat status {};
     const bool exists = ::stat(path.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) return refuse(EISDIR);

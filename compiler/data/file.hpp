@@ -23,7 +23,8 @@ std::optional<std::string> why_unreadable(const std::string& path);
 diag::Diagnostic in_file(const diag::Failure& failure, const std::string& path);
 
 /// A file that is written under a temporary name in its folder and takes its own name only when it is complete.
-/// A path that is a device or a pipe is written to directly; of a symbolic link, the file it points to is replaced.
+/// A path that is a device, a pipe or /dev/stdout is written to directly; of a symbolic link, the file it points to is
+/// replaced.
 class AtomicFile {
 public:
     static diag::Result<AtomicFile> create(const std::string& path, diag::Code code);

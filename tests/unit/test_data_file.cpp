@@ -1,4 +1,5 @@
 // Whole files in and out, the content hash, and text that goes into messages.
+#include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -109,6 +110,21 @@ TEST(AtomicWrite, DevicesAreWrittenTo) {
     const auto full = write_file_atomically("/dev/full", "x", Code::unreadable_trace);
     ASSERT_TRUE(full);
     EXPECT_EQ(full->message, "cannot be written: no space left on the device");
+}
+
+TEST(AtomicWrite, StandardOutputIsAppendedTo) {
+    const TemporaryPath file("log", "before\n");
+    std::fflush(stdout);
+    const int kept = ::dup(STDOUT_FILENO);
+    const int log = ::open(file.path().c_str(), O_WRONLY | O_APPEND);
+    ::dup2(log, STDOUT_FILENO);
+    ::close(log);
+    const auto failure = write_file_atomically("/dev/stdout", "written\n", Code::unreadable_trace);
+    const bool more = ::write(STDOUT_FILENO, "after\n", 6) == 6;
+    ::dup2(kept, STDOUT_FILENO);
+    ::close(kept);
+    EXPECT_TRUE(!failure && more);
+    EXPECT_EQ(file_bytes(file.path()), "before\nwritten\nafter\n");
 }
 
 TEST(AtomicWrite, SaysWhyItCannotWrite) {
