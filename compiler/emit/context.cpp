@@ -53,10 +53,11 @@ std::string value_literal(plan::Value value) {
     return fmt::format("Value{{{}, {}}}", key_literal(value.low), key_literal(value.high));
 }
 
-std::string nested(std::string_view function, const std::vector<std::string>& arguments) {
-    std::string text = arguments.front();
-    for (std::size_t i = 1; i < arguments.size(); ++i) text = fmt::format("{}({}, {})", function, text, arguments[i]);
-    return text;
+std::string call(std::string_view function, const std::vector<std::string>& arguments) {
+    if (arguments.size() == 1) return arguments.front();
+    std::string text;
+    for (const std::string& argument : arguments) text += (text.empty() ? "" : ", ") + argument;
+    return fmt::format("{}({})", function, text);
 }
 
 void print_wrapped(Printer& out, const std::string& text) {

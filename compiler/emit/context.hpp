@@ -37,8 +37,8 @@ std::string key_literal(plan::Key key);
 std::string value_literal(plan::Value value);
 /// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four spaces deeper.
 void print_wrapped(Printer& out, const std::string& text);
-/// max(max(a, b), c)
-std::string nested(std::string_view function, const std::vector<std::string>& arguments);
+/// "max(a, b, c)"; of one argument, that argument.
+std::string call(std::string_view function, const std::vector<std::string>& arguments);
 
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);

@@ -18,8 +18,12 @@ void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
     const bool ends = plan.has_sliding;  // prefixes do not grow while finish() reports the last positions
-    if (ends) out.open("if (finished_ == 0) {");
+    if (ends) {
+        out.line();
+        out.open("if (finished_ == 0) {");
+    }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
+        if (r > 0 || !ends) out.line();
         out.line("// {}", context.place(plan.readings[r].node));
         print_reading(out, context, r);
     }
@@ -36,8 +40,11 @@ void print_judge(Printer& out, const Context& context) {
     const bool reads_atoms = !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
     out.line("/// One step of every formula, given this step's predicates.");
     out.open(fmt::format("Verdicts judge({}const Atoms& now) noexcept {{", reads_atoms ? "" : "[[maybe_unused]] "));
+    out.line("using etlmon::max;");
+    out.line("using etlmon::min;");
     print_streams(out, context);
     print_readings(out, context);
+    out.line();
     out.line("Verdicts verdicts;");
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out, fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));

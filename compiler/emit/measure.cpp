@@ -113,25 +113,26 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
 }
 
 std::string expression(const Context& context, const Expr& e) {
-    const auto call = [&](std::string_view function) {
-        std::vector<std::string> arguments;
-        for (const Expr& argument : e.arguments) arguments.push_back(expression(context, argument));
-        if (arguments.size() == 1) return fmt::format("etlmon::{}({})", function, arguments[0]);
-        return nested(fmt::format("etlmon::{}", function), arguments);
+    const auto apply = [&](std::string_view function) {
+        std::string text = expression(context, e.arguments[0]);
+        if (e.arguments.size() == 1) return fmt::format("etlmon::{}({})", function, text);
+        for (std::size_t i = 1; i < e.arguments.size(); ++i)
+            text = fmt::format("etlmon::{}({}, {})", function, text, expression(context, e.arguments[i]));
+        return text;
     };
     switch (e.kind) {
         case Expr::Kind::number: return float_literal(e.number32);
         case Expr::Kind::scalar: return "*" + context.names.input_local.at(e.index);
         case Expr::Kind::distance: return context.names.distance_local.at(e.index) + ".delta";
-        case Expr::Kind::negate: return call("negate");
-        case Expr::Kind::add: return call("add");
-        case Expr::Kind::subtract: return call("subtract");
-        case Expr::Kind::multiply: return call("multiply");
-        case Expr::Kind::divide: return call("divide");
-        case Expr::Kind::abs: return call("absolute");
-        case Expr::Kind::sqrt: return call("root");
-        case Expr::Kind::min: return call("smaller");
-        case Expr::Kind::max: return call("greater");
+        case Expr::Kind::negate: return apply("negate");
+        case Expr::Kind::add: return apply("add");
+        case Expr::Kind::subtract: return apply("subtract");
+        case Expr::Kind::multiply: return apply("multiply");
+        case Expr::Kind::divide: return apply("divide");
+        case Expr::Kind::abs: return apply("absolute");
+        case Expr::Kind::sqrt: return apply("root");
+        case Expr::Kind::min: return apply("smaller");
+        case Expr::Kind::max: return apply("greater");
     }
     return "";
 }

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 #include "plan/budget.hpp"
@@ -11,7 +12,8 @@ namespace etlc::emit {
 
 namespace {
 
-constexpr std::size_t kLongestName = 40;
+constexpr std::size_t kLongestName = 36;
+constexpr std::size_t kLongestPartName = 24;
 
 /// Words for the symbols of formulas and expressions.
 std::string_view word_for(char symbol) {
@@ -120,11 +122,25 @@ private:
         }
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);
-            const std::string name =
-                given == wanted.end() ? identifier(graph_.text(plan_.readings[r].node), "part") : given->second;
+            const std::string name = given == wanted.end() ? part_name(r) : given->second;
             names_.reading_local[r] = judge_.claim(name);
             if (plan::cost_of(plan_, plan_.readings[r]).state_bytes > 0) name_registers(r, name);
         }
+    }
+
+    /// A part of a monitor's formula: its own words where they are few.
+    std::string part_name(std::uint32_t r) const {
+        const std::string words = identifier(graph_.text(plan_.readings[r].node), "");
+        if (!words.empty() && words.size() <= kLongestPartName) return words;
+        for (const plan::Monitor& monitor : plan_.monitors)
+            if (!monitor.sliding && contains(monitor.reading, r)) return monitor.name + "_part";
+        return "part";
+    }
+
+    bool contains(std::uint32_t whole, std::uint32_t part) const {
+        if (whole == part) return true;
+        const auto& operands = plan_.readings[whole].operands;
+        return std::any_of(operands.begin(), operands.end(), [&](std::uint32_t o) { return contains(o, part); });
     }
 
     void name_registers(std::uint32_t r, const std::string& name) {

@@ -19,6 +19,26 @@ std::string local(const Context& context, std::uint32_t r) {
     return "const Reading " + context.names.reading_local.at(r);
 }
 
+/// A reading from its three parts: on one line where they fit.
+void print_parts(Printer& out, const Context& context, std::uint32_t r, const std::string& rho, const std::string& lower,
+                 const std::string& upper) {
+    const std::string one_line = fmt::format("{} = {{{}, {}, {}}};", local(context, r), rho, lower, upper);
+    if (out.column() + one_line.size() <= kLineWidth) return out.line(one_line);
+    out.line("{} = {{", local(context, r));
+    out.indent();
+    print_wrapped(out, rho + ",");
+    print_wrapped(out, lower + ",");
+    print_wrapped(out, upper);
+    out.close("};");
+}
+
+/// max(a, key), or what it is where the key is an infinity; min likewise.
+std::string widened(bool takes_max, const std::string& value, const std::string& key) {
+    if (key == (takes_max ? "etlmon::kTop" : "etlmon::kBottom")) return key;
+    if (key == (takes_max ? "etlmon::kBottom" : "etlmon::kTop")) return value;
+    return fmt::format("{}({}, {})", takes_max ? "max" : "min", value, key);
+}
+
 // ---- latches and folds
 
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
@@ -53,12 +73,12 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     if (binary) print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard, context.value(fold.left)));
 
     const std::string unseen_key = takes_max ? context.high(fold.unseen) : context.low(fold.unseen);
-    const std::string unseen = binary ? fmt::format("{}({}.{}, {})", narrow, guard, end, unseen_key) : unseen_key;
-    std::string bound = fmt::format("{}({}.{}, {})", widen, best, end, unseen);
+    const std::string unseen =
+        binary ? widened(!takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
+    std::string bound = widened(takes_max, fmt::format("{}.{}", best, end), unseen);
     if (fold.interval.bounded()) bound = fmt::format("step_ < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
     const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
-    print_wrapped(out, fmt::format("{} = {{{}, {}, {}}};", local(context, r), best, takes_max ? known : bound,
-                                   takes_max ? bound : known));
+    print_parts(out, context, r, best, takes_max ? known : bound, takes_max ? bound : known);
 }
 
 // ---- unrolled machines
@@ -84,9 +104,9 @@ std::vector<std::string> incoming(const Context& context, std::uint32_t r, std::
                 sources.push_back(registers[transitions[i].source]);
         }
         std::vector<std::string> factors;
-        if (!free) factors.push_back(nested("max", sources));
+        if (!free) factors.push_back(call("max", sources));
         for (Slot slot : machine.guards[guard]) factors.push_back(context.value(slot));
-        groups.push_back(factors.empty() ? "etlmon::kTrue" : nested("min", factors));
+        groups.push_back(factors.empty() ? "etlmon::kTrue" : call("min", factors));
     }
     return groups;
 }
@@ -108,7 +128,7 @@ std::vector<std::uint32_t> in_place_order(const Machine& machine) {
 
 void print_update(Printer& out, const std::string& target, const std::vector<std::string>& groups) {
     if (groups.empty()) return out.line("{} = etlmon::kFalse;", target);
-    print_wrapped(out, fmt::format("{} = {};", target, nested("max", groups)));
+    print_wrapped(out, fmt::format("{} = {};", target, call("max", groups)));
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
@@ -144,9 +164,11 @@ std::string best_of(const std::vector<std::pair<std::string, std::string>>& regi
         if (holds_true)
             terms.push_back(key.empty() ? "etlmon::kTop" : key);
         else
-            terms.push_back(key.empty() ? nested("max", same) : fmt::format("min({}, {})", nested("max", same), key));
+            terms.push_back(key.empty() ? call("max", same) : fmt::format("min({}, {})", call("max", same), key));
     }
-    return terms.empty() ? "etlmon::kBottom" : nested("max", terms);
+    if (terms.empty()) return "etlmon::kBottom";
+    const bool top = std::find(terms.begin(), terms.end(), "etlmon::kTop") != terms.end();
+    return top ? "etlmon::kTop" : call("max", terms);
 }
 
 void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
@@ -165,8 +187,7 @@ void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
         rho.push_back(owed.always_true ? "etlmon::kTrue" : registers[q]);
         lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == "etlmon::kTop" ? "" : weak);
     }
-    print_wrapped(out, fmt::format("{} = {{{}, {}, {}}};", local(context, r),
-                                   rho.empty() ? "etlmon::kFalse" : nested("max", rho), best_of(lower), best_of(upper)));
+    print_parts(out, context, r, rho.empty() ? "etlmon::kFalse" : call("max", rho), best_of(lower), best_of(upper));
 }
 
 // ---- machines as tables
@@ -196,7 +217,7 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     for (const auto& literals : machine.guards) {
         std::vector<std::string> values;
         for (Slot slot : literals) values.push_back(context.value(slot));
-        guards.push_back(values.empty() ? "etlmon::kTrue" : nested("min", values));
+        guards.push_back(values.empty() ? "etlmon::kTrue" : call("min", values));
     }
     print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
     print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak, list(keys(context, table.weak, false))));
@@ -255,7 +276,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
     std::vector<std::string> parts;
     for (std::uint32_t operand : reading.operands) parts.push_back(context.names.reading_local.at(operand));
     print_wrapped(out, fmt::format("{} = {};", local(context, r),
-                                   nested(reading.kind == Reading::Kind::conjunction ? "min" : "max", parts)));
+                                   call(reading.kind == Reading::Kind::conjunction ? "min" : "max", parts)));
 }
 
 void print_tables(Printer& out, const Context& context) {

@@ -64,7 +64,7 @@ std::string statement(const Context& context, Slot slot) {
         case StreamOp::disjunction: {
             std::vector<std::string> operands;
             for (std::size_t i = 0; i < stream.operands.size(); ++i) operands.push_back(at(i));
-            return fmt::format("{}{};", local, nested(stream.op == StreamOp::conjunction ? "min" : "max", operands));
+            return fmt::format("{}{};", local, call(stream.op == StreamOp::conjunction ? "min" : "max", operands));
         }
         case StreamOp::delay: return fmt::format("{}{}.push({});", local, kept(), at(0));
         case StreamOp::shift:
@@ -108,8 +108,10 @@ void print_streams(Printer& out, const Context& context) {
         const std::string text = statement(context, slot);
         if (text.empty()) continue;
         const plan::NodeId node = context.plan.streams[slot].node;
-        if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation)
+        if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
+            out.line();
             out.line("// {}", context.place(node));
+        }
         print_wrapped(out, text);
     }
 }

@@ -6,7 +6,8 @@
 #pragma once
 
 #include <stdint.h>
-#include <string.h>
+
+#include "etlmon/bits.hpp"
 
 namespace etlmon {
 
@@ -14,28 +15,17 @@ namespace etlmon {
 /// assumes that infinities do not occur, from changing a verdict.
 using Key = int32_t;
 
-inline uint32_t bits_of(float x) noexcept {
-  uint32_t bits;
-  memcpy(&bits, &x, sizeof bits);
-  return bits;
-}
+ETLMON_INLINE uint32_t bits_of(const float& x) noexcept { return detail::observe(x); }
 
-inline float float_of_bits(uint32_t bits) noexcept {
-  float x;
-  memcpy(&x, &bits, sizeof x);
-  return x;
-}
+ETLMON_INLINE float float_of_bits(uint32_t bits) noexcept { return detail::from_bits(bits); }
 
 /// The key of a robustness that is not NaN.
-inline Key key_of(float robustness) noexcept {
-  const uint32_t bits = bits_of(robustness);
-  const uint32_t magnitude = bits & 0x7fffffffu;
-  return bits == magnitude ? static_cast<Key>(magnitude) : -static_cast<Key>(magnitude);
-}
+ETLMON_INLINE Key key_of(const float& robustness) noexcept { return detail::ordered(bits_of(robustness)); }
 
-inline float float_of(Key key) noexcept {
+/// The float of a key; 0 is +0.
+ETLMON_INLINE float float_of(Key key) noexcept {
   const uint32_t magnitude = static_cast<uint32_t>(key < 0 ? -key : key);
-  return float_of_bits(key < 0 ? magnitude | 0x80000000u : magnitude);
+  return float_of_bits(key < 0 ? magnitude | detail::kSignBit : magnitude);
 }
 
 constexpr Key kTop = 0x7f800000;      ///< +inf: true
@@ -46,8 +36,8 @@ constexpr Key max(Key a, Key b) noexcept { return a < b ? b : a; }
 
 /// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the flags. Of two zeros,
 /// a.
-inline float min(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
-inline float max(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
+ETLMON_INLINE float min(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
+ETLMON_INLINE float max(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
 
 /// What is known of a robustness: low == high where every sample it depends on was there, else the ends of its range.
 /// The min-max algebra works on both ends alike, since formulas are in negation normal form (only predicates negate).
@@ -64,13 +54,23 @@ constexpr Value max(Value a, Value b) noexcept { return {max(a.low, b.low), max(
 constexpr Value negate(Value a) noexcept { return {-a.high, -a.low}; }
 
 /// The value of a robustness that is known; not NaN.
-inline Value known(float robustness) noexcept {
+ETLMON_INLINE Value known(const float& robustness) noexcept {
   const Key key = key_of(robustness);
   return {key, key};
 }
 
 /// The value of a robustness that lies in [low, high]; neither is NaN, low <= high.
-inline Value between(float low, float high) noexcept { return {key_of(low), key_of(high)}; }
+ETLMON_INLINE Value between(const float& low, const float& high) noexcept { return {key_of(low), key_of(high)}; }
+
+/// Of more than two.
+template <class V, class... More>
+constexpr V min(V a, V b, V c, More... more) noexcept {
+  return min(min(a, b), c, more...);
+}
+template <class V, class... More>
+constexpr V max(V a, V b, V c, More... more) noexcept {
+  return max(max(a, b), c, more...);
+}
 
 /// The least and the greatest element of a value type: bottom is false, top is true. A mode (Boolean words, say) is a
 /// type with min and max found by argument-dependent lookup and a specialisation of this.
@@ -85,8 +85,8 @@ struct Lattice<Key> {
 
 template <>
 struct Lattice<float> {
-  static float bottom() noexcept { return float_of(kBottom); }
-  static float top() noexcept { return float_of(kTop); }
+  ETLMON_INLINE static float bottom() noexcept { return float_of(kBottom); }
+  ETLMON_INLINE static float top() noexcept { return float_of(kTop); }
 };
 
 template <>
