@@ -10,8 +10,8 @@
 namespace etlc::diag {
 
 struct RenderOptions {
-    bool colour = false;             ///< ANSI colours, for terminals
-    bool warnings_as_errors = false; ///< -Werror: say "error" for warnings
+    bool colour = false;              ///< ANSI colours, for terminals
+    bool warnings_as_errors = false;  ///< -Werror: say "error" for warnings
 };
 
 std::string render_text(const source::File& spec, const Sink& sink, RenderOptions options = {});
