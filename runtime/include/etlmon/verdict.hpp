@@ -19,10 +19,10 @@ struct Verdict {
   static constexpr uint32_t kDecided = 4;
   static constexpr uint32_t kFinal = 8;
 
-  float robustness = float_of_bits(0x7fc00000u);  ///< rho; pessimistic where a sample is missing
-  float lower = float_of_bits(0x7fc00000u);       ///< no continuation of the trace takes rho below this
-  float upper = float_of_bits(0x7fc00000u);       ///< nor above this
-  uint32_t status = 0;                            ///< the bits above
+  float robustness = kMissing;  ///< rho; pessimistic where a sample is missing
+  float lower = kMissing;       ///< no continuation of the trace takes rho below this
+  float upper = kMissing;       ///< nor above this
+  uint32_t status = 0;          ///< the bits above
 
   constexpr bool satisfied() const noexcept { return (status & kSatisfied) != 0; }
   constexpr bool violated() const noexcept { return (status & kViolated) != 0; }

@@ -17,6 +17,13 @@
 #include "etlmon/delay.hpp"
 #include "etlmon/monoid.hpp"
 
+// Where speed counts, the length is folded into each window's step; where size counts, all lengths share one.
+#if defined(__OPTIMIZE_SIZE__)
+#define ETLMON_WINDOW_STEP
+#else
+#define ETLMON_WINDOW_STEP ETLMON_INLINE
+#endif
+
 namespace etlmon {
 
 /// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
@@ -43,8 +50,8 @@ constexpr typename Monoid::Element window_total(typename Monoid::Element oldest,
 /// One step of a window over the last n >= 1 elements: the combination of those, this one included.
 /// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring that this step fills.
 template <class Monoid>
-typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n,
-                                     typename Monoid::Element element) noexcept {
+ETLMON_WINDOW_STEP typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n,
+                                                        typename Monoid::Element element) noexcept {
   using Element = typename Monoid::Element;
   if (n == 1) return element;
   const bool odd = n % 2 != 0;
