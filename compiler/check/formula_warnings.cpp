@@ -54,10 +54,12 @@ public:
         const std::vector<bool> in_prefix = below_prefix_monitors();
         for (Index i = 0; i < model_.formulas.size(); ++i)
             if (in_prefix[i]) warn_of_last_step(i);
-        for (const Monitor& monitor : model_.monitors) {
+        for (Index i = 0; i < model_.monitors.size(); ++i) {
+            const Monitor& monitor = model_.monitors[i];
+            const Entity& entity = c_.scope.entity(NameKind::monitor, i);
             if (monitor.formula == kNone) continue;
-            if (!warn_of_constant(monitor)) warn_of_first_position(monitor);
-            warn_of_same_monitor(monitor);
+            if (!warn_of_constant(monitor, entity.span)) warn_of_first_position(monitor, entity.span);
+            warn_of_same_monitor(monitor, entity);
         }
     }
 
@@ -123,11 +125,11 @@ private:
         warning.note("every operator is cut at the prefix; G F[0, b] p or F G[0, b] p with a bound says more");
     }
 
-    bool warn_of_constant(const Monitor& monitor) {
+    bool warn_of_constant(const Monitor& monitor, Span name) {
         const Constancies& found = constancies_[monitor.formula];
         const Constancy constancy = monitor.sliding ? found.anywhere : found.at_start;
         if (constancy == Constancy::varies) return false;
-        auto& warning = c_.report(Code::constant_verdict, monitor.span,
+        auto& warning = c_.report(Code::constant_verdict, name,
                                   fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
                                               constancy == Constancy::always ? "satisfied" : "violated"));
         if (!monitor.sliding && found.anywhere == Constancy::varies)
@@ -136,19 +138,19 @@ private:
         return true;
     }
 
-    void warn_of_first_position(const Monitor& monitor) {
+    void warn_of_first_position(const Monitor& monitor, Span name) {
         if (monitor.sliding || reaches_[monitor.formula].future != kNone) return;
-        c_.report(Code::first_position_only, monitor.span,
+        c_.report(Code::first_position_only, name,
                   fmt::format("'{}' looks only at position 0, so that its verdict never changes after the first step",
                               monitor.name))
             .note("did you mean a sliding monitor, or G in front of the formula?");
     }
 
-    void warn_of_same_monitor(const Monitor& monitor) {
-        const auto [first, is_new] = monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &monitor);
+    void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
+        const auto [first, is_new] = monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &entity);
         if (is_new) return;
-        c_.report(Code::same_definition, monitor.span,
-                  fmt::format("'{}' is the same monitor as '{}'", monitor.name, first->second->name))
+        c_.report(Code::same_definition, entity.span,
+                  fmt::format("'{}' is the same monitor as '{}'", entity.name, first->second->name))
             .note(first->second->span, fmt::format("'{}' is declared here", first->second->name));
     }
 
@@ -157,7 +159,7 @@ private:
     std::vector<Index> structures_;
     std::vector<Constancies> constancies_;
     std::vector<Reach> reaches_;
-    std::map<std::pair<Index, bool>, const Monitor*> monitors_;
+    std::map<std::pair<Index, bool>, const Entity*> monitors_;
 };
 
 }  // namespace

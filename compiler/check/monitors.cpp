@@ -15,15 +15,15 @@ class MonitorCheck {
 public:
     explicit MonitorCheck(Context& context) : c_(context), reaches_(reaches(context.model)) {}
 
-    void sliding(Monitor& monitor) {
+    void sliding(Monitor& monitor, Span name) {
         const Reach& reach = reaches_[monitor.formula];
         if (reach.unbounded != kNone) {
             report_all(monitor, &Reach::unbounded, reported_unbounded_,
-                       [&](Index at) { report_unbounded(monitor, at); });
+                       [&](Index at) { report_unbounded(monitor, name, at); });
             return;
         }
         if (reach.horizon > kMaxBound) {
-            c_.report(Code::horizon_too_large, monitor.span,
+            c_.report(Code::horizon_too_large, name,
                       fmt::format(
                           "'{}' looks further ahead than {} steps: the sum of the upper bounds along its deepest path",
                           monitor.name, kMaxBound));
@@ -32,29 +32,30 @@ public:
         monitor.horizon = static_cast<std::uint32_t>(reach.horizon);
     }
 
-    void prefix(const Monitor& monitor) {
+    void prefix(const Monitor& monitor, Span name) {
         if (reaches_[monitor.formula].past_over_future == kNone) return;
-        report_all(monitor, &Reach::past_over_future, reported_past_, [&](Index at) { report_past(monitor, at); });
+        report_all(monitor, &Reach::past_over_future, reported_past_,
+                   [&](Index at) { report_past(monitor, name, at); });
     }
 
-    void truth(const Truth& truth) {
+    void truth(const Truth& truth, Span name) {
         const Index future = reaches_[truth.formula].future;
         if (future == kNone) return;
         const Entity& predicate = c_.scope.entity(NameKind::predicate, truth.predicate);
         note_use(c_.report(Code::future_in_truth, c_.operator_spans[future],
                            fmt::format("{} looks ahead; the truth of '{}' may only look at the present and the past",
                                        word(future), predicate.name)),
-                 truth.span, future, fmt::format("the truth of '{}' is here", predicate.name));
+                 truth.span, name, future, fmt::format("the truth of '{}' is here", predicate.name));
     }
 
 private:
     std::string_view word(Index formula) const { return operator_word(c_.model.formulas[formula].kind); }
 
     /// Where the operator stands in a let, where it is used as well.
-    void note_use(diag::Diagnostic& error, Span user, Index at, std::string text) const {
+    void note_use(diag::Diagnostic& error, Span user, Span shown, Index at, std::string text) const {
         const Span place = c_.operator_spans[at];
         const bool inside = user.begin <= place.begin && place.end <= user.end;
-        if (!inside) error.note(user, std::move(text));
+        if (!inside) error.note(shown, std::move(text));
     }
 
     /// Calls `report` for each node below the monitor that `what` of its own reach names, once in all monitors.
@@ -72,18 +73,18 @@ private:
         }
     }
 
-    void report_unbounded(const Monitor& monitor, Index at) {
+    void report_unbounded(const Monitor& monitor, Span name, Index at) {
         auto& error =
             c_.report(Code::unbounded_future, c_.operator_spans[at],
                       fmt::format("{} looks ahead without bound, and a sliding verdict waits for all that it looks at",
                                   word(at)));
-        note_use(error, monitor.span, at, fmt::format("sliding monitor '{}' uses it", monitor.name));
+        note_use(error, monitor.span, name, at, fmt::format("sliding monitor '{}' uses it", monitor.name));
         error.note(c_.model.formulas[at].kind == Formula::Kind::weak_until
                        ? "W has no bounded form; p W[0, b] q is written (p U[0, b] q) || G[0, b] p"
                        : "give it an interval, such as [0, 20], or leave out 'sliding'");
     }
 
-    void report_past(const Monitor& monitor, Index at) {
+    void report_past(const Monitor& monitor, Span name, Index at) {
         Index future = kNone;
         for (const Index operand : c_.model.formulas[at].operands)
             if (future == kNone) future = reaches_[operand].future;
@@ -91,7 +92,7 @@ private:
             Code::past_over_future, c_.operator_spans[at],
             fmt::format("{} looks back over an operand that looks ahead, which a prefix monitor cannot do", word(at)));
         error.note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
-        note_use(error, monitor.span, at, fmt::format("monitor '{}' uses it", monitor.name));
+        note_use(error, monitor.span, name, at, fmt::format("monitor '{}' uses it", monitor.name));
         error.note("a sliding monitor can, where the future is bounded");
     }
 
@@ -146,7 +147,7 @@ void check_truths(Context& c) {
     });
     MonitorCheck check(c);
     for (const Truth& truth : truths) {
-        check.truth(truth);
+        check.truth(truth, first.at(truth.predicate));
         const Index calibrated = calibrated_node(c.model, truth.formula);
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
@@ -172,12 +173,14 @@ void check_monitors(Context& c) {
         c.model.monitors.push_back(std::move(monitor));
     });
     MonitorCheck check(c);
-    for (Monitor& monitor : c.model.monitors) {
+    for (Index i = 0; i < c.model.monitors.size(); ++i) {
+        Monitor& monitor = c.model.monitors[i];
+        const Span name = c.scope.entity(NameKind::monitor, i).span;
         if (monitor.formula == kNone) continue;
         if (monitor.sliding)
-            check.sliding(monitor);
+            check.sliding(monitor, name);
         else
-            check.prefix(monitor);
+            check.prefix(monitor, name);
     }
 }
 

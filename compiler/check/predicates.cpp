@@ -58,9 +58,9 @@ std::optional<Predicate> make_predicate(Context& c, const ast::Expr& written, as
     predicate.delta = range_of(c.model, *expression, undefined);
     if (undefined != nullptr)
         c.report(Code::never_defined, undefined->span,
-                 fmt::format("'{}' has no value, whatever the inputs are", print(c.model, *undefined)))
-            .note(undefined->kind == Expr::Kind::sqrt ? "it is the square root of a negative number"
-                                                      : "it is a division by zero");
+                 fmt::format("'{}' {}, whatever the inputs are", print(c.model, *undefined),
+                             undefined->kind == Expr::Kind::sqrt ? "is the square root of a negative number"
+                                                                 : "divides by zero"));
     predicate.expression = std::move(*expression);
     predicate.threshold = std::move(*threshold);
     predicate.span = span;

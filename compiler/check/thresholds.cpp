@@ -1,6 +1,7 @@
 // The thresholds file: an epsilon for every calibrated predicate, where the file was made for this spec.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "check/decimal.hpp"
@@ -71,7 +72,7 @@ std::string_view method_word(ThresholdOrigin origin) {
 class Differences {
 public:
     Differences(const Model& model, Index predicate, const thresholds::Entry& entry)
-        : predicate_(model.predicates[predicate]), entry_(entry), now_(provenance(model, predicate)) {}
+        : model_(model), predicate_(model.predicates[predicate]), entry_(entry), now_(provenance(model, predicate)) {}
 
     std::vector<std::string> find() && {
         const std::string_view method = method_word(predicate_.threshold.origin);
@@ -104,13 +105,20 @@ private:
         for (const auto& [name, hash] : hashes) {
             const auto then = entry_.targets.find(name);
             // A target that the entry does not know belongs to a predicate that has changed, which has been said.
-            if (then != entry_.targets.end() && then->second != hash)
-                found_.push_back(fmt::format("the values of '{}' have changed", name));
             if (then == entry_.targets.end() && found_.empty())
-                found_.push_back(fmt::format("it does not say for which values of '{}'", name));
+                found_.push_back(fmt::format("it does not say for which {} of '{}'", what_is_hashed(name), name));
+            if (then != entry_.targets.end() && then->second != hash)
+                found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
         }
     }
 
+    std::string_view what_is_hashed(const std::string& name) const {
+        const auto is_named = [&](const auto& declared) { return declared.name == name; };
+        if (std::any_of(model_.targets.begin(), model_.targets.end(), is_named)) return "values";
+        return std::any_of(model_.inputs.begin(), model_.inputs.end(), is_named) ? "scale" : "weights";
+    }
+
+    const Model& model_;
     const Predicate& predicate_;
     const thresholds::Entry& entry_;
     Provenance now_;

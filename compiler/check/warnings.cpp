@@ -57,15 +57,16 @@ void warn_of_constant_predicates(Context& c) {
 }
 
 void warn_of_same_predicates(Context& c) {
-    std::map<std::string, const Predicate*> first;
-    for (const Predicate& predicate : c.model.predicates) {
-        if (predicate.name.empty() || predicate.text.empty() || predicate.threshold.origin != ThresholdOrigin::literal)
-            continue;
+    std::map<std::string, const Entity*> first;
+    for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
+        const Predicate& predicate = c.model.predicates[i];
+        const Entity& entity = c.scope.entity(NameKind::predicate, i);
+        if (entity.broken || entity.duplicate || predicate.threshold.origin != ThresholdOrigin::literal) continue;
         const std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
-        const auto [before, is_new] = first.try_emplace(text, &predicate);
+        const auto [before, is_new] = first.try_emplace(text, &entity);
         if (is_new) continue;
-        c.report(Code::same_definition, predicate.span,
-                 fmt::format("'{}' is the same predicate as '{}'", predicate.name, before->second->name))
+        c.report(Code::same_definition, entity.span,
+                 fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
             .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
     }
 }

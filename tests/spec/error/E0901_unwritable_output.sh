@@ -1,0 +1,8 @@
+# An output that cannot be written, and no part of it left behind.
+printf 'spec t;\ninput ok : bool;\nmonitor m = G ok;\n' > t.etl
+"$ETLC" t.etl -o nowhere/t.hpp
+echo "exit status $?"
+mkdir folder
+"$ETLC" t.etl -o folder
+echo "exit status $?"
+ls folder

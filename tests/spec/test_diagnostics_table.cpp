@@ -1,0 +1,74 @@
+// docs/diagnostics.md lists every code of codes.def.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <map>
+#include <set>
+#include <string>
+
+#include "diag/diag.hpp"
+#include "golden.hpp"
+
+namespace etlc::testing {
+
+namespace {
+
+std::string_view group_title(std::string_view code) {
+    if (code.starts_with('W')) return "Warnings";
+    static const std::map<std::string_view, std::string_view> titles{
+        {"E01", "Text and syntax"},
+        {"E02", "Names"},
+        {"E03", "Types and numbers"},
+        {"E04", "Targets and other data that a spec loads"},
+        {"E05", "Time"},
+        {"E06", "Thresholds"},
+        {"E07", "Limits"},
+        {"E08", "Traces and episodes"},
+        {"E09", "Output"}};
+    const auto found = titles.find(code.substr(0, 3));
+    return found == titles.end() ? std::string_view("Others") : found->second;
+}
+
+std::string table() {
+    std::string text =
+        "# Diagnostics\n\n"
+        "Every error and warning of `etlc` bears a code. This table is made from compiler/diag/codes.def (a test keeps "
+        "the two\n"
+        "equal; `ETLC_UPDATE=1` rewrites it); tests/spec/error holds at least one example of each, with the exact "
+        "message.\n"
+        "Errors come out with exit status 1; warnings do not, unless `-Werror` is given.\n";
+    std::string_view group;
+    for (const diag::CodeInfo& info : diag::all_codes()) {
+        if (group_title(info.code) != group) {
+            group = group_title(info.code);
+            text += fmt::format("\n## {}\n\n| code | name | what it is about |\n| --- | --- | --- |\n", group);
+        }
+        std::string summary(info.summary);
+        for (std::size_t at = 0; (at = summary.find('|', at)) != std::string::npos; at += 2) summary.insert(at, "\\");
+        text += fmt::format("| {} | {} | {} |\n", info.code, info.name, summary);
+    }
+    return text;
+}
+
+TEST(Diagnostics, TheTableIsThatOfTheCode) {
+    expect_golden(table(), std::filesystem::path(ETLC_SOURCE_DIR) / "docs" / "diagnostics.md");
+}
+
+TEST(Diagnostics, CodesAreSortedAndUnique) {
+    const auto& codes = diag::all_codes();
+    for (std::size_t i = 1; i < codes.size(); ++i) EXPECT_LT(codes[i - 1].code, codes[i].code);
+}
+
+TEST(Diagnostics, CodesSayTheirSeverity) {
+    for (const diag::CodeInfo& info : diag::all_codes())
+        EXPECT_EQ(info.code.starts_with('W'), info.severity == diag::Severity::warning) << info.code;
+}
+
+TEST(Diagnostics, NamesAreUnique) {
+    std::set<std::string_view> names;
+    for (const diag::CodeInfo& info : diag::all_codes()) EXPECT_TRUE(names.insert(info.name).second) << info.name;
+}
+
+}  // namespace
+
+}  // namespace etlc::testing

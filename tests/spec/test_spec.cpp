@@ -1,0 +1,158 @@
+// A file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl compiles.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cctype>
+#include <filesystem>
+#include <set>
+#include <string>
+#include <vector>
+
+#include "diag/diag.hpp"
+#include "golden.hpp"
+
+namespace etlc::testing {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kFolder = SPEC_CASES;
+
+const std::vector<std::string>& cases() {
+    static const std::vector<std::string> all{
+#include "spec_cases.inc"
+    };
+    return all;
+}
+
+std::vector<std::string> cases_in(const std::string& folder) {
+    std::vector<std::string> found;
+    for (const std::string& name : cases())
+        if (name.starts_with(folder + "/")) found.push_back(name);
+    return found;
+}
+
+std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
+    std::string name = fs::path(info.param).stem().string();
+    std::replace_if(
+        name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+    return name;
+}
+
+/// "E0204" of "error/E0204_unknown_name.etl".
+std::string code_of(const std::string& name) {
+    return fs::path(name).stem().string().substr(0, 5);
+}
+
+fs::path expected_of(const std::string& name) {
+    return (kFolder / name).replace_extension(".expected");
+}
+
+/// A folder that is empty when the test begins and gone when it ends.
+class TemporaryFolder {
+public:
+    explicit TemporaryFolder(const std::string& name)
+        : path_(fs::temp_directory_path() / ("etlc-" + std::to_string(::getpid()) + "-" + name)) {
+        fs::create_directory(path_);
+    }
+    TemporaryFolder(const TemporaryFolder&) = delete;
+    TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+    ~TemporaryFolder() {
+        std::error_code ignored;
+        fs::remove_all(path_, ignored);
+    }
+
+    const fs::path& path() const { return path_; }
+
+private:
+    fs::path path_;
+};
+
+// ---- error/ --------------------------------------------------------------------------------------------------------
+
+class SpecError : public ::testing::TestWithParam<std::string> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecError);
+
+TEST_P(SpecError, IsDiagnosed) {
+    const fs::path file = kFolder / GetParam();
+    if (file.extension() == ".sh") {
+        const TemporaryFolder folder(file.stem().string());
+        const std::string environment = "ETLC='" ETLC_EXECUTABLE "' SPECS='" + file.parent_path().string() + "'";
+        expect_golden(run(environment + " bash '" + file.string() + "' 2>&1", folder.path()).output,
+                      expected_of(GetParam()));
+        return;
+    }
+    const Outcome outcome =
+        run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --check 2>&1", file.parent_path());
+    expect_golden(outcome.output, expected_of(GetParam()));
+    EXPECT_EQ(outcome.status, code_of(GetParam()).starts_with('W') ? 0 : 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(Error, SpecError, ::testing::ValuesIn(cases_in("error")), test_name);
+
+TEST(SpecErrors, EveryCodeHasACaseThatShowsIt) {
+    std::set<std::string> shown;
+    for (const std::string& name : cases_in("error"))
+        if (read_text(expected_of(name)).find("[" + code_of(name) + "]") != std::string::npos)
+            shown.insert(code_of(name));
+    for (const diag::CodeInfo& info : diag::all_codes())
+        EXPECT_TRUE(shown.contains(std::string(info.code)))
+            << info.code << " (" << info.name << ") has no tests/spec/error/" << info.code << "_*";
+}
+
+TEST(SpecErrors, EveryCaseIsNamedAfterACodeThatItShows) {
+    std::set<std::string> codes;
+    for (const diag::CodeInfo& info : diag::all_codes()) codes.insert(std::string(info.code));
+    for (const std::string& name : cases_in("error")) {
+        EXPECT_TRUE(codes.contains(code_of(name))) << name;
+        EXPECT_NE(read_text(expected_of(name)).find("[" + code_of(name) + "]"), std::string::npos) << name;
+    }
+}
+
+TEST(SpecErrors, EveryExpectedTextHasACase) {
+    for (const char* folder : {"error", "ok"}) {
+        for (const auto& entry : fs::directory_iterator(kFolder / folder)) {
+            fs::path file = entry.path();
+            if (file.extension() != ".expected") continue;
+            const bool has_case =
+                fs::exists(file.replace_extension(".etl")) || fs::exists(file.replace_extension(".sh"));
+            EXPECT_TRUE(has_case) << entry.path();
+        }
+    }
+}
+
+// ---- ok/ -----------------------------------------------------------------------------------------------------------
+
+class SpecOk : public ::testing::TestWithParam<std::string> {};
+GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecOk);
+
+/// NAME.expected lists the warnings; no such file where there are none.
+TEST_P(SpecOk, Compiles) {
+    const fs::path file = kFolder / GetParam();
+    const Outcome outcome =
+        run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --check 2>&1", file.parent_path());
+    expect_golden(outcome.output, expected_of(GetParam()), true);
+    EXPECT_EQ(outcome.status, 0);
+}
+
+/// NAME.ast, NAME.graph and so on, where they are there, hold the text of that stage.
+TEST_P(SpecOk, EmitsItsGoldens) {
+    const fs::path file = kFolder / GetParam();
+    for (const std::string stage : {"ast", "graph", "plan", "dot", "report"}) {
+        const fs::path golden = fs::path(file).replace_extension("." + stage);
+        if (!fs::exists(golden)) continue;
+        const Outcome outcome =
+            run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --emit " + stage + " 2>/dev/null",
+                file.parent_path());
+        EXPECT_EQ(outcome.status, 0) << stage;
+        expect_golden(outcome.output, golden);
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Ok, SpecOk, ::testing::ValuesIn(cases_in("ok")), test_name);
+
+}  // namespace
+
+}  // namespace etlc::testing
