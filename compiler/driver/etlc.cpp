@@ -70,7 +70,9 @@ void write(const std::string& path, const std::string& text, diag::Sink& sink) {
 }
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
-    auto text = data::read_file(path, parse::kMaxSpecBytes + 1, diag::Code::unreadable_spec);
+    // Far more than parse/ takes, which refuses a large spec with its size and what to do about it.
+    constexpr std::size_t kMostRead = 64 * parse::kMaxSpecBytes;
+    auto text = data::read_file(path, kMostRead, diag::Code::unreadable_spec);
     file = source::File(path, text ? std::move(*text) : "");
     if (!text) sink.report(data::in_file(text.failure(), path));
     return static_cast<bool>(text);
