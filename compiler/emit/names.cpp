@@ -39,6 +39,8 @@ std::string_view word_for_operator(std::string_view letter) {
     if (letter == "O") return "once";
     if (letter == "H") return "historically";
     if (letter == "S") return "since";
+    if (letter == "X") return "next";
+    if (letter == "Y") return "previous";
     return letter;
 }
 

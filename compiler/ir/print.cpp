@@ -13,6 +13,14 @@ std::string interval_text(Interval interval) {
     return fmt::format("[{}, {}]", interval.low, interval.high);
 }
 
+/// "F[0, 3]", "X", "Y": the operator as the language writes it.
+std::string operator_text(const Node& node) {
+    const bool one_step = node.interval == Interval{1, 1};
+    if (node.op == Op::eventually && one_step) return "X";
+    if (node.op == Op::once && one_step) return "Y";
+    return info(node.op).symbol + interval_text(node.interval);
+}
+
 std::string atom_text(const Graph& graph, const Node& node) {
     const check::Model& model = graph.model();
     if (node.op == Op::constant_true) return "true";
@@ -51,8 +59,7 @@ std::string definition(const Graph& graph, NodeId id) {
     if (info(node.op).arity == Arity::atom) return fmt::format("n{} = {}\n", id, graph.text(id));
     std::string operands;
     for (NodeId operand : node.operands) operands += fmt::format(" n{}", operand);
-    return fmt::format("n{} = {}{}{}  // {}\n", id, info(node.op).symbol, interval_text(node.interval), operands,
-                       graph.text(id));
+    return fmt::format("n{} = {}{}  // {}\n", id, operator_text(node), operands, graph.text(id));
 }
 
 }  // namespace
@@ -76,7 +83,7 @@ std::string Graph::text(NodeId id) const {
         case Arity::atom: return atom_text(*this, node);
         case Arity::many: return join(*this, node);
         case Arity::unary:
-            return fmt::format("{}{} {}", row.symbol, interval_text(node.interval), operand_text(*this, node.operands[0]));
+            return fmt::format("{} {}", operator_text(node), operand_text(*this, node.operands[0]));
         case Arity::binary: break;
     }
     const std::string left = operand_text(*this, node.operands[0]);

@@ -109,9 +109,11 @@ std::string print(const Plan& plan, const ir::Graph& graph) {
     std::string text = fmt::format("plan {}\nstreams\n", plan.model->name);
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) text += stream_text(plan, graph, slot);
     if (!plan.readings.empty()) text += "readings\n";
-    for (std::size_t i = 0; i < plan.readings.size(); ++i)
-        text += fmt::format("  r{} = {}       // {}\n", i, reading_text(plan.readings[i], graph),
-                            graph.text(plan.readings[i].node));
+    for (std::size_t i = 0; i < plan.readings.size(); ++i) {
+        std::string lines = reading_text(plan.readings[i], graph);
+        lines.insert(lines.find('\n'), fmt::format("  // {}", graph.text(plan.readings[i].node)));
+        text += fmt::format("  r{} = {}", i, lines);
+    }
     text += "monitors\n";
     for (const Monitor& monitor : plan.monitors) {
         text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n", monitor.name, monitor.stream,
