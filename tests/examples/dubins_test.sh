@@ -20,6 +20,11 @@ for monitor in reach avoid reach_avoid sequential; do
 done
 if grep -q $'\e' one.txt; then echo "colour in a file"; exit 1; fi
 
+# The thresholds that the demo draws and counts with are those of the spec.
+for literal in $(sed -nE 's/^predicate .*<= ([0-9.]+);.*/\1/p' "$spec"); do
+    grep -q ">threshold $literal<" one/dubins.svg || { echo "threshold $literal of the spec is not in the picture"; exit 1; }
+done
+
 # The last verdict of each monitor on the recorded drive, by the plan and by the compiled code.
 "$etlc" run "$spec" --trace one/dubins.csv -o verdicts.csv
 run=$(awk -F, 'NR > 1 { last[$2] = $6 } END { print last["reach"], last["avoid"], last["reach_avoid"], last["sequential"] }' verdicts.csv)

@@ -1,0 +1,121 @@
+// Made by etlc 0.1.0 from example.etl: change that, and run etlc again.
+//
+//   monitor       about       state B  targets B  operations  distance elements
+//   stays         the prefix       16         16           7                  4
+//   all together                   20         16           7                  4
+//
+//   predicate  measures             threshold  origin
+//   near_goal  min l2(z, goal) <=   0.409      written in the spec; no guarantee
+//
+// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and comparisons of
+// robustness keys in the worst step. distance elements: target elements that a step compares with its input.
+#pragma once
+
+#include <stddef.h>
+#include <stdint.h>
+
+#include "etlmon/kernel.hpp"
+#include "etlmon/predicate.hpp"
+#include "etlmon/reading.hpp"
+#include "etlmon/verdict.hpp"
+#include "etlmon/version.hpp"
+#include "etlmon/views.hpp"
+
+#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 1
+#error "made by etlc 0.1: run etlc again, or use the etlmon 0.1 that it was made for"
+#endif
+
+namespace example {
+
+/// What the monitors see at one step. Inputs{} lacks everything.
+struct Inputs {
+  etlmon::Vector<float, 2> z;
+};
+
+/// What they answer: about the prefix so far or, sliding, about the position their horizon ago.
+struct Verdicts {
+  etlmon::Verdict stays;  // example.etl:10: monitor stays = G near_goal
+};
+
+/// Target sets, a row after the other.
+namespace targets {
+/// literal: 2 rows of 2 elements
+alignas(64) inline constexpr float goal[2 * 2] = {
+  0.0f, 0.0f, 1.0f, 0.0f
+};
+}  // namespace targets
+
+/// Every monitor of the spec, stepped together. Any number of instances; none of them shares anything.
+class Monitor {
+ public:
+  static constexpr size_t kStateBytes = 20;  ///< sizeof(Monitor)
+  static constexpr uint32_t kOperations = 7;  ///< of the temporal part in the worst step: min, max, compare
+  static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
+
+  Monitor() noexcept { reset(); }
+
+  /// A new episode.
+  void reset() noexcept {
+    stays_ = etlmon::kTrue;
+    near_goal_ = etlmon::kUnmeasured;
+    missing_steps_ = 0;
+  }
+
+  /// One call, one time step.
+  Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
+
+  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, and the row of
+  /// the nearest target.
+  float distance_near_goal() const noexcept { return near_goal_.delta; }
+  uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
+
+  /// Steps on which some predicate or bool input was unknown; saturates.
+  uint32_t missing_steps() const noexcept { return missing_steps_; }
+
+ private:
+  using Value = etlmon::Value;
+  using Key = etlmon::Key;
+  using Reading = etlmon::Reading;
+
+  /// What this step says about each predicate.
+  struct Atoms {
+    Value near_goal{};
+  };
+
+  /// The robustness of every predicate at this step; counts the step if something was missing.
+  Atoms measure(const Inputs& in) noexcept {
+    Atoms now;
+    bool missing = false;
+    const float* const z = etlmon::present(in.z) ? in.z.data() : nullptr;
+
+    // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
+    near_goal_ = etlmon::kUnmeasured;
+    if (z != nullptr) near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2>(z, targets::goal);
+    now.near_goal = etlmon::at_most(near_goal_.delta, 0.409f, Value{etlmon::kBottom, etlmon::key_of(0.409f)});
+    missing |= etlmon::is_nan(near_goal_.delta);
+
+    if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;
+    return now;
+  }
+
+  /// One step of every formula, given this step's predicates.
+  Verdicts judge(const Atoms& now) noexcept {
+    using etlmon::max;
+    using etlmon::min;
+
+    // example.etl:10: G near_goal
+    stays_ = min(stays_, now.near_goal);
+    const Reading stays = {stays_, etlmon::kBottom, stays_.high};
+
+    Verdicts verdicts;
+    verdicts.stays = etlmon::prefix_verdict(stays);
+    return verdicts;
+  }
+
+  Value stays_;  // G near_goal
+  etlmon::Measured near_goal_;  // telemetry
+  uint32_t missing_steps_;  // saturates
+};
+static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
+
+}  // namespace example
