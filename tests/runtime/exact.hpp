@@ -1,0 +1,47 @@
+// Distances straight from their definitions, in long double with Eigen: the judge of the kernels.
+// Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the exact distance and the
+// bound on the kernel's error; the verdict on what a kernel computed. Keeps true: compiled without -ffast-math,
+// whatever the kernels under test are compiled with; shares no arithmetic with them.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "etlmon/error_bounds.hpp"
+
+namespace exact {
+
+struct Case {
+    etlmon::MetricId metric = etlmon::MetricId::l2;
+    std::uint32_t rows = 0;
+    std::uint32_t dimension = 0;
+    std::vector<float> z;        ///< dimension
+    std::vector<float> targets;  ///< rows x dimension, row-major
+    std::vector<float> weights;  ///< dimension^2 for mahalanobis, dimension for mahalanobis_diagonal
+};
+
+struct Aggregate {
+    etlmon::AggregationId id = etlmon::AggregationId::min;
+    std::uint32_t n = 1;  ///< for kth, from 1
+};
+
+/// The exact distances of a case, computed once for all aggregations.
+class Judge {
+public:
+    Judge(const Case& c, etlmon::Denormals denormals);
+    /// Empty where `delta` (given as bits, so that no flag can touch it) and `nearest` are within the bounds; else what
+    /// is wrong.
+    std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::uint32_t nearest) const;
+
+private:
+    etlmon::MetricId metric_;
+    etlmon::Denormals denormals_;
+    bool unknown_ = false;
+    std::vector<long double> low_, exact_, high_;  ///< per row
+};
+
+/// A symmetric positive definite D x D matrix, by the seed.
+std::vector<float> positive_definite(std::uint32_t dimension, std::uint32_t seed);
+
+}  // namespace exact

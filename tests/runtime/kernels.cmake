@@ -1,0 +1,64 @@
+# Distances, aggregates, views and expressions: as the project is built, then where flags or another compiler could change them.
+find_package(Eigen3 REQUIRED)
+set(kernel_sources test_distances.cpp test_expression.cpp test_kernel_twins.cpp test_views.cpp)
+set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
+
+# The judge is built once, without the flags under test.
+add_library(exact_distances STATIC exact.cpp)
+target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eigen)
+target_compile_options(exact_distances PRIVATE -O2)
+
+etlc_test(test_kernels SOURCES ${kernel_sources} LIBRARIES exact_distances)
+set_target_properties(test_kernels PROPERTIES CXX_STANDARD 17)
+target_compile_options(test_kernels PRIVATE ${kernel_warnings})
+
+if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
+  return()  # the variants would repeat what the release builds run
+endif()
+
+# etlc_kernel_variant(NAME option...): the same tests under these options, as one test.
+function(etlc_kernel_variant name)
+  add_executable(${name} ${kernel_sources})
+  set_target_properties(${name} PROPERTIES CXX_STANDARD 17)
+  target_compile_options(${name} PRIVATE ${kernel_warnings} ${ARGN})
+  target_link_options(${name} PRIVATE ${ARGN})
+  target_link_libraries(${name} PRIVATE exact_distances GTest::gtest_main)
+  add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
+endfunction()
+etlc_kernel_variant(test_kernels_fast_math -O3 -ffast-math)
+if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
+  return()
+endif()
+etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
+etlc_kernel_variant(test_kernels_native -O2 -march=native)
+etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
+
+# The other compiler at its boldest; and every header alone under both.
+find_program(ETLC_CLANG clang++)
+mark_as_advanced(ETLC_CLANG)
+set(kernel_compilers ${CMAKE_CXX_COMPILER})
+if(NOT ETLC_CLANG)
+  etlc_missing_tool(clang++ clang)
+else()
+  list(APPEND kernel_compilers ${ETLC_CLANG})
+  file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/*)
+  set(objects)
+  foreach(source ${kernel_sources})
+    add_custom_command(OUTPUT clang_${source}.o
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O3 -ffast-math ${kernel_warnings}
+              -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
+      DEPENDS ${source} ${kernel_headers} ${CMAKE_CURRENT_SOURCE_DIR}/exact.hpp ${CMAKE_CURRENT_SOURCE_DIR}/kernel_cases.hpp
+      VERBATIM)
+    list(APPEND objects clang_${source}.o)
+  endforeach()
+  add_custom_command(OUTPUT test_kernels_clang_fast_math
+    COMMAND ${ETLC_CLANG} -ffast-math ${objects} $<TARGET_FILE:exact_distances>
+            $<TARGET_FILE:GTest::gtest_main> $<TARGET_FILE:GTest::gtest> -lpthread -o test_kernels_clang_fast_math
+    DEPENDS ${objects} exact_distances VERBATIM)
+  add_custom_target(kernels_clang_fast_math ALL DEPENDS test_kernels_clang_fast_math)
+  add_test(NAME test_kernels_clang_fast_math
+    COMMAND ${CMAKE_CURRENT_BINARY_DIR}/test_kernels_clang_fast_math --gtest_brief=1)
+endif()
+add_test(NAME runtime_headers
+  COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/headers.sh ${PROJECT_SOURCE_DIR} ${kernel_compilers})
+set_tests_properties(runtime_headers PROPERTIES TIMEOUT 900)

@@ -1,0 +1,103 @@
+// The kernel with sizes known to the compiler against the same kernel with sizes known at run time: equal bits.
+// Under -ffast-math the compiler may add in another order in each of them; there both must be within the bounds.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "kernel_cases.hpp"
+
+namespace {
+
+using namespace kernel_cases;
+using etlmon::Measured;
+using etlmon::MetricId;
+
+template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
+Measured fixed(const exact::Case& c) {
+    static float targets[K * D];
+    std::copy(c.targets.begin(), c.targets.end(), targets);
+    etlmon::prepare(c.metric, targets, K, D);
+    if constexpr (Metric::kQuadratic || Metric::kWeighted) {
+        static float weights[Metric::kQuadratic ? D * D : D];
+        std::copy(c.weights.begin(), c.weights.end(), weights);
+        return etlmon::measure<Metric, Aggregation, K, D>(c.z.data(), targets, weights);
+    } else {
+        return etlmon::measure<Metric, Aggregation, K, D>(c.z.data(), targets);
+    }
+}
+
+template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
+void expect_twins(MetricId metric, exact::Aggregate aggregate) {
+    for (const Kind kind : kKinds) {
+        const exact::Case c = make(metric, K, D, kind, 11);
+        const Measured one = fixed<Metric, Aggregation, K, D>(c);
+        const Measured two = run(c, aggregate);
+#if defined(__FAST_MATH__)
+        const exact::Judge judge(c, kDenormals);
+        EXPECT_EQ(judge.mismatch(aggregate, bits(one.delta), one.nearest), "") << describe(c, aggregate, name(kind));
+        EXPECT_EQ(judge.mismatch(aggregate, bits(two.delta), two.nearest), "") << describe(c, aggregate, name(kind));
+#else
+        EXPECT_EQ(bits(one.delta), bits(two.delta)) << describe(c, aggregate, name(kind));
+        EXPECT_EQ(one.nearest, two.nearest) << describe(c, aggregate, name(kind));
+#endif
+    }
+}
+
+template <class Metric, std::uint32_t K, std::uint32_t D>
+void expect_twins(MetricId metric) {
+    using Id = etlmon::AggregationId;
+    expect_twins<Metric, etlmon::Min, K, D>(metric, {Id::min, 1});
+    expect_twins<Metric, etlmon::Max, K, D>(metric, {Id::max, 1});
+    expect_twins<Metric, etlmon::Mean, K, D>(metric, {Id::mean, 1});
+    expect_twins<Metric, etlmon::Kth<(K + 1) / 2>, K, D>(metric, {Id::kth, (K + 1) / 2});
+}
+
+TEST(KernelTwins, EveryDistanceAndAggregation) {
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
+    expect_twins<etlmon::Type, 3, 7>(etlmon::MetricId::id);      \
+    expect_twins<etlmon::Type, 4, 33>(etlmon::MetricId::id);
+#include "etlmon/distances.def"
+#undef DISTANCE
+}
+
+template <std::uint32_t D>
+void expect_twins_at() {
+    const exact::Aggregate least{};
+    expect_twins<etlmon::L2, etlmon::Min, 1, D>(MetricId::l2, least);
+    expect_twins<etlmon::L2, etlmon::Min, 5, D>(MetricId::l2, least);
+    expect_twins<etlmon::L2, etlmon::Min, 64, D>(MetricId::l2, least);
+    expect_twins<etlmon::Cosine, etlmon::Min, 2, D>(MetricId::cosine, least);
+    expect_twins<etlmon::Cosine, etlmon::Min, 17, D>(MetricId::cosine, least);
+}
+
+TEST(KernelTwins, EverySize) {
+    expect_twins_at<1>();
+    expect_twins_at<2>();
+    expect_twins_at<3>();
+    expect_twins_at<7>();
+    expect_twins_at<32>();
+    expect_twins_at<33>();
+    expect_twins_at<384>();
+    expect_twins_at<1000>();
+}
+
+#if !defined(__FAST_MATH__)
+TEST(KernelTwins, ARowsValueDoesNotDependOnTheOthers) {
+    for (const MetricId metric : metrics()) {
+        const exact::Case all = make(metric, 5, 33, Kind::ordinary, 12);
+        std::vector<std::uint32_t> alone;
+        for (std::uint32_t row = 0; row < 5; ++row) {
+            exact::Case one = all;
+            one.rows = 1;
+            one.targets.assign(all.targets.begin() + row * 33, all.targets.begin() + (row + 1) * 33);
+            alone.push_back(bits(run(one, {}).delta));
+        }
+        std::sort(alone.begin(), alone.end());
+        for (std::uint32_t n = 1; n <= 5; ++n) {
+            EXPECT_EQ(bits(run(all, {etlmon::AggregationId::kth, n}).delta), alone[n - 1]) << describe(all, {}, "rows");
+        }
+    }
+}
+#endif
+
+}  // namespace
