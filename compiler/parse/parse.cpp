@@ -88,6 +88,11 @@ private:
 
     void refuse_mistakes(Slice slice) const {
         for (std::size_t i = slice.begin; i < slice.end; ++i) {
+            // A string of bytes that are not UTF-8 has been told of with the file's.
+            if (tokens_[i]->getType() == Grammar::STRING) {
+                const std::string_view content = file_.text(span_of(*tokens_[i]));
+                if (first_invalid_utf8(content) < content.size()) throw Unexplained{};
+            }
             if (!is_mistake(*tokens_[i])) continue;
             std::optional<Diagnostic> explained = explain_mistake(*tokens_[i], file_);
             if (!explained) throw Unexplained{};

@@ -259,6 +259,10 @@ TEST(Characters, TextThatIsNotUtf8) {
               "E0101 2:7 the byte 0xE9 is not UTF-8; save the file as UTF-8\n"
               "E0104 3:14 expected a formula after '&&', found ';'\n");
     EXPECT_EQ(of_line("let f = \xE9;\nlet g = a;"), "E0101 2:9 the byte 0xE9 is not UTF-8; save the file as UTF-8\n");
+    const Parsed in_string("spec a;\ntarget t = load(\"\x97.npy\");\nlet f = a;");
+    EXPECT_EQ(in_string.brief(), "E0101 2:18 the byte 0x97 is not UTF-8; save the file as UTF-8\n");
+    EXPECT_EQ(in_string.tree(), "spec a\n(let f a)\n");
+    EXPECT_EQ(in_string.spec.unreadable.at(0).text, "t");
     for (const std::string bytes : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80", "\xF5\x80\x80\x80",
                                     "\x80", "\xE2\x82", "\xF4\x90\x80\x80"})
         EXPECT_EQ(of_line("//" + bytes).substr(0, 9), "E0101 2:3");
