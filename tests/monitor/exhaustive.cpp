@@ -32,6 +32,12 @@ void append_operators(Formulas& all, const Formulas& intervals, const Formulas& 
 }
 
 const Formulas kWithoutInterval = {"X p", "!X p", "X X q", "Y p", "!Y p", "Y Y q"};
+/// Where an operand says nothing, what is left is whether the window has a position at all.
+const Formulas kOverConstants = {
+    "F[2, 3] true",   "G[1, 2] false",     "O[2, 3] true",   "H[1, 2] false",    "p S[2, 2] true", "p S[1, 3] true",
+    "true S[1, 2] q", "!(p S[2, 2] true)", "p U[1, 2] true", "p R[1, 2] false",  "X true",         "!X true",
+    "Y true",         "!Y true",           "O[1, inf] true", "p S[1, inf] true", "q U[2, 3] true",
+};
 const Formulas kWeakUntil = {"p W q", "!(p W q)", "(p && q) W !p"};
 
 const Formulas kUnboundedNestings = {
@@ -90,6 +96,11 @@ const Formulas kOverThePast = {
     "G (p || !O[2, 3] q)",
     "F H p",
     "G O p",
+    "G (p S[2, 2] true)",
+    "F O[2, 2] true",
+    "G O O[1, inf] p",
+    "F H H[1, inf] q",
+    "G[1, inf] O[1, inf] O q",
 };
 
 const Formulas kSlidingNestings = {
@@ -101,6 +112,8 @@ const Formulas kSlidingNestings = {
     "(F[0, 1] p) S q",
     "p S[0, 2] (X q)",
     "!((G[0, 1] p) S[1, 2] X q)",
+    "(X p) S[2, 2] true",
+    "true S[2, 2] X q",
     "Y X p",
     "X Y p",
     "O[1, 2] p && X q",
@@ -130,7 +143,7 @@ std::string exhaustive_spec() {
     append(formulas, kWithoutInterval);
     for (const Formulas* intervals : {&kBounded, &kUnbounded})
         append_operators(formulas, *intervals, {"F", "G", "O", "H"}, {"U", "R", "S"});
-    for (const Formulas* more : {&kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
+    for (const Formulas* more : {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
         append(formulas, *more);
     return spec("exhaustive", "monitor", formulas);
 }
@@ -140,6 +153,7 @@ std::string exhaustive_sliding_spec() {
     append(formulas, kWithoutInterval);
     append_operators(formulas, kBounded, {"F", "G", "O", "H"}, {"U", "R", "S"});
     append_operators(formulas, kUnbounded, {"O", "H"}, {"S"});
+    append(formulas, kOverConstants);
     append(formulas, kSlidingNestings);
     return spec("exhaustive_sliding", "sliding monitor", formulas);
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace etlc::tests {
 namespace {
 
@@ -39,6 +41,15 @@ std::string feeding(const check::Model& model) {
     return result + "  }\n";
 }
 
+/// A class whose verdicts wait for nothing has no finish(), and none is called.
+std::string finishing(const check::Model& model) {
+    const bool waits = std::any_of(model.monitors.begin(), model.monitors.end(), [](const check::Monitor& monitor) {
+        return monitor.sliding && monitor.horizon > 0;
+    });
+    return fmt::format("  static Verdicts finish(Monitor& m) {{ {} }}\n",
+                       waits ? "return m.finish();" : "(void)m; return Verdicts{};");
+}
+
 std::string reporting(const check::Model& model) {
     std::string result = "  static void verdicts(const Verdicts& v) {\n";
     for (const check::Monitor& monitor : model.monitors)
@@ -58,8 +69,9 @@ std::string adaptor_source(const check::Model& model) {
         "  using Inputs = {0}::Inputs;\n"
         "  using Verdicts = {0}::Verdicts;\n",
         model.name);
-    return fmt::format("#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
-                       aliases + members(model) + buffers(model) + feeding(model) + reporting(model)) +
+    return fmt::format(
+               "#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
+               aliases + members(model) + buffers(model) + feeding(model) + reporting(model) + finishing(model)) +
            fmt::format("void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); }}\n",
                        model.name);
 }

@@ -131,6 +131,10 @@ Observed Decoder::run(const check::Model& model, std::size_t steps) {
     return result;
 }
 
+std::uint64_t Decoder::allocations() {
+    return take<std::uint64_t>();
+}
+
 Answer Decoder::answer(const check::Model& model, const Request& request) {
     Answer result;
     result[0] = run(model, request.first.size());

@@ -28,7 +28,7 @@ public:
 
     Answer answer(const check::Model& model, const Request& request);
     /// The number of allocations, which ends the answers.
-    std::uint64_t allocations() { return take<std::uint64_t>(); }
+    std::uint64_t allocations();
     bool at_end() const { return position_ == bytes_.size(); }
 
 private:

@@ -92,7 +92,7 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
 }
 
 RandomFormula::Piece RandomFormula::named(Piece piece) {
-    const std::string name = fmt::format("part{}", let_count_++);
+    const std::string name = fmt::format("{}{}", let_name_, let_count_++);
     lets_ += fmt::format("let {} = {};\n", name, piece.text);
     return {name, atom};
 }

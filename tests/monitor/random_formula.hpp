@@ -22,8 +22,12 @@ struct FormulaShape {
 class RandomFormula {
 public:
     RandomFormula(Random& random, std::vector<std::string> atoms, std::function<std::string()> comparison,
-                  FormulaShape shape)
-        : random_(random), atoms_(std::move(atoms)), comparison_(std::move(comparison)), shape_(shape) {}
+                  FormulaShape shape, std::string let_name = "part")
+        : random_(random),
+          atoms_(std::move(atoms)),
+          comparison_(std::move(comparison)),
+          shape_(shape),
+          let_name_(std::move(let_name)) {}
 
     std::string make() { return grow(shape_.depth, {true, true}).text; }
     /// The lets that the formulas made since the last call refer to.
@@ -45,6 +49,7 @@ private:
     std::vector<std::string> atoms_;
     std::function<std::string()> comparison_;
     FormulaShape shape_;
+    std::string let_name_;
     std::string lets_;
     int let_count_ = 0;
 

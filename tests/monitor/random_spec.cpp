@@ -137,15 +137,15 @@ private:
     }
 };
 
-FormulaShape formula_shape(const SpecShape& shape) {
+FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
     using Formulas = SpecShape::Formulas;
     FormulaShape result;
     result.depth = shape.depth;
     result.window = shape.window;
     result.nested = shape.formulas != Formulas::unnested;
     result.bounded = shape.formulas != Formulas::unbounded_nesting;
-    result.unbounded = shape.formulas != Formulas::sliding;
-    result.past_over_future = shape.formulas == Formulas::sliding;
+    result.unbounded = !sliding;
+    result.past_over_future = sliding;
     return result;
 }
 
@@ -155,12 +155,15 @@ std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
     Random random(seed);
     Declarations declarations(random, shape.exact);
     std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
-    RandomFormula formula(
-        random, declarations.atoms(), [&] { return declarations.comparison(); }, formula_shape(shape));
-    const char* kind = shape.formulas == SpecShape::Formulas::sliding ? "sliding monitor" : "monitor";
+    const auto comparison = [&] { return declarations.comparison(); };
+    RandomFormula prefix(random, declarations.atoms(), comparison, formula_shape(shape, false));
+    RandomFormula sliding(random, declarations.atoms(), comparison, formula_shape(shape, true), "sliding_part");
     for (int n = 0; n < shape.monitors; ++n) {
+        const bool slides = shape.formulas == SpecShape::Formulas::sliding ||
+                            (shape.formulas == SpecShape::Formulas::mixed && n % 2 == 1);
+        RandomFormula& formula = slides ? sliding : prefix;
         const std::string text = formula.make();
-        result += formula.take_lets() + fmt::format("{} m{} = {};\n", kind, n, text);
+        result += formula.take_lets() + fmt::format("{}monitor m{} = {};\n", slides ? "sliding " : "", n, text);
     }
     return result;
 }

@@ -15,6 +15,7 @@ struct SpecShape {
         unbounded_nesting,  ///< future operators without bounds in each other, as F (a && F b) and G (a -> F b)
         prefix,             ///< any nesting that a prefix monitor takes
         sliding,            ///< sliding monitors: future bounded, past over future too
+        mixed,              ///< prefix and sliding monitors in turn
     };
     Formulas formulas = Formulas::unnested;
     int monitors = 8;

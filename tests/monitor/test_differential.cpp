@@ -67,7 +67,9 @@ struct RandomCase {
     int specs;
 };
 
-void PrintTo(const RandomCase& random, std::ostream* out) { *out << random.name; }
+void PrintTo(const RandomCase& random, std::ostream* out) {
+    *out << random.name;
+}
 
 /// How often the usual number of random specs is tried; ETLC_EFFORT=100 for a night.
 int effort() {
@@ -102,6 +104,7 @@ const RandomCase kCases[] = {
     {"Prefix", {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3}, 120},
     {"PrefixRounded", {.formulas = Formulas::prefix, .monitors = 4, .depth = 2, .exact = false}, 40},
     {"Sliding", {.formulas = Formulas::sliding, .depth = 4, .window = 3}, 100},
+    {"Mixed", {.formulas = Formulas::mixed, .monitors = 6, .depth = 3, .window = 3}, 60},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

@@ -145,7 +145,7 @@ extern Tape* sink;
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
 /// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers, Spec::feed, Spec::verdicts,
-/// Spec::telemetry.
+/// Spec::telemetry, Spec::finish.
 template <class Spec>
 class Session {
  public:
@@ -214,7 +214,7 @@ class Session {
       typename Spec::Verdicts verdicts{};
       {
         const Watch watch;
-        verdicts = monitor.finish();
+        verdicts = Spec::finish(monitor);
       }
       Spec::verdicts(verdicts);
     }
