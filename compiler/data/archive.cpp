@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "data/file.hpp"
+#include "data/npy.hpp"
 #include "data/quote.hpp"
 
 namespace etlc::data {
@@ -131,14 +132,11 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
         return Failure{Code::no_such_array, fmt::format("holds two arrays named {}", in_quotes(key))};
     const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
     zip_stat_t status;
-    const auto in_array = [&](const Failure& failure) {
-        return Failure{failure.code, fmt::format("array {}: {}", in_quotes(key), failure.message)};
-    };
     if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
-        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))));
-    if (auto failure = check_method(status)) return in_array(*failure);
+        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
+    if (auto failure = check_method(status)) return in_array(*failure, key);
     zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
-    if (file == nullptr) return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))));
+    if (file == nullptr) return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
     return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
 }
 

@@ -18,7 +18,7 @@ namespace etlc::data {
 
 /// Where an archive lies: a file, or bytes that outlive it.
 struct ArchivePlace {
-    std::string path;  ///< of a file; for bytes in memory the name that messages use
+    std::string path;
     std::string_view bytes;
     bool in_memory = false;
 };

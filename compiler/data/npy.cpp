@@ -6,6 +6,7 @@
 
 #include "data/elements.hpp"
 #include "data/npy_header.hpp"
+#include "data/quote.hpp"
 
 namespace etlc::data {
 namespace {
@@ -60,12 +61,6 @@ std::vector<double> row_major(const std::vector<double>& values, const std::vect
     return result;
 }
 
-diag::Result<Array> read_named(ByteSource& source, const std::string& name) {
-    auto array = read_npy_from(source);
-    if (!array) return located(array.failure(), name);
-    return array;
-}
-
 }  // namespace
 
 diag::Result<Array> read_npy_from(ByteSource& source) {
@@ -82,8 +77,8 @@ diag::Result<Array> read_npy_from(ByteSource& source) {
     return array;
 }
 
-diag::Failure located(const Failure& failure, const std::string& where) {
-    return {failure.code, fmt::format("{}: {}", where, failure.message), failure.line, failure.column};
+diag::Failure in_array(const Failure& failure, const std::string& key) {
+    return {failure.code, fmt::format("array {}: {}", in_quotes(key), failure.message), failure.line, failure.column};
 }
 
 std::string Array::shape_text() const {
@@ -92,12 +87,12 @@ std::string Array::shape_text() const {
 
 diag::Result<Array> read_npy(const std::string& path) {
     auto source = open_file(path);
-    if (!source) return located(source.failure(), path);
-    return read_named(**source, path);
+    if (!source) return source.failure();
+    return read_npy_from(**source);
 }
 
-diag::Result<Array> parse_npy(std::string_view bytes, const std::string& name) {
-    return read_named(*from_memory(bytes), name);
+diag::Result<Array> parse_npy(std::string_view bytes) {
+    return read_npy_from(*from_memory(bytes));
 }
 
 }  // namespace etlc::data

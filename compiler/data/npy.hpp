@@ -10,7 +10,7 @@ namespace etlc::data {
 
 diag::Result<Array> read_npy_from(ByteSource& source);
 
-/// The failure with `where` ("goal.npy", "goal.npz: array 'z'") before its message.
-diag::Failure located(const diag::Failure& failure, const std::string& where);
+/// The failure of the array `key` of an archive, which its message then names.
+diag::Failure in_array(const diag::Failure& failure, const std::string& key);
 
 }  // namespace etlc::data

@@ -23,13 +23,13 @@ diag::Result<std::string> choose(const Archive& archive, const std::string& key)
 
 diag::Result<Array> read_from(const ArchivePlace& place, const std::string& key) {
     const auto archive = Archive::open(place);
-    if (!archive) return located(archive.failure(), place.path);
+    if (!archive) return archive.failure();
     const auto chosen = choose(*archive, key);
-    if (!chosen) return located(chosen.failure(), place.path);
+    if (!chosen) return chosen.failure();
     const auto member = archive->member(*chosen);
-    if (!member) return located(member.failure(), place.path);
+    if (!member) return member.failure();
     auto array = read_npy_from(**member);
-    if (!array) return located(array.failure(), fmt::format("{}: array {}", place.path, in_quotes(*chosen)));
+    if (!array) return in_array(array.failure(), *chosen);
     return array;
 }
 
@@ -39,19 +39,18 @@ diag::Result<Array> read_npz(const std::string& path, const std::string& key) {
     return read_from({path, {}, false}, key);
 }
 
-diag::Result<Array> parse_npz(std::string_view bytes, const std::string& name, const std::string& key) {
-    return read_from({name, bytes, true}, key);
+diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key) {
+    return read_from({{}, bytes, true}, key);
 }
 
 diag::Result<Array> read_array(const std::string& path, const std::string& key) {
     if (path.ends_with(".npz")) return read_npz(path, key);
     if (!path.ends_with(".npy"))
-        return Failure{Code::unknown_data_format,
-                       fmt::format("{}: unknown kind of data file, expected .npy or .npz", path)};
+        return Failure{Code::unknown_data_format, "unknown kind of data file, expected .npy or .npz"};
     if (!key.empty())
         return Failure{
             Code::key_without_archive,
-            fmt::format("{}: the key {} has no meaning for an .npy file, which holds one array", path, in_quotes(key))};
+            fmt::format("an .npy file holds one array without a name, so the key {} has no meaning", in_quotes(key))};
     return read_npy(path);
 }
 

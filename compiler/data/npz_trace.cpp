@@ -25,8 +25,8 @@ struct Feed {
     std::unique_ptr<Rows> rows;
 };
 
-Failure in_array(const Failure& failure, const Channel& channel) {
-    return of_trace(located(failure, fmt::format("array {}", in_quotes(channel.name))));
+Failure of_channel(const Failure& failure, const Channel& channel) {
+    return of_trace(in_array(failure, channel.name));
 }
 
 std::optional<Failure> check_elements(const NpyHeader& header, const Channel& channel) {
@@ -51,11 +51,11 @@ diag::Result<Feed> open_feed(const ArchivePlace& place, const Channel& channel) 
     auto member = archive->member(channel.name);
     if (!member) return of_trace(member.failure());
     auto header = read_npy_header(**member);
-    if (!header) return in_array(header.failure(), channel);
-    if (auto failure = check_elements(*header, channel)) return in_array(*failure, channel);
-    if (auto failure = check_shape(*header, channel)) return in_array(*failure, channel);
+    if (!header) return of_channel(header.failure(), channel);
+    if (auto failure = check_elements(*header, channel)) return of_channel(*failure, channel);
+    if (auto failure = check_shape(*header, channel)) return of_channel(*failure, channel);
     auto rows = open_rows(std::move(*member), *header, header->shape[0], channel.width);
-    if (!rows) return in_array(rows.failure(), channel);
+    if (!rows) return of_channel(rows.failure(), channel);
     return Feed{channel, std::move(*header), std::move(*rows)};
 }
 
@@ -71,7 +71,7 @@ public:
         sample.present.assign(feeds_.size(), true);
         for (std::size_t c = 0; c < feeds_.size(); ++c) {
             const auto row = feeds_[c].rows->next();
-            if (!row) return in_array(row.failure(), feeds_[c].channel);
+            if (!row) return of_channel(row.failure(), feeds_[c].channel);
             if (auto failure = copy(*row, feeds_[c].channel, sample.values[c])) return *failure;
         }
         ++step_;

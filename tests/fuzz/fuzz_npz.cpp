@@ -10,7 +10,7 @@ using Kind = data::Channel::Kind;
 
 void load(std::string_view bytes) {
     for (const char* key : {"", "z", "g"}) {
-        const auto array = data::parse_npz(bytes, "x.npz", key);
+        const auto array = data::parse_npz(bytes, key);
         if (!array) {
             fuzz::require_printable(array.failure().message);
             continue;
@@ -22,7 +22,7 @@ void load(std::string_view bytes) {
 }
 
 void step_through(std::string_view bytes, const std::vector<data::Channel>& channels) {
-    auto trace = data::open_npz_trace({"x.npz", bytes, true}, channels);
+    auto trace = data::open_npz_trace({{}, bytes, true}, channels);
     if (!trace) return fuzz::require_printable(trace.failure().message);
     data::Sample sample;
     for (std::uint64_t steps = 0;; ++steps) {

@@ -32,8 +32,7 @@ TEST(Npz, TheOnlyArrayNeedsNoKey) {
     const auto which = read_npz(kFolder + "stored.npz", "");
     ASSERT_FALSE(which);
     EXPECT_EQ(which.failure().code, Code::no_such_array);
-    EXPECT_EQ(which.failure().message,
-              kFolder + "stored.npz: holds 3 arrays, 'goal', 'half' and 'turned'; expected the key of one of them");
+    EXPECT_EQ(which.failure().message, "holds 3 arrays, 'goal', 'half' and 'turned'; expected the key of one of them");
 }
 
 const std::string kTwo = floats({1, 2});
@@ -48,7 +47,7 @@ struct Broken {
     std::string bytes;
     std::string key;
     Code code;
-    std::string message;  ///< after "goal.npz: "
+    std::string message;
 };
 
 std::vector<Broken> broken() {
@@ -94,18 +93,17 @@ std::vector<Broken> broken() {
 
 TEST(Npz, EveryFaultHasItsMessage) {
     for (const Broken& one : broken()) {
-        const auto array = parse_npz(one.bytes, "goal.npz", one.key);
+        const auto array = parse_npz(one.bytes, one.key);
         ASSERT_FALSE(array) << one.what;
         EXPECT_EQ(array.failure().code, one.code) << one.what;
-        EXPECT_EQ(array.failure().message, "goal.npz: " + one.message) << one.what;
+        EXPECT_EQ(array.failure().message, one.message) << one.what;
     }
 }
 
 TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
     const auto array = read_npz(kFolder + "bzip2.npz", "goal");
     ASSERT_FALSE(array);
-    EXPECT_EQ(array.failure().message,
-              kFolder + "bzip2.npz: array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");
+    EXPECT_EQ(array.failure().message, "array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");
 }
 
 TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
@@ -114,7 +112,7 @@ TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
     const std::string header_only = lie.substr(0, lie.size() - kTwo.size());
     const std::string bytes = patched(zip_of({{"z.npy", lie, false}}), tests::little_endian(lie.size(), 4),
                                       tests::little_endian(header_only.size() + 400000000, 4));
-    const auto array = parse_npz(bytes, "bomb.npz", "z");
+    const auto array = parse_npz(bytes, "z");
     ASSERT_FALSE(array);
     EXPECT_EQ(array.failure().code, Code::malformed_archive) << array.failure().message;
 }
@@ -122,11 +120,11 @@ TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
 TEST(Npz, CutAnywhere) {
     for (const bool deflated : {false, true}) {
         const std::string whole = archive(deflated);
-        ASSERT_TRUE(parse_npz(whole, "x", "z"));
+        ASSERT_TRUE(parse_npz(whole, "z"));
         for (std::size_t n = 0; n < whole.size(); ++n) {
-            const auto array = parse_npz(whole.substr(0, n), "x", "z");
+            const auto array = parse_npz(whole.substr(0, n), "z");
             ASSERT_FALSE(array) << n;
-            EXPECT_TRUE(array.failure().message.starts_with("x: ")) << array.failure().message;
+            EXPECT_FALSE(array.failure().message.empty()) << n;
         }
     }
 }
@@ -137,7 +135,7 @@ TEST(Npz, AnyByteChangedIsSoundOrAnError) {
         for (const int change : {0x01, 0x80, 0xff}) {
             std::string bytes = whole;
             bytes[i] = static_cast<char>(bytes[i] ^ change);
-            const auto array = parse_npz(bytes, "x", "z");
+            const auto array = parse_npz(bytes, "z");
             // The checksum leaves no way to other values.
             EXPECT_TRUE(!array || array->values == (std::vector<double>{1, 2})) << i;
         }
@@ -148,7 +146,7 @@ TEST(Npz, FilesThatCannotBeRead) {
     const auto missing = read_npz("no_such.npz", "z");
     ASSERT_FALSE(missing);
     EXPECT_EQ(missing.failure().code, Code::unreadable_data_file);
-    EXPECT_EQ(missing.failure().message, "no_such.npz: no such file");
+    EXPECT_EQ(missing.failure().message, "no such file");
 }
 
 }  // namespace
