@@ -76,6 +76,15 @@ void print_wrapped(Printer& out, const std::string& text) {
     }
 }
 
+void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations) {
+    constexpr std::size_t kWidest = 56;  // longer ones push their own comment out
+    std::size_t width = 0;
+    for (const auto& [declaration, comment] : declarations)
+        if (!comment.empty() && declaration.size() <= kWidest) width = std::max(width, declaration.size());
+    for (const auto& [declaration, comment] : declarations)
+        out.line(comment.empty() ? declaration : fmt::format("{:<{}}  // {}", declaration, width, comment));
+}
+
 std::string Context::value(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
     if (stream.op == StreamOp::constant) return value_literal(stream.value);

@@ -37,6 +37,8 @@ std::string key_literal(plan::Key key);
 std::string value_literal(plan::Value value);
 /// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four spaces deeper.
 void print_wrapped(Printer& out, const std::string& text);
+/// Declarations with their comments in one column.
+void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations);
 /// "max(a, b, c)"; of one argument, that argument.
 std::string call(std::string_view function, const std::vector<std::string>& arguments);
 
@@ -54,7 +56,6 @@ void print_tables(Printer& out, const Context& context);
 struct Member {
     std::string type;
     std::string name;
-    std::string dimensions;  ///< "[32]" of arrays
     std::string comment;
     std::string reset;       ///< a statement
 };

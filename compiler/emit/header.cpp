@@ -72,19 +72,19 @@ std::vector<Member> own_members(const Context& context) {
         if (held == context.names.hold_member.end()) continue;
         const check::Input& input = context.model.inputs[i];
         const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
-        result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second, "",
+        result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second,
                           fmt::format("the last {} that was there", input.name), held->second + ".reset();"});
     }
     for (const auto& [p, name] : context.names.predicate_member) {
         const bool plain = context.model.predicates[p].plain_distance();
-        result.push_back({plain ? "etlmon::Measured" : "float", name, "", "telemetry",
+        result.push_back({plain ? "etlmon::Measured" : "float", name, "telemetry",
                           fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing")});
     }
     for (const auto& [m, name] : context.names.verdict_member)
-        result.push_back({"etlmon::Verdict", name, "", "the last one, for finish()", name + " = etlmon::Verdict();"});
-    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "", "index of the step; saturates", "step_ = 0;"});
-    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "", "calls of finish()", "finished_ = 0;"});
-    result.push_back({"uint32_t", "missing_steps_", "", "saturates", "missing_steps_ = 0;"});
+        result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();"});
+    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "index of the step; saturates", "step_ = 0;"});
+    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "calls of finish()", "finished_ = 0;"});
+    result.push_back({"uint32_t", "missing_steps_", "saturates", "missing_steps_ = 0;"});
     return result;
 }
 
@@ -167,9 +167,9 @@ void print_class(Printer& out, const Context& context) {
     out.line();
     print_judge(out, context);
     out.line();
-    for (const Member& member : all)
-        out.line("{} {}{};{}", member.type, member.name, member.dimensions,
-                 member.comment.empty() ? "" : "  // " + member.comment);
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const Member& member : all) lines.emplace_back(fmt::format("{} {};", member.type, member.name), member.comment);
+    print_aligned(out, lines);
     out.close("};");
     out.line("static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");
     out.line();

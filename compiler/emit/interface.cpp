@@ -22,7 +22,7 @@ std::string type_of(const check::Input& input) {
 
 std::string remark_on(const check::Input& input) {
     std::string text;
-    const auto add = [&](const std::string& remark) { text += (text.empty() ? "  // " : "; ") + remark; };
+    const auto add = [&](const std::string& remark) { text += (text.empty() ? "" : "; ") + remark; };
     if (input.has_range) add(fmt::format("in [{}, {}]; outside counts as missing", input.range.low, input.range.high));
     if (input.type == InputType::f16) add("IEEE bits of float16");
     if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
@@ -60,17 +60,23 @@ void print_rows(Printer& out, const Context& context, Index d) {
 void print_inputs_and_verdicts(Printer& out, const Context& context) {
     out.line("/// What the monitors see at one step. Inputs{} lacks everything.");
     out.open("struct Inputs {");
+    std::vector<std::pair<std::string, std::string>> inputs;
     for (Index i : context.plan.inputs) {
         const check::Input& input = context.model.inputs[i];
-        out.line("{} {}{};{}", type_of(input), input.name, input.type == InputType::scalar ? " = etlmon::kMissing" : "",
-                 remark_on(input));
+        inputs.emplace_back(fmt::format("{} {}{};", type_of(input), input.name,
+                                        input.type == InputType::scalar ? " = etlmon::kMissing" : ""),
+                            remark_on(input));
     }
+    print_aligned(out, inputs);
     out.close("};");
     out.line();
     out.line("/// What they answer: about the prefix so far or, sliding, about the position their horizon ago.");
     out.open("struct Verdicts {");
+    std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
-        out.line("etlmon::Verdict {};  // {}", monitor.name, context.place(context.model.monitors[monitor.index].span));
+        verdicts.emplace_back(fmt::format("etlmon::Verdict {};", monitor.name),
+                              context.place(context.model.monitors[monitor.index].span));
+    print_aligned(out, verdicts);
     out.close("};");
     out.line();
 }

@@ -156,9 +156,16 @@ private:
             return;
         }
         std::vector<std::string>& registers = names_.register_member[r];
-        int owing = 0;
-        for (const auto& obligations : reading.machine.automaton.states) {
-            const std::string state = obligations.empty() ? name + "_met" : fmt::format("{}_owing_{}", name, ++owing);
+        int owing = 0;  // states kept so far that owe something
+        for (std::size_t q = 0; q < reading.machine.states.size(); ++q) {
+            const bool met = reading.machine.automaton.states[q].empty();
+            if (!met && !reading.machine.states[q].always_true) ++owing;
+            const std::string state = met ? name + "_met" : fmt::format("{}_owing_{}", name, owing);
+            if (reading.machine.states[q].always_true) {
+                registers.emplace_back();  // not kept
+                names_.register_next[r].emplace_back();
+                continue;
+            }
             registers.push_back(member(members_, state));
             names_.register_next[r].push_back(judge_.claim(state));
         }

@@ -2,6 +2,7 @@
 #include <algorithm>
 
 #include "emit/context.hpp"
+#include "plan/register_program.hpp"
 #include "plan/table.hpp"
 
 namespace etlc::emit {
@@ -13,7 +14,6 @@ using plan::kNone;
 using plan::Machine;
 using plan::Reading;
 using plan::Slot;
-using plan::Transition;
 
 std::string local(const Context& context, std::uint32_t r) {
     return "const Reading " + context.names.reading_local.at(r);
@@ -83,67 +83,30 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
 
 // ---- unrolled machines
 
-/// Transitions into one state, grouped by guard: min(max of the sources, literals) each.
-std::vector<std::string> incoming(const Context& context, std::uint32_t r, std::uint32_t state) {
-    const Machine& machine = context.plan.readings[r].machine;
-    const std::vector<std::string>& registers = context.names.register_member.at(r);
-    const std::vector<Transition>& transitions = machine.automaton.transitions;
-    std::vector<std::string> groups;
-    for (std::size_t i = 0; i < transitions.size();) {
-        const std::uint32_t guard = transitions[i].guard;
-        if (transitions[i].target != state) {
-            ++i;
-            continue;
-        }
-        std::vector<std::string> sources;
-        bool free = false;  // a source that is always true leaves the literals alone
-        for (; i < transitions.size() && transitions[i].target == state && transitions[i].guard == guard; ++i) {
-            if (machine.states[transitions[i].source].always_true)
-                free = true;
-            else
-                sources.push_back(registers[transitions[i].source]);
-        }
-        std::vector<std::string> factors;
-        if (!free) factors.push_back(call("max", sources));
-        for (Slot slot : machine.guards[guard]) factors.push_back(context.value(slot));
-        groups.push_back(factors.empty() ? "etlmon::kTrue" : call("min", factors));
-    }
-    return groups;
-}
-
-/// An order in which every register is written after the registers that read it; empty where they read each other.
-std::vector<std::uint32_t> in_place_order(const Machine& machine) {
-    const auto count = static_cast<std::uint32_t>(machine.states.size());
-    std::vector<std::uint32_t> readers(count, 0);
-    for (const Transition& t : machine.automaton.transitions)
-        if (t.source != t.target) ++readers[t.source];
-    std::vector<std::uint32_t> order;
-    for (std::uint32_t q = 0; q < count; ++q)
-        if (readers[q] == 0) order.push_back(q);
-    for (std::size_t i = 0; i < order.size(); ++i)
-        for (const Transition& t : machine.automaton.transitions)
-            if (t.target == order[i] && t.source != t.target && --readers[t.source] == 0) order.push_back(t.source);
-    return order.size() == count ? order : std::vector<std::uint32_t>{};
-}
-
-void print_update(Printer& out, const std::string& target, const std::vector<std::string>& groups) {
-    if (groups.empty()) return out.line("{} = etlmon::kFalse;", target);
-    print_wrapped(out, fmt::format("{} = {};", target, call("max", groups)));
+/// min(max of the sources, literals)
+std::string term_text(const Context& context, std::uint32_t r, const plan::Term& term, bool in_place) {
+    std::vector<std::string> sources;
+    for (plan::Source source : term.sources)
+        sources.push_back(source.updated && !in_place ? context.names.register_next.at(r)[source.state]
+                                                      : context.names.register_member.at(r)[source.state]);
+    std::vector<std::string> factors;
+    if (!sources.empty()) factors.push_back(call("max", sources));
+    for (Slot slot : term.literals) factors.push_back(context.value(slot));
+    return factors.empty() ? "etlmon::kTrue" : call("min", factors);
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
-    const Machine& machine = context.plan.readings[r].machine;
+    const plan::RegisterProgram program = plan::make_register_program(context.plan.readings[r].machine);
     const std::vector<std::string>& registers = context.names.register_member.at(r);
-    const std::vector<std::uint32_t> order = in_place_order(machine);
-    for (std::uint32_t q : order)
-        if (!machine.states[q].always_true) print_update(out, registers[q], incoming(context, r, q));
-    if (!order.empty()) return;
     const std::vector<std::string>& next = context.names.register_next.at(r);
-    for (std::uint32_t q = 0; q < machine.states.size(); ++q)
-        if (!machine.states[q].always_true)
-            print_update(out, "const Value " + next[q], incoming(context, r, q));
-    for (std::uint32_t q = 0; q < machine.states.size(); ++q)
-        if (!machine.states[q].always_true) out.line("{} = {};", registers[q], next[q]);
+    for (const plan::Update& update : program.updates) {
+        std::vector<std::string> terms;
+        for (const plan::Term& term : update.terms) terms.push_back(term_text(context, r, term, program.in_place));
+        const std::string target = program.in_place ? registers[update.state] : "const Value " + next[update.state];
+        print_wrapped(out, fmt::format("{} = {};", target, terms.empty() ? "etlmon::kFalse" : call("max", terms)));
+    }
+    if (program.in_place) return;
+    for (const plan::Update& update : program.updates) out.line("{} = {};", registers[update.state], next[update.state]);
 }
 
 /// The max over states of min(register, key), states with the same key together.
@@ -299,7 +262,7 @@ std::vector<Member> reading_members(const Context& context) {
             for (std::size_t q = 0; q < registers->second.size(); ++q) {
                 if (reading.machine.states[q].always_true) continue;
                 const std::string& name = registers->second[q];
-                result.push_back({"Value", name, "", owed_text(context, reading.machine.automaton.states[q]),
+                result.push_back({"Value", name, owed_text(context, reading.machine.automaton.states[q]),
                                   fmt::format("{} = {};", name, q == 0 ? "etlmon::kTrue" : "etlmon::kFalse")});
             }
             continue;
@@ -308,16 +271,16 @@ std::vector<Member> reading_members(const Context& context) {
         if (member == context.names.reading_member.end()) continue;
         const std::string& name = member->second;
         if (is_table(reading)) {
-            result.push_back({fmt::format("etlmon::Machine<{}>", reading.machine.states.size()), name, "", text,
+            result.push_back({fmt::format("etlmon::Machine<{}>", reading.machine.states.size()), name, text,
                               fmt::format("{}.reset();", name)});
             continue;
         }
         const bool starts_true = reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
         const char* first = starts_true ? "etlmon::kTrue" : "etlmon::kFalse";
         const char* second = starts_true ? "etlmon::kFalse" : "etlmon::kTrue";
-        result.push_back({"Value", name, "", text, fmt::format("{} = {};", name, first)});
+        result.push_back({"Value", name, text, fmt::format("{} = {};", name, first)});
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
-            result.push_back({"Value", context.names.guard_member.at(r), "", "what its left side lets through",
+            result.push_back({"Value", context.names.guard_member.at(r), "what its left side lets through",
                               fmt::format("{} = {};", context.names.guard_member.at(r), second)});
     }
     return result;

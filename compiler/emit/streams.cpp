@@ -121,7 +121,7 @@ std::vector<Member> stream_members(const Context& context) {
     for (const auto& [slot, name] : context.names.stream_member) {
         const Stream& stream = context.plan.streams[slot];
         const std::string comment = stream.node == plan::kNone ? "" : context.graph.text(stream.node);
-        result.push_back({type_of(stream), name, "", comment, reset_of(stream, name)});
+        result.push_back({type_of(stream), name, comment, reset_of(stream, name)});
     }
     return result;
 }

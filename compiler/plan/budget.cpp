@@ -4,8 +4,10 @@
 #include <set>
 
 #include "etlmon/delay.hpp"
+#include "etlmon/machine.hpp"
 #include "etlmon/verdict.hpp"
 #include "etlmon/window.hpp"
+#include "plan/register_program.hpp"
 
 namespace etlc::plan {
 
@@ -21,7 +23,8 @@ constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerFold = 96;
-constexpr std::uint64_t kTransitionBytes = 2 * sizeof(std::uint16_t);
+constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
+constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
 Cost operator+(Cost a, const Cost& b) {
     a.state_bytes += b.state_bytes;
@@ -60,17 +63,16 @@ Cost fold_cost(const Fold& fold) {
     return cost;
 }
 
-/// Guards, transitions, joins, and two operations a state to read the bounds.
+/// Updates and, for the readings, two comparisons of values a state.
 Cost machine_cost(const Machine& machine) {
-    std::uint64_t combined = 2 * machine.states.size();
+    const std::size_t read = 2 * machine.states.size();
+    if (unrolled(machine)) return values(registers(machine), operations(make_register_program(machine)) + read);
+    std::uint64_t combined = read + 2 * machine.automaton.transitions.size();
     for (const auto& guard : machine.guards) combined += guard.empty() ? 0 : guard.size() - 1;
-    for (const Transition& t : machine.automaton.transitions)
-        combined += (t.guard != 0 && !machine.states[t.source].always_true ? 1 : 0) + 1;
-    if (unrolled(machine)) return values(registers(machine), combined);
     Cost cost{.operations = combined * kKeysPerValue};
     cost.state_bytes = 2 * machine.states.size() * kValue + kWord;
     cost.code_bytes = kCodePerTable + machine.automaton.transitions.size() * kTransitionBytes +
-                      machine.states.size() * (sizeof(std::uint16_t) + 1) + machine.guards.size() * kCodePerValueOperation;
+                      machine.states.size() * kStateBytes + machine.guards.size() * kCodePerValueOperation;
     return cost;
 }
 
