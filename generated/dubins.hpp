@@ -4,8 +4,8 @@
 //   reach         the prefix       16       1024           7                256
 //   avoid         the prefix       16       1024           7                256
 //   reach_avoid   the prefix       32       2048          18                512
-//   sequential    the prefix       32       2048          28                512
-//   all together                   60       3072          46                768
+//   sequential    the prefix       32       2048          18                512
+//   all together                   60       3072          36                768
 //
 //   predicate  measures                       threshold  origin
 //   at_a       min cosine(z, goal_a) <=       0.243      written in the spec; no guarantee
@@ -39,10 +39,10 @@ struct Inputs {
 
 /// What they answer: about the prefix so far or, sliding, about the position their horizon ago.
 struct Verdicts {
-  etlmon::Verdict reach;  // dubins.etl:25: monitor reach = F at_a
-  etlmon::Verdict avoid;  // dubins.etl:26: monitor avoid = G !near_c
+  etlmon::Verdict reach;        // dubins.etl:25: monitor reach = F at_a
+  etlmon::Verdict avoid;        // dubins.etl:26: monitor avoid = G !near_c
   etlmon::Verdict reach_avoid;  // dubins.etl:27: monitor reach_avoid = F at_a && G !near_c
-  etlmon::Verdict sequential;  // dubins.etl:28: monitor sequential = F (at_a && F at_b)
+  etlmon::Verdict sequential;   // dubins.etl:28: monitor sequential = F (at_a && F at_b)
 };
 
 /// Target sets, a row after the other.
@@ -158,7 +158,7 @@ alignas(64) inline constexpr float obstacle_c_unit[8 * 32] = {
 class Monitor {
  public:
   static constexpr size_t kStateBytes = 60;  ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 46;  ///< of the temporal part in the worst step: min, max, compare
+  static constexpr uint32_t kOperations = 36;  ///< of the temporal part in the worst step: min, max, compare
   static constexpr uint32_t kDistanceElements = 768;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }
@@ -168,7 +168,7 @@ class Monitor {
     reach_ = etlmon::kFalse;
     avoid_ = etlmon::kTrue;
     sequential_met_ = etlmon::kFalse;
-    sequential_owing_2_ = etlmon::kFalse;
+    sequential_owing_1_ = etlmon::kFalse;
     at_a_ = etlmon::kUnmeasured;
     at_b_ = etlmon::kUnmeasured;
     near_c_ = etlmon::kUnmeasured;
@@ -230,10 +230,12 @@ class Monitor {
     return now;
   }
 
-  /// One step of every formula, given this step's predicates.
+  /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
+  /// bound that no continuation leaves.
   Verdicts judge(const Atoms& now) noexcept {
     using etlmon::max;
     using etlmon::min;
+
     const Value not_near_c = negate(now.near_c);
 
     // dubins.etl:25: F at_a
@@ -248,8 +250,8 @@ class Monitor {
     const Reading reach_avoid = min(reach, avoid);
 
     // dubins.etl:28: F (at_a && F at_b)
-    sequential_met_ = max(sequential_met_, min(now.at_a, now.at_b), min(sequential_owing_2_, now.at_b));
-    sequential_owing_2_ = max(sequential_owing_2_, now.at_a);
+    sequential_owing_1_ = max(sequential_owing_1_, now.at_a);
+    sequential_met_ = max(sequential_met_, min(sequential_owing_1_, now.at_b));
     const Reading sequential = {
       sequential_met_,
       sequential_met_.low,
@@ -264,14 +266,14 @@ class Monitor {
     return verdicts;
   }
 
-  Value reach_;  // F at_a
-  Value avoid_;  // G !near_c
-  Value sequential_met_;  // nothing is owed any more
-  Value sequential_owing_2_;  // owed: F at_b
-  etlmon::Measured at_a_;  // telemetry
-  etlmon::Measured at_b_;  // telemetry
-  etlmon::Measured near_c_;  // telemetry
-  uint32_t missing_steps_;  // saturates
+  Value reach_;               // F at_a
+  Value avoid_;               // G !near_c
+  Value sequential_met_;      // nothing is owed any more
+  Value sequential_owing_1_;  // owed: F at_b
+  etlmon::Measured at_a_;     // telemetry
+  etlmon::Measured at_b_;     // telemetry
+  etlmon::Measured near_c_;   // telemetry
+  uint32_t missing_steps_;    // saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

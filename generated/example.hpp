@@ -98,10 +98,12 @@ class Monitor {
     return now;
   }
 
-  /// One step of every formula, given this step's predicates.
+  /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
+  /// bound that no continuation leaves.
   Verdicts judge(const Atoms& now) noexcept {
     using etlmon::max;
     using etlmon::min;
+
 
     // example.etl:10: G near_goal
     stays_ = min(stays_, now.near_goal);
@@ -112,9 +114,9 @@ class Monitor {
     return verdicts;
   }
 
-  Value stays_;  // G near_goal
+  Value stays_;                 // G near_goal
   etlmon::Measured near_goal_;  // telemetry
-  uint32_t missing_steps_;  // saturates
+  uint32_t missing_steps_;      // saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
