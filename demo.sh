@@ -35,10 +35,13 @@ show cat examples/dubins/dubins.etl
 echo
 show etlc examples/dubins/dubins.etl -o "$out/dubins.hpp"
 echo
-echo "The head of the class, from $out/dubins.hpp:"
+echo "The head of $out/dubins.hpp, without most of the numbers:"
 echo
-sed '/^class Monitor/,$ { /^ private:/,$ d }' "$out/dubins.hpp" | head -n 100
+# Up to the private part of the class; of each table of numbers the first line.
+awk '/^ private:/ { exit }
+     /^  -?[0-9]/ { if (rows++ == 1) print "  ..."; if (rows > 1) next }
+     /^}/ { rows = 0 }
+     { print }' "$out/dubins.hpp"
+
 title "100 drives past that class: each verdict beside the truth"
 show build/release/examples/dubins/dubins "$out"
-echo
-echo "Picture: $PWD/$out/dubins.svg"
