@@ -104,7 +104,6 @@ class Monitor {
     using etlmon::max;
     using etlmon::min;
 
-
     // example.etl:10: G near_goal
     stays_ = min(stays_, now.near_goal);
     const Reading stays = {stays_, etlmon::kBottom, stays_.high};

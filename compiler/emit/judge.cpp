@@ -19,11 +19,11 @@ void print_readings(Printer& out, const Context& context) {
     if (plan.readings.empty()) return;
     const bool ends = plan.has_sliding;  // prefixes do not grow while finish() reports the last positions
     if (ends) {
-        out.line();
+        out.gap();
         out.open("if (finished_ == 0) {");
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
-        if (r > 0 || !ends) out.line();
+        out.gap();
         out.line("// {}", context.place(plan.readings[r].node));
         print_reading(out, context, r);
     }
@@ -43,10 +43,10 @@ void print_judge(Printer& out, const Context& context) {
     out.open(fmt::format("Verdicts judge({}const Atoms& now) noexcept {{", reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max;");
     out.line("using etlmon::min;");
-    out.line();
+    out.gap();
     print_streams(out, context);
     print_readings(out, context);
-    out.line();
+    out.gap();
     out.line("Verdicts verdicts;");
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out, fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));

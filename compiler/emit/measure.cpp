@@ -163,7 +163,7 @@ public:
 private:
     void print_shared(Index d) {
         const std::string& local = context_.names.distance_local.at(d);
-        out_.line();
+        out_.gap();
         out_.line("// {}", context_.model.distances[d].text);
         out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
         print_distance(out_, context_, d, local);
@@ -174,7 +174,7 @@ private:
         const auto telemetry = context_.names.predicate_member.find(p);
         const bool kept = telemetry != context_.names.predicate_member.end();
         const std::string& variable = kept ? telemetry->second : context_.names.predicate_local.at(p);
-        out_.line();
+        out_.gap();
         out_.line("// {}", context_.place(predicate.span));
         const std::string delta =
             predicate.plain_distance() ? plain(predicate, variable, kept) : general(predicate, variable, kept);

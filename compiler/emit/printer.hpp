@@ -22,6 +22,12 @@ public:
     {
         line(std::string_view(fmt::format(format, std::forward<Args>(args)...)));
     }
+    /// A blank line, unless there is one or a block begins here.
+    void gap() {
+        const bool open = text_.size() > 1 && text_[text_.size() - 2] == '{';
+        const bool blank = text_.size() > 1 && text_[text_.size() - 2] == '\n';
+        if (!open && !blank) text_.push_back('\n');
+    }
     /// A line at the outer level, for `public:` one space in.
     void label(std::string_view text) { text_.append(2 * depth_ - 1, ' ').append(text).push_back('\n'); }
     void open(std::string_view text) {

@@ -109,7 +109,7 @@ void print_streams(Printer& out, const Context& context) {
         if (text.empty()) continue;
         const plan::NodeId node = context.plan.streams[slot].node;
         if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
-            out.line();
+            out.gap();
             out.line("// {}", context.place(node));
         }
         print_wrapped(out, text);
