@@ -108,7 +108,8 @@ public:
         if (!*more) return false;
         if (rows_->cells() != columns_)
             return Failure{Code::malformed_csv,
-                           fmt::format("row has {} cells, the header has {}", rows_->cells(), columns_),
+                           fmt::format("row has {} cell{}, the header has {}", rows_->cells(),
+                                       rows_->cells() == 1 ? "" : "s", columns_),
                            rows_->row_line(), 1};
         sample.values.resize(channels_.size());
         sample.present.assign(channels_.size(), true);

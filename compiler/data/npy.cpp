@@ -31,7 +31,7 @@ diag::Result<std::vector<double>> read_values(ByteSource& source, const NpyHeade
         const std::size_t sound = decode(header.element, bytes.data(), n, values.data() + before);
         if (sound < n)
             return Failure{Code::malformed_array,
-                           fmt::format("array has the byte {} as bool element {}, expected 0 or 1",
+                           fmt::format("has the byte {} as bool element {}, expected 0 or 1",
                                        static_cast<unsigned char>(bytes[sound]), before + sound)};
     }
     // Reading on to the end lets an archive compare its checksum.
@@ -68,7 +68,7 @@ diag::Result<Array> read_npy_from(ByteSource& source) {
     if (!header) return header.failure();
     if (auto failure = check_size(*header, source.size())) return *failure;
     if (header->count > kMaxArrayElements)
-        return Failure{Code::array_too_large, fmt::format("array of shape {} has {} elements, at most {} are read",
+        return Failure{Code::array_too_large, fmt::format("shape {} has {} elements, at most {} are read",
                                                           shape_text(header->shape), header->count, kMaxArrayElements)};
     auto values = read_values(source, *header);
     if (!values) return values.failure();

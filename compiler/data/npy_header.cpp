@@ -105,7 +105,7 @@ private:
         expect('(');
         while (!failure_ && peek() != ')') {
             header.shape.push_back(dimension());
-            if (header.shape.size() > kMaxRank) return fail(fmt::format("array has more than {} dimensions", kMaxRank));
+            if (header.shape.size() > kMaxRank) return fail(fmt::format("has more than {} dimensions", kMaxRank));
             // A tuple of one needs its comma: (3) is not a shape.
             if (peek() != ')' || header.shape.size() == 1) expect(',');
         }
@@ -117,7 +117,7 @@ private:
         std::uint64_t value = 0;
         const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
         if (error == std::errc::result_out_of_range || value > kMaxBytes) {
-            failure_ = Failure{Code::array_too_large, "array has a dimension above 2^63 - 1"};
+            failure_ = Failure{Code::array_too_large, "has a dimension above 2^63 - 1"};
             return 0;
         }
         if (error != std::errc()) {
@@ -169,7 +169,7 @@ private:
         if (!failure_)
             failure_ = Failure{
                 Code::unsupported_elements,
-                fmt::format("array has {}, expected little-endian float16, float32, float64, integers or bool", what)};
+                fmt::format("has {}, expected little-endian float16, float32, float64, integers or bool", what)};
     }
 
     std::string_view text_;
@@ -188,8 +188,8 @@ std::optional<Failure> count_elements(NpyHeader& header) {
     for (const std::uint64_t n : header.shape) {
         if (header.count == 0) break;
         if (n > most / header.count)
-            return Failure{Code::array_too_large, fmt::format("array of shape {} has more elements than can be counted",
-                                                              shape_text(header.shape))};
+            return Failure{Code::array_too_large,
+                           fmt::format("shape {} has more elements than can be counted", shape_text(header.shape))};
         header.count *= n;
     }
     return {};
@@ -244,7 +244,7 @@ std::optional<Failure> check_size(const NpyHeader& header, std::uint64_t total) 
     const std::uint64_t there = total < header.header_bytes ? 0 : total - header.header_bytes;
     if (there == header.data_bytes()) return {};
     return Failure{Code::wrong_array_size,
-                   fmt::format("array {}: {} of shape {} takes {} bytes, {} are there",
+                   fmt::format("{}: {} of shape {} takes {} bytes, {} are there",
                                there < header.data_bytes() ? "is cut short" : "has bytes left over",
                                name(header.element), shape_text(header.shape), header.data_bytes(), there)};
 }

@@ -26,8 +26,8 @@ std::uint64_t rows_in(std::size_t bytes, std::uint64_t row_bytes, std::uint64_t 
 }
 
 Failure unsound_boolean(char byte, std::uint64_t row) {
-    return {Code::malformed_array, fmt::format("array has the byte {} as bool in step {}, expected 0 or 1",
-                                               static_cast<unsigned char>(byte), row)};
+    return {Code::malformed_array,
+            fmt::format("has the byte {} as bool in step {}, expected 0 or 1", static_cast<unsigned char>(byte), row)};
 }
 
 class StraightRows final : public Rows {

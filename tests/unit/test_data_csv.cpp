@@ -135,7 +135,7 @@ std::vector<Broken> broken() {
         {"too few cells", head + "1,2,0.5,1\n1,2,0.5\n", Code::malformed_csv, 3, 1,
          "row has 3 cells, the header has 4"},
         {"too many cells", head + "1,2,0.5,1,\n", Code::malformed_csv, 2, 1, "row has 5 cells, the header has 4"},
-        {"empty line", head + "\n", Code::malformed_csv, 2, 1, "row has 1 cells, the header has 4"},
+        {"empty line", head + "\n", Code::malformed_csv, 2, 1, "row has 1 cell, the header has 4"},
         {"no number", head + "1,2,0.5,1\n1, abc,0.5,1\n", Code::not_a_number, 3, 4,
          "column 'z[1]' holds 'abc', expected a number"},
         {"no number after a line break in quotes", "n,z[0],z[1],grip,held\n\"a\nb\",1,2,?,1\n", Code::not_a_number, 3,

@@ -181,44 +181,42 @@ std::vector<Broken> broken() {
         {"dimension", shape("(-2,)"), Code::malformed_array, "header's 'shape' holds '-2,), }"},
         {"no tuple", shape("2"), Code::malformed_array, "header has '2', expected '('"},
         {"no tuple of one", shape("(2)"), Code::malformed_array, "header has ')', expected ','"},
-        {"rank", shape(ones + ")"), Code::malformed_array, "array has more than 32 dimensions"},
+        {"rank", shape(ones + ")"), Code::malformed_array, "has more than 32 dimensions"},
         {"big endian", elements(">f4"), Code::unsupported_elements,
-         "array has big-endian elements, '>f4'" + kExpectedElements},
-        {"native order", elements("=f4"), Code::unsupported_elements,
-         "array has elements of type '=f4'" + kExpectedElements},
+         "has big-endian elements, '>f4'" + kExpectedElements},
+        {"native order", elements("=f4"), Code::unsupported_elements, "has elements of type '=f4'" + kExpectedElements},
         {"records", header("{'descr': [('x', '<f4')], "), Code::unsupported_elements,
-         "array has structured elements (records)" + kExpectedElements},
+         "has structured elements (records)" + kExpectedElements},
         {"objects", elements("|O"), Code::unsupported_elements,
-         "array has elements of type '|O' (Python objects)" + kExpectedElements},
+         "has elements of type '|O' (Python objects)" + kExpectedElements},
         {"complex", elements("<c8"), Code::unsupported_elements,
-         "array has elements of type '<c8' (complex numbers)" + kExpectedElements},
-        {"text", elements("<U4"), Code::unsupported_elements,
-         "array has elements of type '<U4' (text)" + kExpectedElements},
+         "has elements of type '<c8' (complex numbers)" + kExpectedElements},
+        {"text", elements("<U4"), Code::unsupported_elements, "has elements of type '<U4' (text)" + kExpectedElements},
         {"time", elements("<M8[s]"), Code::unsupported_elements,
-         "array has elements of type '<M8[s]' (times)" + kExpectedElements},
+         "has elements of type '<M8[s]' (times)" + kExpectedElements},
         {"raw", elements("|V8"), Code::unsupported_elements,
-         "array has elements of type '|V8' (raw bytes)" + kExpectedElements},
+         "has elements of type '|V8' (raw bytes)" + kExpectedElements},
         {"long double", elements("<f16"), Code::unsupported_elements,
-         "array has elements of type '<f16'" + kExpectedElements},
-        {"no type", elements(""), Code::unsupported_elements, "array has elements of type ''" + kExpectedElements},
+         "has elements of type '<f16'" + kExpectedElements},
+        {"no type", elements(""), Code::unsupported_elements, "has elements of type ''" + kExpectedElements},
         {"one dimension too large", shape("(9223372036854775808,)"), Code::array_too_large,
-         "array has a dimension above 2^63 - 1"},
+         "has a dimension above 2^63 - 1"},
         {"dimension of many digits", shape("(99999999999999999999999,)"), Code::array_too_large,
-         "array has a dimension above 2^63 - 1"},
+         "has a dimension above 2^63 - 1"},
         {"product overflows", shape("(4294967296, 4294967296)"), Code::array_too_large,
-         "array of shape (4294967296, 4294967296) has more elements than can be counted"},
+         "shape (4294967296, 4294967296) has more elements than can be counted"},
         {"product wraps to 2", shape("(9223372036854775807, 2, 9223372036854775807)"), Code::array_too_large,
-         "array of shape (9223372036854775807, 2, 9223372036854775807) has more elements than can be counted"},
+         "shape (9223372036854775807, 2, 9223372036854775807) has more elements than can be counted"},
         {"bytes overflow", shape("(4611686018427387904,)"), Code::array_too_large,
-         "array of shape (4611686018427387904,) has more elements than can be counted"},
+         "shape (4611686018427387904,) has more elements than can be counted"},
         {"huge", shape("(1000000000, 32)"), Code::wrong_array_size,
-         "array is cut short: float32 of shape (1000000000, 32) takes 128000000000 bytes, 8 are there"},
+         "is cut short: float32 of shape (1000000000, 32) takes 128000000000 bytes, 8 are there"},
         {"cut short", npy("<f4", "(3,)", two), Code::wrong_array_size,
-         "array is cut short: float32 of shape (3,) takes 12 bytes, 8 are there"},
+         "is cut short: float32 of shape (3,) takes 12 bytes, 8 are there"},
         {"left over", npy("<f4", "(3, 0)", two), Code::wrong_array_size,
-         "array has bytes left over: float32 of shape (3, 0) takes 0 bytes, 8 are there"},
+         "has bytes left over: float32 of shape (3, 0) takes 0 bytes, 8 are there"},
         {"bool of 2", npy("|b1", "(3,)", std::string("\x01\x00\x02", 3)), Code::malformed_array,
-         "array has the byte 2 as bool element 2, expected 0 or 1"},
+         "has the byte 2 as bool element 2, expected 0 or 1"},
     };
 }
 
@@ -248,7 +246,7 @@ TEST(Npy, CutAnywhere) {
         const auto longer = parse_npy(whole + "x");
         ASSERT_FALSE(longer);
         EXPECT_EQ(longer.failure().message,
-                  "array has bytes left over: float32 of shape (2, 2) takes 16 bytes, 17 are there");
+                  "has bytes left over: float32 of shape (2, 2) takes 16 bytes, 17 are there");
     }
 }
 
@@ -268,8 +266,7 @@ TEST(Npy, MoreElementsThanAreRead) {
     const auto array = read_npy(file.path());
     ASSERT_FALSE(array);
     EXPECT_EQ(array.failure().code, Code::array_too_large);
-    EXPECT_EQ(array.failure().message,
-              "array of shape (134217729,) has 134217729 elements, at most 134217728 are read");
+    EXPECT_EQ(array.failure().message, "shape (134217729,) has 134217729 elements, at most 134217728 are read");
 }
 
 TEST(Npy, FilesThatCannotBeRead) {

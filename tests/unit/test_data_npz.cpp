@@ -79,15 +79,14 @@ std::vector<Broken> broken() {
         {"checksum", wrong_data, "z", Code::malformed_archive, "array 'z': archive is damaged: CRC error"},
         {"header promises more than the entry has", zip_of({{"z.npy", npy("<f4", "(250000000,)", kTwo)}}), "z",
          Code::wrong_array_size,
-         "array 'z': array is cut short: float32 of shape (250000000,) takes 1000000000 bytes, 8 are there"},
+         "array 'z': is cut short: float32 of shape (250000000,) takes 1000000000 bytes, 8 are there"},
         {"entry has more than the header promises", zip_of({{"z.npy", npy("<f4", "(1,)", std::string(1 << 24, '\0'))}}),
          "z", Code::wrong_array_size,
-         "array 'z': array has bytes left over: float32 of shape (1,) takes 4 bytes, 16777216 are there"},
+         "array 'z': has bytes left over: float32 of shape (1,) takes 4 bytes, 16777216 are there"},
         {"not an array", zip_of({{"z.npy", "hello, hello"}}), "z", Code::malformed_array,
          "array 'z': is no .npy array: begins with 'hello,', expected '\\x93NUMPY'"},
         {"directory says the member is larger", patched(stored, size, tests::little_endian(array.size() + 4, 4)), "z",
-         Code::wrong_array_size,
-         "array 'z': array has bytes left over: float32 of shape (2,) takes 8 bytes, 12 are there"},
+         Code::wrong_array_size, "array 'z': has bytes left over: float32 of shape (2,) takes 8 bytes, 12 are there"},
     };
 }
 

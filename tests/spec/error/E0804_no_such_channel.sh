@@ -1,0 +1,15 @@
+# Every input that the monitors use has its columns, or its array, once.
+cat > t.etl <<'END'
+spec t;
+input z : f32[2];
+input grip : f32;
+input held : bool;
+target goal = [[1, 2]];
+monitor m = F (l2(z, goal) <= 1 && grip > 0.5 && held);
+END
+header() { echo "$1" > trace.csv; "$ETLC" run t.etl --trace trace.csv; }
+header 'z[0],z[1],gripp,held'
+header 'z[0],grip,held'
+header 'z0,z1,grip,held'
+header 'z[0],z[1],grip,held,grip'
+"$ETLC" run t.etl --trace "$SPECS/E0804_absent.npz" 2>&1 | sed "s|$SPECS/||"
