@@ -279,6 +279,14 @@ TEST(Thresholds, MoreValuesThanAreRead) {
     EXPECT_EQ(file.failure().message, "holds more than 2097152 values, the most that are read");
 }
 
+TEST(Thresholds, TheExampleOfTheDocumentsIsSound) {
+    const std::string page = tests::file_bytes(ETLC_SOURCE_DIR "/docs/data.md");
+    const std::size_t begin = page.find("```json\n") + 8;
+    const auto file = parse(page.substr(begin, page.find("```", begin) - begin), "x");
+    ASSERT_TRUE(file) << file.failure().message;
+    EXPECT_EQ(file->predicates.at("at_a").epsilon, 0.409F);
+}
+
 TEST(Thresholds, FromAFile) {
     const tests::TemporaryPath file("x.thresholds.json", kWhole);
     const auto read_back = read(file.path());
