@@ -64,8 +64,8 @@ struct Distance {
     std::optional<Aggregation> aggregation;
     Name metric;  ///< l2, l2sq, l1, linf, cosine, angular, mahalanobis; its span is the word's
     std::optional<Weights> weights;
-    std::vector<Name> point;     ///< one embedding input, or the scalars of a vector [px, py]
-    bool point_is_vector = false;///< written with brackets
+    std::vector<Name> point;       ///< one embedding input, or the scalars of a vector [px, py]
+    bool point_is_vector = false;  ///< written with brackets
     Span point_span;
     Name target;
     Span span;
@@ -75,11 +75,24 @@ struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
 struct Expr {
-    enum class Kind : std::uint8_t { number, name, distance, negate, add, subtract, multiply, divide, abs, sqrt, min, max };
+    enum class Kind : std::uint8_t {
+        number,
+        name,
+        distance,
+        negate,
+        add,
+        subtract,
+        multiply,
+        divide,
+        abs,
+        sqrt,
+        min,
+        max
+    };
     Kind kind = Kind::number;
-    std::string text;                   ///< number: its digits; name: the input
-    std::unique_ptr<Distance> distance; ///< kind distance
-    std::vector<ExprPtr> arguments;     ///< operands, in order; add and multiply etc. are binary, left-associated
+    std::string text;                    ///< number: its digits; name: the input
+    std::unique_ptr<Distance> distance;  ///< kind distance
+    std::vector<ExprPtr> arguments;      ///< operands, in order; add and multiply etc. are binary, left-associated
     Span span;
 };
 
@@ -105,19 +118,34 @@ using FormulaPtr = std::unique_ptr<Formula>;
 
 struct Formula {
     enum class Kind : std::uint8_t {
-        constant_true, constant_false, name, comparison,
-        negation, conjunction, disjunction, implication, equivalence,
-        next, eventually, always, until, weak_until, release,
-        previous, once, historically, since,
+        constant_true,
+        constant_false,
+        name,
+        comparison,
+        negation,
+        conjunction,
+        disjunction,
+        implication,
+        equivalence,
+        next,
+        eventually,
+        always,
+        until,
+        weak_until,
+        release,
+        previous,
+        once,
+        historically,
+        since,
     };
     Kind kind = Kind::constant_true;
     std::string name;                  ///< kind name
     std::vector<FormulaPtr> operands;  ///< conjunction and disjunction: two or more; implication etc.: left, right
     std::optional<Interval> interval;
-    ExprPtr left;                      ///< comparison: EXPR CMP NUMBER
+    ExprPtr left;  ///< comparison: EXPR CMP NUMBER
     Comparison comparison = Comparison::less_equal;
     Number right;
-    Span operator_span;                ///< of the operator's own word or symbol
+    Span operator_span;  ///< of the operator's own word or symbol
     Span span;
 };
 
@@ -207,7 +235,8 @@ struct Spec {
     std::vector<Name> unreadable;
 };
 
-/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again gives the same tree.
+/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again gives the same
+/// tree.
 std::string print(const Spec& spec);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);

@@ -77,7 +77,8 @@ private:
 /// What went wrong with a file other than the spec, found by a stage that does not know why the file was read.
 struct Failure {
     Code code;
-    std::string message;  ///< names the array, what was found and what was expected; not the file (data::in_file adds it)
+    std::string
+        message;  ///< names the array, what was found and what was expected; not the file (data::in_file adds it)
     std::uint32_t line = 0;
     std::uint32_t column = 0;
 };

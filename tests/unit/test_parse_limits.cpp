@@ -84,8 +84,8 @@ TEST(Limits, ChainsThatNestToTheLeft) {
     for (const std::string op : {"+", "-", "*", "/"}) {
         expect_fine(repeated("x " + op + " ", parse::kMaxHeight - 2) + "x > 1");
         expect_too_deep(repeated("x " + op + " ", parse::kMaxHeight) + "x > 1");
-        expect_too_deep(repeated("x " + op + " ", 100000) + "x > 1");
     }
+    expect_too_deep(repeated("x + ", 100000) + "x > 1");
     expect_fine(repeated("a <-> ", parse::kMaxHeight - 2) + "a");
     expect_too_deep(repeated("a <-> ", 100000) + "a");
     // Heights add up across brackets.
@@ -103,15 +103,15 @@ TEST(Limits, SpecsThatAreTooLarge) {
 }
 
 TEST(Limits, ManyErrorsInOneLine) {
-    const Parsed parsed("spec a;" + repeated("let f=;", 50000));
-    EXPECT_EQ(parsed.sink.errors(), 50000U);
+    const Parsed parsed("spec a;" + repeated("let f=;", 20000));
+    EXPECT_EQ(parsed.sink.errors(), 20000U);
     EXPECT_LT(parsed.errors().size(), 100000U);
 }
 
 TEST(Limits, TextThatInvitesRereading) {
     EXPECT_EQ(Parsed("spec a;\n" + repeated("/* ", 300000)).sink.errors(), 1U);
     EXPECT_EQ(Parsed("spec a;\n" + repeated("\"\n", 300000)).sink.errors(), 1U);
-    EXPECT_EQ(Parsed("spec a;\n" + repeated(";", 500000)).sink.errors(), 1U);
+    EXPECT_EQ(Parsed("spec a;\n" + repeated(";", 200000)).sink.errors(), 1U);
     EXPECT_EQ(Parsed("spec a;\n" + repeated("1.", 300000)).sink.errors(), 1U);
 }
 
