@@ -39,6 +39,7 @@ ETLMON_INLINE void keep_smallest(float* values, uint32_t n, uint32_t& count, uin
 
 /// The distance of the nearest target.
 struct Min {
+  static constexpr bool kNearest = true;       ///< the result is the nearest row's value
   static constexpr bool kOfDistances = false;  ///< order statistics work on values: one finish() for all rows
   ETLMON_INLINE void add(uint32_t) noexcept {}
   ETLMON_INLINE uint32_t result(const detail::Nearest& nearest) const noexcept { return nearest.least; }
@@ -46,6 +47,7 @@ struct Min {
 
 /// The distance of the farthest target.
 struct Max {
+  static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = false;
   ETLMON_INLINE void add(uint32_t bits) noexcept { greatest = bits > greatest ? bits : greatest; }
   ETLMON_INLINE uint32_t result(const detail::Nearest&) const noexcept { return greatest; }
@@ -54,6 +56,7 @@ struct Max {
 
 /// The arithmetic mean of the distances, added in row order.
 struct Mean {
+  static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = true;
   ETLMON_INLINE void add(float distance) noexcept { sum += distance; }
   ETLMON_INLINE float result(uint32_t rows) const noexcept { return sum / static_cast<float>(rows); }
@@ -63,6 +66,7 @@ struct Mean {
 /// The n-th smallest distance, from 1; n known to the compiler.
 template <uint32_t N>
 struct Kth {
+  static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = false;
   static_assert(N >= 1, "the n-th smallest counts from 1");
   ETLMON_INLINE void add(uint32_t bits) noexcept { detail::keep_smallest(values, N, count, bits); }

@@ -62,6 +62,7 @@ inline uint32_t prepare(MetricId metric, float* targets, uint32_t K, uint32_t D)
 
 /// The n-th smallest distance, n known at run time.
 struct KthOf {
+  static constexpr bool kNearest = false;
   static constexpr bool kOfDistances = false;
   float* values;  ///< scratch of n floats
   uint32_t n;

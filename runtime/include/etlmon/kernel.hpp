@@ -45,6 +45,12 @@ struct Tally {
     if (!Metric::kRescales) return result <= kGreatest || !Aggregation::kOfDistances;
     return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
   }
+  /// The same where the nearest row turns out to be z itself: its 0 is exact, and no other row's underflow can matter.
+  ETLMON_INLINE bool sound_if_equal(uint32_t result) const noexcept {
+    constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, in doubt whether a square or a root
+    const bool exact = Aggregation::kNearest ? result == 0 : result >= kLeastRoot;
+    return nearest.least == 0 && exact && result <= kGreatest && greatest <= kGreatest;
+  }
 };
 
 template <class Metric, class Aggregation>
@@ -62,7 +68,7 @@ ETLMON_INLINE Measured measure_rows(const float* z, const float* targets, const 
   const float* w = Metric::kWeighted || Metric::kQuadratic ? weights : z;  // unread where there are none
   Tally<Metric, Aggregation> tally{{}, aggregation};
   uint32_t row = 0;
-  if constexpr (Metric::kTwoRows) {
+  if constexpr (Metric::kTwoRows && kPacksPerBlock > 1) {
     for (; row + 2 <= rows; row += 2) {
       float first = 0.0f, second = 0.0f;
       two_rows<Metric>(point, z, targets + static_cast<size_t>(row) * dimension, w, dimension, first, second);
@@ -76,7 +82,13 @@ ETLMON_INLINE Measured measure_rows(const float* z, const float* targets, const 
 
   const uint32_t result = tally.result(rows);
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
-    if (!tally.sound(result)) return measure_rescaled<Metric>(z, targets, weights, rows, dimension, aggregation);
+    bool sound = tally.sound(result);
+    if constexpr (Metric::kWeighted || Metric::kQuadratic) {  // whose scaled form is slow
+      if (!sound && tally.sound_if_equal(result)) {
+        sound = equal(z, targets + static_cast<size_t>(tally.nearest.row) * dimension, dimension);
+      }
+    }
+    if (!sound) return measure_rescaled<Metric>(z, targets, weights, rows, dimension, aggregation);
   }
   const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
   return {delta, tally.nearest.row};

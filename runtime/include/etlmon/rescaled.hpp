@@ -1,7 +1,7 @@
 // The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny, or exactly zero.
 // Takes: what kernel.hpp takes. Gives: distances computed from differences scaled by a power of two, one row at a time.
 // Keeps true: a distance that float32 can represent does not overflow on the way, a tiny one does not vanish on the
-// way, and a vector of zeros has no direction. Kept out of line: it is one short scalar loop for every K and D.
+// way, and a vector of zeros has no direction. Kept out of line, one function for every K and D.
 // SPDX-License-Identifier: MIT
 #pragma once
 
@@ -31,8 +31,42 @@ ETLMON_INLINE uint32_t greatest_magnitude(const float* x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// Bits of sqrt((z - g)^T W (z - g)); W the identity, a diagonal, or full. With s = sqrt(diag W) and a = s (z - g),
-/// every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element bounds every term.
+/// L2Sq of differences that are scaled first.
+struct ScaledL2Sq : Additive {
+  using Point = PowerOfTwo;
+  template <class V>
+  ETLMON_INLINE static void add(Sum<V>& to, Point power, V z, V g, V) noexcept {
+    const V difference = rounded(z - g) * power.down;
+    to.sum = to.sum + difference * difference;
+  }
+};
+
+/// Bits of |z - g|. A z that equals a target comes here too, so this is vector code as well.
+class RescaledL2 {
+ public:
+  RescaledL2(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+
+  uint32_t row(const float* g) const noexcept {
+    const uint32_t greatest = observe(one_row<Linf>({}, z_, g, z_, dimension_));
+    if (greatest == 0 || greatest >= kInfinityBits) return greatest;
+    const PowerOfTwo power = power_of_two(greatest);
+    const float square = one_row<ScaledL2Sq>(power, z_, g, z_, dimension_);
+    return observe(rounded(rounded(square_root(square)) * power.up));
+  }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+};
+
+/// z == g, element by element.
+ETLMON_COLD inline bool equal(const float* z, const float* g, uint32_t dimension) noexcept {
+  return observe(one_row<Linf>({}, z, g, z, dimension)) == 0;
+}
+
+/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z - g), every
+/// |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element bounds every term.
 template <class Metric>
 class RescaledRoot {
  public:
@@ -67,9 +101,7 @@ class RescaledRoot {
     return rounded(rounded(z_[i] * half) - rounded(g[i] * half));
   }
   float stretch(uint32_t i) const noexcept {
-    if (Metric::kQuadratic) return square_root(weights_[static_cast<size_t>(i) * dimension_ + i]);
-    if (Metric::kWeighted) return square_root(weights_[i]);
-    return 1.0f;
+    return square_root(weights_[Metric::kQuadratic ? static_cast<size_t>(i) * dimension_ + i : i]);
   }
   /// Element i of W (z - g) / s_i, scaled.
   float weighted(const float* g, uint32_t i, float half, float down) const noexcept {
@@ -88,12 +120,14 @@ class RescaledRoot {
   uint32_t dimension_;
 };
 
-/// Bits of cosine and angular for a z whose squared length is out of range: z is scaled first, then to length 1.
+/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled first, then to
+/// length 1.
 template <class Metric>
 class RescaledDirection {
  public:
   RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {
     const uint32_t greatest = greatest_magnitude(z, dimension);
+    if (greatest == 0) return;
     down_ = power_of_two(greatest).down;
     float square = 0.0f;
     for (uint32_t i = 0; i < dimension; ++i) {
@@ -141,9 +175,11 @@ struct Choose<false, A, B> {
   using Type = B;
 };
 template <class Metric>
-using Rescaled =
-    typename Choose<Metric::kDirection, RescaledDirection<Metric>,
-                    typename Choose<Metric::kRescales, RescaledRoot<Metric>, Unscaled<Metric>>::Type>::Type;
+using RescaledSquare = typename Choose<Metric::kWeighted || Metric::kQuadratic, RescaledRoot<Metric>, RescaledL2>::Type;
+template <class Metric>
+using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric>, Unscaled<Metric>>::Type;
+template <class Metric>
+using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
 
 template <class Metric, class Aggregation>
 ETLMON_COLD Measured measure_rescaled(const float* z, const float* targets, const float* weights, uint32_t rows,
