@@ -73,7 +73,7 @@ Decimal Decimal::of(double value) {
 }
 
 std::optional<std::uint64_t> Decimal::whole(std::uint64_t limit) const {
-    if (negative || !is_whole() || exponent > 19) return std::nullopt;
+    if (negative || !is_whole() || exponent > 20) return std::nullopt;
     std::uint64_t value = 0;
     for (std::int64_t i = 0; i < exponent; ++i) {
         const auto at = static_cast<std::size_t>(i);

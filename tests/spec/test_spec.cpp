@@ -1,4 +1,5 @@
 // A file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl compiles.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -46,6 +47,10 @@ std::string code_of(const std::string& name) {
     return fs::path(name).stem().string().substr(0, 5);
 }
 
+std::string in_brackets(const std::string& code) {
+    return fmt::format("[{}]", code);
+}
+
 fs::path expected_of(const std::string& name) {
     return (kFolder / name).replace_extension(".expected");
 }
@@ -54,7 +59,7 @@ fs::path expected_of(const std::string& name) {
 class TemporaryFolder {
 public:
     explicit TemporaryFolder(const std::string& name)
-        : path_(fs::temp_directory_path() / ("etlc-" + std::to_string(::getpid()) + "-" + name)) {
+        : path_(fs::temp_directory_path() / fmt::format("etlc-{}-{}", ::getpid(), name)) {
         fs::create_directory(path_);
     }
     TemporaryFolder(const TemporaryFolder&) = delete;
@@ -70,6 +75,11 @@ private:
     fs::path path_;
 };
 
+/// Output and errors of `etlc FILE --check`, run beside the file.
+Outcome check(const fs::path& file) {
+    return run(fmt::format("'{}' {} --check 2>&1", ETLC_EXECUTABLE, file.filename().string()), file.parent_path());
+}
+
 // ---- error/ --------------------------------------------------------------------------------------------------------
 
 class SpecError : public ::testing::TestWithParam<std::string> {};
@@ -79,13 +89,13 @@ TEST_P(SpecError, IsDiagnosed) {
     const fs::path file = kFolder / GetParam();
     if (file.extension() == ".sh") {
         const TemporaryFolder folder(file.stem().string());
-        const std::string environment = "ETLC='" ETLC_EXECUTABLE "' SPECS='" + file.parent_path().string() + "'";
-        expect_golden(run(environment + " bash '" + file.string() + "' 2>&1", folder.path()).output,
+        const std::string environment =
+            fmt::format("ETLC='{}' SPECS='{}'", ETLC_EXECUTABLE, file.parent_path().string());
+        expect_golden(run(fmt::format("{} bash '{}' 2>&1", environment, file.string()), folder.path()).output,
                       expected_of(GetParam()));
         return;
     }
-    const Outcome outcome =
-        run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --check 2>&1", file.parent_path());
+    const Outcome outcome = check(file);
     expect_golden(outcome.output, expected_of(GetParam()));
     EXPECT_EQ(outcome.status, code_of(GetParam()).starts_with('W') ? 0 : 1);
 }
@@ -95,7 +105,7 @@ INSTANTIATE_TEST_SUITE_P(Error, SpecError, ::testing::ValuesIn(cases_in("error")
 TEST(SpecErrors, EveryCodeHasACaseThatShowsIt) {
     std::set<std::string> shown;
     for (const std::string& name : cases_in("error"))
-        if (read_text(expected_of(name)).find("[" + code_of(name) + "]") != std::string::npos)
+        if (read_text(expected_of(name)).find(in_brackets(code_of(name))) != std::string::npos)
             shown.insert(code_of(name));
     for (const diag::CodeInfo& info : diag::all_codes())
         EXPECT_TRUE(shown.contains(std::string(info.code)))
@@ -107,7 +117,7 @@ TEST(SpecErrors, EveryCaseIsNamedAfterACodeThatItShows) {
     for (const diag::CodeInfo& info : diag::all_codes()) codes.insert(std::string(info.code));
     for (const std::string& name : cases_in("error")) {
         EXPECT_TRUE(codes.contains(code_of(name))) << name;
-        EXPECT_NE(read_text(expected_of(name)).find("[" + code_of(name) + "]"), std::string::npos) << name;
+        EXPECT_NE(read_text(expected_of(name)).find(in_brackets(code_of(name))), std::string::npos) << name;
     }
 }
 
@@ -131,8 +141,7 @@ GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecOk);
 /// NAME.expected lists the warnings; no such file where there are none.
 TEST_P(SpecOk, Compiles) {
     const fs::path file = kFolder / GetParam();
-    const Outcome outcome =
-        run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --check 2>&1", file.parent_path());
+    const Outcome outcome = check(file);
     expect_golden(outcome.output, expected_of(GetParam()), true);
     EXPECT_EQ(outcome.status, 0);
 }
@@ -141,10 +150,10 @@ TEST_P(SpecOk, Compiles) {
 TEST_P(SpecOk, EmitsItsGoldens) {
     const fs::path file = kFolder / GetParam();
     for (const std::string stage : {"ast", "graph", "plan", "dot", "report"}) {
-        const fs::path golden = fs::path(file).replace_extension("." + stage);
+        const fs::path golden = fs::path(file).replace_extension(stage);
         if (!fs::exists(golden)) continue;
         const Outcome outcome =
-            run("'" ETLC_EXECUTABLE "' " + file.filename().string() + " --emit " + stage + " 2>/dev/null",
+            run(fmt::format("'{}' {} --emit {} 2>/dev/null", ETLC_EXECUTABLE, file.filename().string(), stage),
                 file.parent_path());
         EXPECT_EQ(outcome.status, 0) << stage;
         expect_golden(outcome.output, golden);

@@ -1,0 +1,247 @@
+// The model as a whole: inputs, targets, weights, thresholds, names.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <random>
+#include <sstream>
+
+#include "check/provenance.hpp"
+#include "check/reserved.hpp"
+#include "checking.hpp"
+
+namespace etlc::check {
+namespace {
+
+namespace fs = std::filesystem;
+
+const fs::path kCases = fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / "error";
+
+TEST(Check, InputsOfEveryType) {
+    const Checked checked(
+        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : f16[6] hold 1; "
+        "input f : i8[7] scale 0.1;"
+        "target t5 = load(\"none.npy\"); monitor m = G (c && a > 0 && b > 0);");
+    EXPECT_EQ(checked.codes(), "E0401");
+    const Checked good(
+        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : f16[6] hold 1; "
+        "input f : i8[7] scale 0.1;"
+        "monitor m = G (c && a > 0 && b > 0);");
+    ASSERT_TRUE(good.model) << good.diagnostics();
+    const std::vector<Input>& inputs = good.model->inputs;
+    ASSERT_EQ(inputs.size(), 6U);
+    EXPECT_EQ(inputs[1].name, "b");
+    EXPECT_EQ(inputs[1].hold, 3U);
+    EXPECT_TRUE(inputs[1].has_range);
+    EXPECT_EQ(inputs[1].range.low, -1.0F);
+    EXPECT_EQ(inputs[2].type, InputType::boolean);
+    EXPECT_EQ(inputs[3].dimension, 5U);
+    EXPECT_EQ(inputs[4].type, InputType::f16);
+    EXPECT_EQ(inputs[4].hold, 1U);
+    EXPECT_EQ(inputs[5].scale, 0.1F);
+    EXPECT_EQ(good.codes(), "W0201 W0201 W0201");
+}
+
+TEST(Check, TargetsAndDependencies) {
+    const std::string path = (kCases / "t.etl").string();
+    const Checked checked(
+        "spec t; input z : f32[2]; target row = load(\"row.npy\"); target corner = [[0.1, -2]];"
+        "predicate p = mahalanobis(load(\"./row.npy\"))(z, corner) <= 1; predicate q = l2(z, row) < 1; monitor m = F "
+        "(p && q);",
+        {}, path);
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    const Model& model = *checked.model;
+    EXPECT_EQ(model.targets[0].rows, 1U);
+    EXPECT_EQ(model.targets[0].dimension, 2U);
+    EXPECT_EQ(model.targets[0].values, (std::vector<float>{1, 2}));
+    EXPECT_EQ(model.targets[0].origin, "row.npy");
+    EXPECT_EQ(model.targets[1].values, (std::vector<float>{0.1F, -2}));
+    EXPECT_EQ(model.targets[1].origin, "literal");
+    EXPECT_EQ(model.dependencies, std::vector<std::string>{(kCases / "row.npy").string()});
+    EXPECT_TRUE(model.distances[0].weights_diagonal);
+    EXPECT_EQ(model.distances[0].weights_path, (kCases / "row.npy").string());
+}
+
+TEST(Check, WeightsAreMadeSymmetric) {
+    const Checked checked(
+        "spec t; input z : f32[2]; target c = [[1, 2]];"
+        "monitor m = F mahalanobis([[2, 0.5], [0.500001, 2]])(z, c) < 1;");
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    const std::vector<float>& w = checked.model->distances[0].weights;
+    ASSERT_EQ(w.size(), 4U);
+    EXPECT_EQ(w[1], w[2]);
+    EXPECT_NEAR(w[1], 0.5000005, 1e-7);
+    EXPECT_FALSE(checked.model->distances[0].weights_diagonal);
+}
+
+TEST(Check, WeightsFromATarget) {
+    const Checked checked(
+        "spec t; input z : f32[2]; target c = [[1, 2]]; target w = [[2, -1], [-1, 2]]; target d = [[3, 4]];"
+        "monitor m = F (mahalanobis(w)(z, c) < 1 && mahalanobis(d)(z, c) < 1);");
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    EXPECT_EQ(checked.model->distances[0].weights, (std::vector<float>{2, -1, -1, 2}));
+    EXPECT_EQ(checked.model->distances[1].weights, (std::vector<float>{3, 4}));
+    EXPECT_TRUE(checked.model->distances[1].weights_diagonal);
+}
+
+/// A random matrix A gives the positive definite A A^T + I, and with a negated pivot one that is not.
+TEST(Check, DefinitenessOfRandomMatrices) {
+    std::mt19937 random(1);
+    std::normal_distribution<double> normal;
+    for (int round = 0; round < 20; ++round) {
+        constexpr int n = 6;
+        double a[n][n];
+        for (auto& row : a)
+            for (double& x : row) x = normal(random);
+        const auto text = [&](double last) {
+            std::ostringstream out;
+            out.precision(9);
+            for (int i = 0; i < n; ++i) {
+                out << (i == 0 ? "[[" : ", [");
+                for (int j = 0; j < n; ++j) {
+                    double w = i == j ? 1 : 0;
+                    for (int k = 0; k < n; ++k) w += a[i][k] * a[j][k] * (k == n - 1 ? last : 1.0);
+                    out << (j == 0 ? "" : ", ") << std::fixed << w;
+                }
+                out << "]";
+            }
+            return "spec t; input z : f32[6]; target c = [[1, 2, 3, 4, 5, 6]]; monitor m = F mahalanobis(" + out.str() +
+                   "])(z, c) < 1;";
+        };
+        EXPECT_EQ(Checked(text(1)).codes(), "");
+        EXPECT_EQ(Checked(text(-100)).codes(), "E0459");
+    }
+}
+
+// ---- thresholds ----------------------------------------------------------------------------------------------------
+
+constexpr const char* kCalibrated =
+    "spec t; input z : f32[1]; target goal = [[1]]; predicate a = l2(z, goal) <= calibrated(conformal, alpha = 0.10);"
+    "monitor m = F a;";
+
+TEST(Thresholds, EpsilonComesFromTheFile) {
+    const std::string file = (kCases / "E0652_threshold_stale.thresholds.json").string();
+    const Checked checked(
+        "spec t; input z : f32[1]; target goal = [[1]]; predicate good = l2(z, goal) <= calibrated(conformal, alpha = "
+        "0.10); monitor m = F good;",
+        {file, false});
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    const Predicate& good = checked.predicate("good");
+    EXPECT_EQ(good.threshold.value, 0.5F);
+    EXPECT_EQ(good.threshold.value64, 0.5);
+    EXPECT_EQ(good.threshold.origin, ThresholdOrigin::conformal);
+    EXPECT_EQ(good.threshold.text, "calibrated(conformal, alpha = 0.10)");
+    EXPECT_EQ(good.threshold.alpha, "0.10");
+    EXPECT_EQ(good.robustness.high, 0.5F);
+    EXPECT_EQ(checked.model->dependencies, std::vector<std::string>{file});
+}
+
+TEST(Thresholds, UncalibratedIsAllowedForCalibration) {
+    const Checked checked(kCalibrated, {"", true});
+    ASSERT_TRUE(checked.model) << checked.diagnostics();
+    EXPECT_TRUE(std::isnan(checked.predicate("a").threshold.value));
+    EXPECT_TRUE(std::isinf(checked.predicate("a").robustness.low));
+    EXPECT_EQ(Checked(kCalibrated).codes(), "E0650");
+}
+
+TEST(Thresholds, ANamedFileMustBeThere) {
+    EXPECT_EQ(Checked(kCalibrated, {"no/such/file.json", false}).codes(), "E0601");
+}
+
+Provenance provenance_of(const std::string& text, const std::string& predicate) {
+    const Checked checked(text, {"", true});
+    EXPECT_TRUE(checked.model) << checked.diagnostics();
+    for (Index i = 0; checked.model && i < checked.model->predicates.size(); ++i)
+        if (checked.model->predicates[i].name == predicate) return provenance(*checked.model, i);
+    return {};
+}
+
+TEST(Thresholds, ProvenanceSaysAllThatTheThresholdDependsOn) {
+    const std::string head =
+        "spec t; input z : i8[1] scale 0.5; input px : f32; target goal = [[1]]; target spot = [[0]]; predicate held = "
+        "px > 0.25;";
+    const Provenance found =
+        provenance_of(head +
+                          "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held || false;"
+                          "truth a = sure && l2([px], spot) < 0.50; monitor m = F a;",
+                      "a");
+    EXPECT_EQ(found.predicate, "mahalanobis([2])(z, goal) <= ");
+    EXPECT_EQ(found.truth, "(held || false) && l2([px], spot) < 0.50 where held = px > 0.25");
+    ASSERT_EQ(found.targets.size(), 3U);
+    EXPECT_TRUE(found.targets.contains("goal"));
+    EXPECT_TRUE(found.targets.contains("z"));
+    EXPECT_TRUE(found.targets.contains("mahalanobis([2])(z, goal)"));
+    ASSERT_EQ(found.truth_targets.size(), 1U);
+    EXPECT_TRUE(found.truth_targets.contains("spot"));
+}
+
+// ---- names ---------------------------------------------------------------------------------------------------------
+
+TEST(Names, SuggestionsMayBeDeclared) {
+    for (const char* name : {"int", "co_await", "NAN", "FLT_MAX", "a__b", "__", "_Up", "__x", "step", "Monitor",
+                             "signal", "int__", "___9", "EOF"}) {
+        for (const char* kind : {"input", "spec", "monitor"}) {
+            const bool is_namespace = std::string(kind) == "spec";
+            if (!why_forbidden(name, is_namespace)) continue;
+            const std::string suggestion = allowed_name(name, kind, is_namespace);
+            EXPECT_FALSE(why_forbidden(suggestion, is_namespace)) << name << " -> " << suggestion;
+            EXPECT_NE(suggestion, name);
+        }
+    }
+}
+
+TEST(Names, OrdinaryNamesPass) {
+    for (const char* name : {"x", "z", "at_goal", "near", "far", "gripper", "time", "index", "log", "min_distance",
+                             "I2", "reach_avoid", "final", "module"})
+        EXPECT_FALSE(why_forbidden(name, false)) << name;
+    EXPECT_FALSE(why_forbidden("dubins", true));
+    EXPECT_TRUE(why_forbidden("time", true));
+    EXPECT_FALSE(why_forbidden("times_two", true));
+}
+
+TEST(Names, AreDeclaredInAnyOrder) {
+    const Checked checked(
+        "spec t; monitor m = F l; let l = p; predicate p = min l2(z, goal) <= 1; target goal = [[1, 2]]; input z : "
+        "f32[2];");
+    EXPECT_EQ(checked.codes(), "") << checked.diagnostics();
+}
+
+// ---- robustness ----------------------------------------------------------------------------------------------------
+
+/// Specs that lost, doubled or exchanged pieces: whatever is wrong with them is said, and nothing worse happens.
+TEST(Check, BearsDamagedSpecs) {
+    std::vector<std::string> specs;
+    for (const char* folder : {"error", "ok"})
+        for (const auto& entry : fs::directory_iterator(fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / folder)) {
+            if (entry.path().extension() != ".etl" || entry.file_size() > 4000) continue;
+            std::ifstream in(entry.path());
+            std::ostringstream text;
+            text << in.rdbuf();
+            specs.push_back(text.str());
+        }
+    ASSERT_GT(specs.size(), 40U);
+    std::sort(specs.begin(), specs.end());
+    std::mt19937 random(2);
+    const std::string path = (kCases / "t.etl").string();
+    int with_model = 0;
+    for (int i = 0; i < 1500; ++i) {
+        std::string text = specs[random() % specs.size()];
+        for (int edit = i % 4; edit > 0; --edit) {
+            const std::size_t at = random() % text.size();
+            const std::string& other = specs[random() % specs.size()];
+            const std::size_t from = random() % other.size();
+            text.replace(at, random() % 12, other.substr(from, random() % 12));
+            if (text.empty()) text.push_back('s');
+        }
+        const Checked checked(text, {}, path);
+        EXPECT_EQ(checked.model.has_value(), !checked.sink.has_errors());
+        if (checked.model) ++with_model;
+    }
+    EXPECT_GT(with_model, 10);
+}
+
+}  // namespace
+}  // namespace etlc::check
