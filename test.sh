@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 # The folders of tests/ that a preset builds and runs. The release build runs all; its tests compile the generated code with g++ and clang and
 # under sanitizers themselves, so the other builds run those that differ with the compiler and the sanitizers of etlc.
 declare -A folders=(
-    [release]="unit spec runtime monitor house package examples"
+    [release]="unit spec runtime monitor fuzz house package examples"
     [debug]="unit spec runtime"
     [clang]="unit spec runtime"
     [fuzz]="fuzz"
