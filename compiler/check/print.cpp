@@ -1,6 +1,4 @@
 // Canonical text of formulas and expressions: symbols, and parentheses only where the grammar needs them.
-#include <algorithm>
-#include <limits>
 #include <string_view>
 #include <unordered_map>
 
@@ -44,15 +42,6 @@ Operator operator_of(Kind kind) {
         case Kind::boolean_input: break;
     }
     return {"", kAtom};
-}
-
-/// Sizes of the formulas up to `formula` with every let written out, saturating.
-std::uint64_t written_out_size(const Model& model, Index formula) {
-    constexpr std::uint64_t kMany = std::numeric_limits<std::uint32_t>::max();
-    std::vector<std::uint64_t> size(formula + 1, 1);
-    for (Index i = 0; i <= formula; ++i)
-        for (const Index operand : model.formulas[i].operands) size[i] = std::min(kMany, size[i] + size[operand]);
-    return size[formula];
 }
 
 class FormulaPrinter {
@@ -178,7 +167,15 @@ void write(const Model& model, const Expr& expression, int weakest, std::string&
 }  // namespace
 
 bool lets_are_written_out(const Model& model, Index formula) {
-    return written_out_size(model, formula) <= kMaxPrinted;
+    std::uint64_t size = 0;
+    std::vector<Index> pending{formula};
+    while (!pending.empty() && size <= kMaxPrinted) {
+        const std::vector<Index>& operands = model.formulas[pending.back()].operands;
+        pending.pop_back();
+        pending.insert(pending.end(), operands.begin(), operands.end());
+        ++size;
+    }
+    return pending.empty() && size <= kMaxPrinted;
 }
 
 std::string print(const Model& model, Index formula) {
