@@ -9,17 +9,11 @@ using plan::Slot;
 using plan::Stream;
 using plan::StreamOp;
 
-std::uint32_t operand_lag(const Context& context, const Stream& stream) {
-    std::uint32_t lag = 0;
-    for (Slot slot : stream.operands) lag = std::max(lag, context.plan.streams[slot].lag);
-    return lag;
-}
-
 /// The operand where its position lies in the trace, else what counts as nothing.
 std::string guarded(const Context& context, const Stream& stream, std::size_t i, const std::string& where_none) {
     const std::string value = context.value(stream.operands[i]);
     if (stream.lag == 0) return value;  // about this very step
-    return fmt::format("exists({}) ? {} : {}", operand_lag(context, stream), value, where_none);
+    return fmt::format("exists({}) ? {} : {}", stream.operand_lag, value, where_none);
 }
 
 bool is_max(StreamOp op) {

@@ -117,7 +117,9 @@ NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
     if (inner.op == op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
         const std::uint32_t low = add_steps(interval.low, inner.interval.low);
         const std::uint32_t high = add_steps(interval.high, inner.interval.high);
-        const bool exact = low <= check::kMaxBound && (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
+        // An unbounded O at the present never falls below what it has seen, which its bounds use: it stays around O[1,b].
+        const bool remembers = interval == Interval{} && inner.interval.low > 0 && info(op).tense == Tense::past;
+        const bool exact = !remembers && low <= check::kMaxBound && (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
         if (exact) return unary(op, {low, high}, inner.operands.front(), span);
     }
     return intern({.op = op, .interval = interval, .operands = {operand}, .span = span});

@@ -131,13 +131,7 @@ void Evaluator::measure_predicates() {
 
 /// An operand whose position lies before the trace or after its end counts as nothing.
 Value Evaluator::operand(const Stream& stream, std::size_t i, Value where_none) const {
-    return exists(operand_lag(stream)) ? streams_[stream.operands[i]] : where_none;
-}
-
-std::uint32_t Evaluator::operand_lag(const Stream& stream) const {
-    std::uint32_t lag = 0;
-    for (Slot slot : stream.operands) lag = std::max(lag, plan_.streams[slot].lag);
-    return lag;
+    return exists(stream.operand_lag) ? streams_[stream.operands[i]] : where_none;
 }
 
 void Evaluator::advance_streams() {

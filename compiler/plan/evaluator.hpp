@@ -64,7 +64,6 @@ private:
     Value advance(const Stream& stream, StreamState& state) const;
     Value advance_window(const Stream& stream, StreamState& state) const;
     Value operand(const Stream& stream, std::size_t i, Value where_none) const;
-    std::uint32_t operand_lag(const Stream& stream) const;
     bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }
     void advance_readings();
     etlmon::Reading advance(const Reading& reading, ReadingState& state) const;

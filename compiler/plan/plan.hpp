@@ -55,6 +55,7 @@ struct Stream {
     std::uint32_t length = 0;  ///< of delays, shifts and windows
     Value value{};             ///< constant; shift: where there is no earlier position
     std::uint32_t lag = 0;     ///< after step i the stream tells about position i - lag
+    std::uint32_t operand_lag = 0;  ///< and its operands about position i - operand_lag; a constant is of any lag
     NodeId node = kNone;       ///< the formula it is, for comments; kNone for the values in between
 };
 

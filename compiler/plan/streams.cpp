@@ -28,7 +28,7 @@ bool equal(Value a, Value b) {
 
 Slot StreamBuilder::intern(Stream stream) {
     Identity identity{stream.op,        stream.operands,   stream.index, stream.length,
-                      stream.value.low, stream.value.high, stream.lag};
+                      stream.value.low, stream.value.high, stream.lag,   stream.operand_lag};
     const auto [entry, added] = interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added)
         streams_.push_back(std::move(stream));
@@ -90,13 +90,13 @@ Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     if (kept.size() == 1) return kept.front();
-    return intern({.op = op, .operands = std::move(kept), .lag = lag, .node = node});
+    return intern({.op = op, .operands = std::move(kept), .lag = lag, .operand_lag = lag, .node = node});
 }
 
 Slot StreamBuilder::delayed(Slot slot, std::uint32_t steps) {
     const Stream stream = streams_[slot];
     if (steps == 0 || stream.op == StreamOp::constant) return slot;
-    return intern({.op = StreamOp::delay, .operands = {slot}, .length = steps, .lag = stream.lag + steps});
+    return intern({.op = StreamOp::delay, .operands = {slot}, .length = steps, .lag = stream.lag + steps, .operand_lag = stream.lag});
 }
 
 std::vector<Slot> StreamBuilder::align(const std::vector<NodeId>& nodes) {
@@ -116,17 +116,29 @@ Slot StreamBuilder::aligned_combination(const Node& node, NodeId id) {
 }
 
 Slot StreamBuilder::running(StreamOp op, Slot slot, NodeId node) {
-    return intern({.op = op, .operands = {slot}, .lag = streams_[slot].lag, .node = node});
-}
-
-Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, Value before, NodeId node) {
-    if (steps == 0) return slot;
     const std::uint32_t lag = streams_[slot].lag;
-    return intern({.op = StreamOp::shift, .operands = {slot}, .length = steps, .value = before, .lag = lag, .node = node});
+    return intern({.op = op, .operands = {slot}, .lag = lag, .operand_lag = lag, .node = node});
 }
 
-Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t lag, NodeId node) {
-    return intern({.op = op, .operands = std::move(operands), .length = length, .lag = lag, .node = node});
+Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node) {
+    if (steps == 0) return slot;
+    return intern({.op = StreamOp::shift,
+                   .operands = {slot},
+                   .length = steps,
+                   .value = before,
+                   .lag = lag,
+                   .operand_lag = lag,
+                   .node = node});
+}
+
+Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag,
+                           std::uint32_t lag, NodeId node) {
+    return intern({.op = op,
+                   .operands = std::move(operands),
+                   .length = length,
+                   .lag = lag,
+                   .operand_lag = operand_lag,
+                   .node = node});
 }
 
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
@@ -135,13 +147,13 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
     const NodeId inner = low == 0 ? id : kNone;
+    const std::uint32_t lag = streams_[operand].lag;
     Slot slot = operand;
     if (high == kUnbounded)
         slot = running(max ? StreamOp::running_max : StreamOp::running_min, operand, inner);
     else if (high > low)
-        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1, streams_[operand].lag,
-                      inner);
-    return shift(slot, low, max ? kFalse : kTrue, id);
+        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1, lag, lag, inner);
+    return shift(slot, low, lag, max ? kFalse : kTrue, id);
 }
 
 /// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
@@ -149,18 +161,21 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const auto [low, high] = node.interval;
     const std::vector<Slot> operands = align(node.operands);
-    const std::uint32_t lag = streams_[operands[0]].lag > streams_[operands[1]].lag ? streams_[operands[0]].lag
-                                                                                    : streams_[operands[1]].lag;
+    const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
     const NodeId inner = low == 0 ? id : kNone;
     Slot slot = operands[1];
     if (high == kUnbounded)
-        slot = intern({.op = max ? StreamOp::since : StreamOp::trigger, .operands = operands, .lag = lag, .node = inner});
+        slot = intern({.op = max ? StreamOp::since : StreamOp::trigger,
+                       .operands = operands,
+                       .lag = lag,
+                       .operand_lag = lag,
+                       .node = inner});
     else if (high > low)
-        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, inner);
+        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, lag, inner);
     if (low == 0) return slot;
-    const Slot earlier = shift(slot, low, max ? kFalse : kTrue, kNone);
-    const Slot held = low == 1 ? operands[0]
-                               : window(max ? StreamOp::window_min : StreamOp::window_max, {operands[0]}, low, lag, kNone);
+    const Slot earlier = shift(slot, low, lag, max ? kFalse : kTrue, kNone);
+    const StreamOp all = max ? StreamOp::window_min : StreamOp::window_max;
+    const Slot held = low == 1 ? operands[0] : window(all, {operands[0]}, low, lag, lag, kNone);
     return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {earlier, held}, id);
 }
 
@@ -170,7 +185,8 @@ Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
     const StreamOp op = ir::takes_max(node.op) ? StreamOp::window_max : StreamOp::window_min;
-    return window(op, {operand}, high - low + 1, streams_[operand].lag + high, id);
+    const std::uint32_t lag = streams_[operand].lag;
+    return window(op, {operand}, high - low + 1, lag, lag + high, id);
 }
 
 /// f U[a,b] g at k is (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual alike.
@@ -182,11 +198,12 @@ Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
     const std::uint32_t length = high - low + 1;
     const NodeId inner = low == 0 ? id : kNone;
     const Slot until =
-        window(max ? StreamOp::window_until : StreamOp::window_release, operands, length, lag + high - low, inner);
+        window(max ? StreamOp::window_until : StreamOp::window_release, operands, length, lag, lag + high - low, inner);
     if (low == 0) return until;
-    const Slot from_there = window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1, lag + high, kNone);
+    const Slot from_there =
+        window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1, lag + high - low, lag + high, kNone);
     const Slot held = window(max ? StreamOp::window_min : StreamOp::window_max, {delayed(operands[0], length)}, low,
-                             lag + high, kNone);
+                             lag + length, lag + high, kNone);
     return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {from_there, held}, id);
 }
 

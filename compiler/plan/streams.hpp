@@ -35,8 +35,9 @@ private:
     Slot past_binary(const ir::Node& node, NodeId id);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
-    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t lag, NodeId node);
-    Slot shift(Slot slot, std::uint32_t steps, Value before, NodeId node);
+    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag, std::uint32_t lag,
+                NodeId node);
+    Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
     Slot running(StreamOp op, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
@@ -45,7 +46,7 @@ private:
     std::vector<Stream>& streams_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t>;
+    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };
 
