@@ -44,6 +44,11 @@ public:
     }
 
 private:
+    std::string monitor(std::size_t m) const {
+        const check::Monitor& monitor = model_.monitors[m];
+        return fmt::format("{} = {}", monitor.name, check::print(model_, monitor.formula));
+    }
+
     using Rows = std::vector<std::vector<Verdict>>;
 
     const check::Model& model_;
@@ -63,8 +68,8 @@ private:
         for (std::size_t row = 0; row < expected.size(); ++row)
             for (std::size_t m = 0; m < model_.monitors.size(); ++m)
                 if (const char* bad = verdict(expected[row][m], observed[row][m], model_.monitors[m].sliding))
-                    return fmt::format("{} {} of {}: {} differs: {}, expected {}", what, row, model_.monitors[m].name,
-                                       bad, show(observed[row][m]), show(expected[row][m]));
+                    return fmt::format("{} {} of {}: {} differs: {}, expected {}", what, row, monitor(m), bad,
+                                       show(observed[row][m]), show(expected[row][m]));
         return {};
     }
 
@@ -98,7 +103,7 @@ private:
                 most = std::max(most, expected_.verdicts[step][m].robustness_high);
                 if (!at_most(o.lower, least) || !at_most(most, o.upper))
                     return fmt::format("step {} of {}: {} does not bound what follows, [{:.9g}, {:.9g}]", step,
-                                       model_.monitors[m].name, show(o), least, most);
+                                       monitor(m), show(o), least, most);
             }
         }
         return {};
