@@ -178,13 +178,16 @@ class Monitor {
   /// One call, one time step.
   Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
 
-  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, and the row of
-  /// the nearest target.
+  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its
+  /// threshold, and the row of the nearest target.
   float distance_at_a() const noexcept { return at_a_.delta; }
+  static constexpr float threshold_at_a() noexcept { return 0.243f; }
   uint32_t nearest_at_a() const noexcept { return at_a_.nearest; }
   float distance_at_b() const noexcept { return at_b_.delta; }
+  static constexpr float threshold_at_b() noexcept { return 0.223f; }
   uint32_t nearest_at_b() const noexcept { return at_b_.nearest; }
   float distance_near_c() const noexcept { return near_c_.delta; }
+  static constexpr float threshold_near_c() noexcept { return 0.732f; }
   uint32_t nearest_near_c() const noexcept { return near_c_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
@@ -211,19 +214,22 @@ class Monitor {
     // dubins.etl:13: predicate at_a = min cosine(z, goal_a) <= 0.243
     at_a_ = etlmon::kUnmeasured;
     if (z != nullptr) at_a_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32>(z, targets::goal_a_unit);
-    now.at_a = etlmon::at_most(at_a_.delta, 0.243f, Value{etlmon::key_of(-1.7570001f), etlmon::key_of(0.243f)});
+    now.at_a = etlmon::at_most(at_a_.delta, threshold_at_a(), Value{etlmon::key_of(-1.7570001f),
+        etlmon::key_of(0.243f)});
     missing |= etlmon::is_nan(at_a_.delta);
 
     // dubins.etl:14: predicate at_b = min cosine(z, goal_b) <= 0.223
     at_b_ = etlmon::kUnmeasured;
     if (z != nullptr) at_b_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32>(z, targets::goal_b_unit);
-    now.at_b = etlmon::at_most(at_b_.delta, 0.223f, Value{etlmon::key_of(-1.7770001f), etlmon::key_of(0.223f)});
+    now.at_b = etlmon::at_most(at_b_.delta, threshold_at_b(), Value{etlmon::key_of(-1.7770001f),
+        etlmon::key_of(0.223f)});
     missing |= etlmon::is_nan(at_b_.delta);
 
     // dubins.etl:15: predicate near_c = min cosine(z, obstacle_c) <= 0.732
     near_c_ = etlmon::kUnmeasured;
     if (z != nullptr) near_c_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32>(z, targets::obstacle_c_unit);
-    now.near_c = etlmon::at_most(near_c_.delta, 0.732f, Value{etlmon::key_of(-1.268f), etlmon::key_of(0.732f)});
+    now.near_c = etlmon::at_most(near_c_.delta, threshold_near_c(), Value{etlmon::key_of(-1.268f),
+        etlmon::key_of(0.732f)});
     missing |= etlmon::is_nan(near_c_.delta);
 
     if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;

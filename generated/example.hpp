@@ -64,9 +64,10 @@ class Monitor {
   /// One call, one time step.
   Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
 
-  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, and the row of
-  /// the nearest target.
+  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its
+  /// threshold, and the row of the nearest target.
   float distance_near_goal() const noexcept { return near_goal_.delta; }
+  static constexpr float threshold_near_goal() noexcept { return 0.409f; }
   uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
@@ -91,7 +92,8 @@ class Monitor {
     // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
     near_goal_ = etlmon::kUnmeasured;
     if (z != nullptr) near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2>(z, targets::goal);
-    now.near_goal = etlmon::at_most(near_goal_.delta, 0.409f, Value{etlmon::kBottom, etlmon::key_of(0.409f)});
+    now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom,
+        etlmon::key_of(0.409f)});
     missing |= etlmon::is_nan(near_goal_.delta);
 
     if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;

@@ -93,13 +93,24 @@ void print_telemetry(Printer& out, const Context& context) {
         const check::Predicate& predicate = context.model.predicates[p];
         const bool plain = predicate.plain_distance();
         out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member, plain ? ".delta" : "");
+        out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}", predicate.name,
+                     float_literal(predicate.threshold.value));
         if (plain) out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}", predicate.name, member);
     }
 }
 
-void print_exists(Printer& out) {
+/// Some stream looks at positions that may lie before the trace, or after its end.
+bool asks_what_exists(const plan::Plan& plan) {
+    return plan.has_sliding || std::any_of(plan.streams.begin(), plan.streams.end(), [](const plan::Stream& stream) {
+               return stream.operand_lag > 0 && stream.op != StreamOp::delay && stream.op != StreamOp::conjunction &&
+                      stream.op != StreamOp::disjunction;
+           });
+}
+
+void print_exists(Printer& out, const Context& context) {
     out.line("/// Whether the trace has the position `lag` steps before this one.");
-    out.line("bool exists(uint32_t lag) const noexcept { return step_ >= lag && finished_ <= lag; }");
+    out.line("bool exists(uint32_t lag) const noexcept {{ return step_ >= lag{}; }}",
+             context.plan.has_sliding ? " && finished_ <= lag" : "");
     out.line();
 }
 
@@ -140,8 +151,8 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
         out.line();
     }
     if (!context.names.predicate_member.empty()) {
-        out.line("/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, and the row of");
-        out.line("/// the nearest target.");
+        out.line("/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its");
+        out.line("/// threshold, and the row of the nearest target.");
         print_telemetry(out, context);
         out.line();
     }
@@ -162,7 +173,7 @@ void print_class(Printer& out, const Context& context) {
     out.line("using Reading = etlmon::Reading;");
     out.line();
     print_atoms(out, context);
-    if (context.plan.has_sliding) print_exists(out);
+    if (asks_what_exists(context.plan)) print_exists(out, context);
     print_measure(out, context);
     out.line();
     print_judge(out, context);

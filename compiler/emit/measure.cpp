@@ -181,7 +181,9 @@ private:
         const std::string range = value_literal({etlmon::key_of(predicate.robustness.low), etlmon::key_of(predicate.robustness.high)});
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", context_.names.predicate_atom.at(p),
                                         predicate.upper_bound() ? "at_most" : "at_least", delta,
-                                        float_literal(predicate.threshold.value), range));
+                                        kept ? fmt::format("threshold_{}()", predicate.name)
+                                             : float_literal(predicate.threshold.value),
+                                        range));
         out_.line("missing |= etlmon::is_nan({});", delta);
     }
 

@@ -148,8 +148,13 @@ private:
     void name_registers(std::uint32_t r, const std::string& name) {
         const plan::Reading& reading = plan_.readings[r];
         if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
-            names_.reading_member[r] = member(members_, name);
+            if (reading.kind != plan::Reading::Kind::response) names_.reading_member[r] = member(members_, name);
             if (reading.fold.left != plan::kNone) names_.guard_member[r] = member(members_, name + "_guard");
+            if (reading.kind == plan::Reading::Kind::response) {
+                names_.reading_member[r] = member(members_, name + "_settled");
+                names_.guard_member[r] = member(members_, name + "_pending");
+                names_.recent_local[r] = judge_.claim(name + "_now");
+            }
             if (reading.kind == plan::Reading::Kind::machine)
                 names_.table_locals[r] = {judge_.claim(name + "_guards"), judge_.claim(name + "_weak"),
                                           judge_.claim(name + "_strong")};

@@ -39,7 +39,8 @@ struct Names {
     std::map<plan::Slot, std::string> stream_member;
     std::map<std::uint32_t, std::string> reading_local;
     std::map<std::uint32_t, std::string> reading_member;
-    std::map<std::uint32_t, std::string> guard_member;    ///< of folds with two sides: what the left one lets through
+    std::map<std::uint32_t, std::string> guard_member;    ///< of folds with two sides and of responses: their second value
+    std::map<std::uint32_t, std::string> recent_local;    ///< of responses that wait before their window
     std::map<std::uint32_t, std::vector<std::string>> register_member;  ///< of unrolled machines, per state
     std::map<std::uint32_t, std::vector<std::string>> register_next;    ///< their values of this step, as locals
     struct TableLocals {

@@ -81,6 +81,61 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     print_parts(out, context, r, best, takes_max ? known : bound, takes_max ? bound : known);
 }
 
+// ---- responses
+
+std::string conditional(const std::string& condition, const std::string& statement) {
+    return condition.empty() ? statement : fmt::format("if ({}) {}", condition, statement);
+}
+
+/// Whether the outer window holds the position `lag` steps ago; empty where it always does.
+std::string open_at(ir::Interval outer, std::uint32_t lag) {
+    ir::Interval shifted{outer.low + lag, outer.bounded() ? outer.high + lag : outer.high};
+    return open_condition(shifted);
+}
+
+void print_response(Printer& out, const Context& context, std::uint32_t r) {
+    const plan::Response& response = context.plan.readings[r].response;
+    const std::string& settled = context.names.reading_member.at(r);
+    const char* worst = response.of_always ? "min" : "max";
+    const char* best = response.of_always ? "max" : "min";
+    const char* far_end = response.of_always ? "high" : "low";
+    const std::string answer = context.value(response.answer);
+    const auto assign = [&](const std::string& target, const std::string& value) { return target + " = " + value + ";"; };
+
+    print_wrapped(out, conditional(open_at(response.outer, response.inner.high),
+                                   assign(settled, call(worst, {settled, context.value(response.settled)}))));
+    std::string now = answer;
+    if (response.keeps_pending()) {
+        const std::string& pending = context.names.guard_member.at(r);
+        const std::string excuse = response.excuse == kNone ? (response.of_always ? "etlmon::kFalse" : "etlmon::kTrue")
+                                                            : context.value(response.excuse);
+        print_wrapped(out, conditional(open_at(response.outer, 0), assign(pending, call(worst, {pending, excuse}))));
+        out.line(assign(pending, call(best, {pending, answer})));
+        now = pending;
+    }
+    if (response.hopeless_now()) now = response.of_always ? "etlmon::kFalse" : "etlmon::kTrue";
+    if (response.recent != kNone) {
+        out.line("const Value {} = {};", context.names.recent_local.at(r),
+                 call(worst, {now, context.value(response.recent)}));
+        now = context.names.recent_local.at(r);
+    }
+    const std::string unseen_answer =
+        response.of_always ? context.high(response.unseen_answer) : context.low(response.unseen_answer);
+    const std::string unseen_body =
+        response.of_always ? context.low(response.unseen_body) : context.high(response.unseen_body);
+    const char* near_end = response.of_always ? "low" : "high";
+    const std::vector<std::string> both = {settled + "." + near_end, now + "." + near_end};
+    const std::string known = call(worst, both);
+    std::string near = widened(!response.of_always, known, unseen_body);
+    if (near != known && near != unseen_body) near = call(worst, {both[0], both[1], unseen_body});
+    if (response.outer.bounded() && near != known)
+        near = fmt::format("step_ < {} ? {} : {}", response.outer.high, near, known);
+    const std::string hope = widened(response.of_always, now + "." + far_end, unseen_answer);
+    const std::string far = widened(!response.of_always, settled + "." + far_end, hope);
+    print_parts(out, context, r, call(worst, {settled, now}), response.of_always ? near : far,
+                response.of_always ? far : near);
+}
+
 // ---- unrolled machines
 
 /// min(max of the sources, literals)
@@ -231,6 +286,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
     switch (reading.kind) {
         case Reading::Kind::latch: return print_latch(out, context, r);
         case Reading::Kind::fold: return print_fold(out, context, r);
+        case Reading::Kind::response: return print_response(out, context, r);
         case Reading::Kind::machine:
             return is_table(reading) ? print_table_machine(out, context, r) : print_unrolled(out, context, r);
         case Reading::Kind::conjunction:
@@ -275,10 +331,16 @@ std::vector<Member> reading_members(const Context& context) {
                               fmt::format("{}.reset();", name)});
             continue;
         }
-        const bool starts_true = reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
+        const bool response = reading.kind == Reading::Kind::response;
+        const bool starts_true = response ? reading.response.of_always
+                                          : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
         const char* first = starts_true ? "etlmon::kTrue" : "etlmon::kFalse";
         const char* second = starts_true ? "etlmon::kFalse" : "etlmon::kTrue";
-        result.push_back({"Value", name, text, fmt::format("{} = {};", name, first)});
+        result.push_back({"Value", name, text + (response ? ": where the answer's time is over" : ""),
+                          fmt::format("{} = {};", name, first)});
+        if (response && reading.response.keeps_pending())
+            result.push_back({"Value", context.names.guard_member.at(r), "where it is not",
+                              fmt::format("{} = {};", context.names.guard_member.at(r), first)});
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
             result.push_back({"Value", context.names.guard_member.at(r), "what its left side lets through",
                               fmt::format("{} = {};", context.names.guard_member.at(r), second)});

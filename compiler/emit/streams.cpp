@@ -12,7 +12,8 @@ using plan::StreamOp;
 /// The operand where its position lies in the trace, else what counts as nothing.
 std::string guarded(const Context& context, const Stream& stream, std::size_t i, const std::string& where_none) {
     const std::string value = context.value(stream.operands[i]);
-    if (stream.lag == 0) return value;  // about this very step
+    const bool trace_may_end = context.plan.has_sliding;  // finish() moves on beyond the last position
+    if (stream.operand_lag == 0 && (stream.lag == 0 || !trace_may_end)) return value;
     return fmt::format("exists({}) ? {} : {}", stream.operand_lag, value, where_none);
 }
 

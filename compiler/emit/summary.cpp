@@ -96,6 +96,7 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
         if (reading.kind == plan::Reading::Kind::latch) as = "latch";
         if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
         if (reading.kind == plan::Reading::Kind::disjunction) as = "max of parts";
+        if (reading.kind == plan::Reading::Kind::response) as = "response";
         if (reading.kind == plan::Reading::Kind::machine)
             as = fmt::format("state machine, {} states, {} transitions{}", reading.machine.states.size(),
                              reading.machine.automaton.transitions.size(),

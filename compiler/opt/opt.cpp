@@ -6,14 +6,16 @@ namespace etlc::opt {
 
 namespace {
 
-/// Applies a rule bottom-up, each node once.
+/// Applies a pass bottom-up, each node once.
 class Rewriting {
 public:
-    Rewriting(ir::Graph& graph, Rule rule) : graph_(graph), rule_(rule) {}
+    Rewriting(ir::Graph& graph, const Pass& pass) : graph_(graph), pass_(pass) {}
 
     ir::NodeId rewrite(ir::NodeId id) {
         if (const auto known = done_.find(id); known != done_.end()) return known->second;
-        const ir::NodeId result = rule_(graph_, rebuild(id));
+        const bool above_time = ir::info(graph_[id].op).arity == ir::Arity::many;
+        const ir::NodeId inside = pass_.at_start_only && !above_time ? id : rebuild(id);
+        const ir::NodeId result = pass_.rule(graph_, inside);
         done_.emplace(id, result);
         return result;
     }
@@ -33,7 +35,7 @@ private:
     }
 
     ir::Graph& graph_;
-    Rule rule_;
+    const Pass& pass_;
     std::unordered_map<ir::NodeId, ir::NodeId> done_;
 };
 
@@ -42,13 +44,15 @@ private:
 const std::vector<Pass>& passes() {
     static const std::vector<Pass> table = {
         {"distribute", distribute},
+        {"split_until", split_until, true},
+        {"look_back", look_back, true},
     };
     return table;
 }
 
 void optimise(ir::Program& program) {
     for (const Pass& pass : passes()) {
-        Rewriting rewriting(program.graph, pass.rule);
+        Rewriting rewriting(program.graph, pass);
         for (std::size_t m = 0; m < program.monitors.size(); ++m)
             if (!program.graph.model().monitors[m].sliding)
                 program.monitors[m] = rewriting.rewrite(program.monitors[m]);

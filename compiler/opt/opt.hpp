@@ -16,6 +16,9 @@ using Rule = ir::NodeId (*)(ir::Graph& graph, ir::NodeId node);
 struct Pass {
     std::string_view name;
     Rule rule;
+    /// Only formulas that prefix monitors evaluate at position 0, below && and ||: there an unbounded F or G ranges over the
+    /// whole trace, so that looking back from any position reaches no position that it would not have reached.
+    bool at_start_only = false;
 };
 const std::vector<Pass>& passes();
 
@@ -23,5 +26,7 @@ const std::vector<Pass>& passes();
 void optimise(ir::Program& program);
 
 ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);
+ir::NodeId look_back(ir::Graph& graph, ir::NodeId node);
+ir::NodeId split_until(ir::Graph& graph, ir::NodeId node);
 
 }  // namespace etlc::opt

@@ -63,6 +63,13 @@ Cost fold_cost(const Fold& fold) {
     return cost;
 }
 
+Cost response_cost(const Response& response) {
+    Cost cost = values(response.keeps_pending() ? 2 : 1, 4 + (response.recent != kNone ? 1 : 0));
+    cost.operations += 4 + 3;  // what is settled, whether the outer window is open; the bounds
+    cost.code_bytes += 2 * kCodePerFold;
+    return cost;
+}
+
 /// Updates and, for the readings, two comparisons of values a state.
 Cost machine_cost(const Machine& machine) {
     const std::size_t read = 2 * machine.states.size();
@@ -110,6 +117,10 @@ public:
         if (r.kind == Reading::Kind::fold) {
             for (Slot slot : {r.fold.left, r.fold.right, r.fold.unseen}) stream(slot);
         }
+        if (r.kind == Reading::Kind::response)
+            for (Slot slot : {r.response.settled, r.response.excuse, r.response.recent, r.response.answer,
+                              r.response.unseen_answer, r.response.unseen_body})
+                stream(slot);
         for (const auto& guard : r.machine.guards)
             for (Slot slot : guard) stream(slot);
         for (const Machine::State& state : r.machine.states) {
@@ -204,6 +215,7 @@ Cost cost_of(const Plan&, const Reading& reading) {
     switch (reading.kind) {
         case Reading::Kind::latch: return values(1, 0);
         case Reading::Kind::fold: return fold_cost(reading.fold);
+        case Reading::Kind::response: return response_cost(reading.response);
         case Reading::Kind::machine: return machine_cost(reading.machine);
         case Reading::Kind::conjunction:
         case Reading::Kind::disjunction: return values(0, 2 * (reading.operands.size() - 1));

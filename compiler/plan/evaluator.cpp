@@ -230,6 +230,7 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
         case Reading::Kind::fold:
             state.registers = ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
+        case Reading::Kind::response: state.registers.assign(2, reading.response.of_always ? kTrue : kFalse); break;
         case Reading::Kind::machine:
             state.registers.assign(reading.machine.states.size(), kFalse);
             state.next = state.registers;
@@ -254,6 +255,7 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
             if (steps_ == 0) state.registers[0] = streams_[reading.latch.operand];
             return etlmon::settled(state.registers[0]);
         case Reading::Kind::fold: return advance_fold(reading.fold, state);
+        case Reading::Kind::response: return advance_response(reading.response, state);
         case Reading::Kind::machine: return advance_machine(reading.machine, state);
         default: break;
     }
@@ -282,6 +284,39 @@ etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) c
         reading.upper = etlmon::max(reading.upper, etlmon::min(guard.high, unseen.high));
     else
         reading.lower = etlmon::min(reading.lower, etlmon::max(guard.low, unseen.low));
+    return reading;
+}
+
+/// registers[0]: settled positions; registers[1]: pending ones. Below, `best` and `worst` are the min and max of an always.
+etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
+    const bool always = response.of_always;
+    const auto worst = [&](Value a, Value b) { return always ? min(a, b) : max(a, b); };
+    const auto best = [&](Value a, Value b) { return always ? max(a, b) : min(a, b); };
+    const Value idle = always ? kTrue : kFalse;
+    const Value hopeless = always ? kFalse : kTrue;
+    const auto open = [&](std::uint32_t step) {
+        return response.outer.low <= step && (!response.outer.bounded() || step <= response.outer.high);
+    };
+    Value& settled = state.registers[0];
+    Value& pending = state.registers[1];
+    const std::uint32_t lag = response.inner.high;
+    if (steps_ >= lag && open(steps_ - lag)) settled = worst(settled, streams_[response.settled]);
+    const Value excuse = response.excuse == kNone ? hopeless : streams_[response.excuse];
+    pending = best(worst(pending, open(steps_) ? excuse : idle), streams_[response.answer]);
+    Value now = response.hopeless_now() ? hopeless : pending;
+    if (response.recent != kNone) now = worst(now, streams_[response.recent]);
+
+    etlmon::Reading reading = etlmon::settled(worst(settled, now));
+    const Value answer = streams_[response.unseen_answer];
+    const Value body = streams_[response.unseen_body];
+    const bool reaches_past = !response.outer.bounded() || steps_ < response.outer.high;
+    if (always) {
+        reading.upper = etlmon::min(settled.high, etlmon::max(now.high, answer.high));
+        if (reaches_past) reading.lower = etlmon::min(reading.lower, body.low);
+    } else {
+        reading.lower = etlmon::max(settled.low, etlmon::min(now.low, answer.low));
+        if (reaches_past) reading.upper = etlmon::max(reading.upper, body.high);
+    }
     return reading;
 }
 

@@ -68,6 +68,7 @@ private:
     void advance_readings();
     etlmon::Reading advance(const Reading& reading, ReadingState& state) const;
     etlmon::Reading advance_fold(const Fold& fold, ReadingState& state) const;
+    etlmon::Reading advance_response(const Response& response, ReadingState& state) const;
     etlmon::Reading advance_machine(const Machine& machine, ReadingState& state) const;
     void judge();
 

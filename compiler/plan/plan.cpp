@@ -61,7 +61,7 @@ public:
 
 private:
     static bool counts(const Reading& reading) {
-        if (reading.kind == Reading::Kind::latch) return true;
+        if (reading.kind == Reading::Kind::latch || reading.kind == Reading::Kind::response) return true;
         return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
     }
 
@@ -104,6 +104,11 @@ private:
             if (reading.kind == Reading::Kind::latch) visit(reading.latch.operand);
             if (reading.kind == Reading::Kind::fold)
                 for (Slot* slot : {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}) visit_some(*slot);
+            if (reading.kind == Reading::Kind::response) {
+                Response& r = reading.response;
+                for (Slot* slot : {&r.settled, &r.excuse, &r.recent, &r.answer, &r.unseen_answer, &r.unseen_body})
+                    visit_some(*slot);
+            }
             for (auto& guard : reading.machine.guards)
                 for (Slot& slot : guard) visit(slot);
             for (Machine::State& state : reading.machine.states) {

@@ -75,6 +75,26 @@ struct Fold {
     Slot unseen = 0;      ///< lowest and highest unseen value of `right`
 };
 
+/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. Positions whose window has passed are
+/// settled by the stream of the body, b steps late. For the others one recurrence does: pending = max(min(pending, f), g). It
+/// keeps the settled positions too, with a part of their window only, which is no better than what they were settled at.
+struct Response {
+    bool of_always = true;        ///< else the dual
+    ir::Interval outer;
+    ir::Interval inner;           ///< bounded; from 0, or the outer one is [0, inf)
+    Slot settled = 0;             ///< the body, late by inner.high
+    Slot excuse = kNone;          ///< f, inner.low positions earlier; kNone: there is no f
+    Slot recent = kNone;          ///< f over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
+    Slot answer = 0;              ///< g
+    Slot unseen_answer = 0;       ///< lowest and highest unseen value of g
+    Slot unseen_body = 0;
+
+    /// Without an excuse, pending over the whole trace is the answer itself.
+    bool keeps_pending() const { return excuse != kNone || outer != ir::Interval{}; }
+    /// A window that begins later has not begun at the last positions: without an excuse nothing speaks for them.
+    bool hopeless_now() const { return excuse == kNone && inner.low > 0; }
+};
+
 /// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.
 struct Machine {
     struct State {
@@ -89,11 +109,12 @@ struct Machine {
 };
 
 struct Reading {
-    enum class Kind : std::uint8_t { latch, fold, machine, conjunction, disjunction };
+    enum class Kind : std::uint8_t { latch, fold, response, machine, conjunction, disjunction };
     Kind kind = Kind::latch;
     NodeId node = 0;
     Latch latch;
     Fold fold;
+    Response response;
     Machine machine;
     std::vector<std::uint32_t> operands;  ///< readings, of conjunction and disjunction
 };

@@ -94,6 +94,12 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
             text = fmt::format("fold {} over", ir::info(reading.fold.op).symbol);
             if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
             return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
+        case Reading::Kind::response:
+            text = fmt::format("response, settled s{}", reading.response.settled);
+            if (reading.response.excuse != kNone) text += fmt::format(", excuse s{}", reading.response.excuse);
+            if (reading.response.recent != kNone) text += fmt::format(", recent s{}", reading.response.recent);
+            return text + fmt::format(", answer s{}, unseen s{} s{}\n", reading.response.answer,
+                                      reading.response.unseen_answer, reading.response.unseen_body);
         case Reading::Kind::machine: return machine_text(reading.machine, graph);
         case Reading::Kind::conjunction:
         case Reading::Kind::disjunction: break;

@@ -29,6 +29,8 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
         reading = combination(node, id);
     else if (std::none_of(node.operands.begin(), node.operands.end(), [&](NodeId o) { return graph_[o].has_future; }))
         reading = fold(node, id);
+    else if (auto body = response(node))
+        reading = add({.kind = Reading::Kind::response, .node = id, .response = *body});
     else
         reading = machine(id);
     if (reading) known_.emplace(id, *reading);
@@ -50,6 +52,42 @@ std::uint32_t ReadingBuilder::fold(const Node& node, NodeId id) {
     fold.right = streams_.of(node.operands.back());
     fold.unseen = streams_.unseen(node.operands.back());
     return add({.kind = Reading::Kind::fold, .node = id, .fold = fold});
+}
+
+/// G[A,B] (f || F[a,b] g) or its dual, where the plan has a response for it.
+std::optional<Response> ReadingBuilder::response(const Node& node) {
+    const bool of_always = node.op == Op::always;
+    if (!of_always && node.op != Op::eventually) return std::nullopt;
+    const NodeId body = node.operands[0];
+    const bool with_excuse = graph_[body].op == (of_always ? Op::disjunction : Op::conjunction);
+    std::vector<NodeId> future{body};
+    std::vector<NodeId> present;
+    if (with_excuse) {
+        future.clear();
+        for (NodeId operand : graph_[body].operands) (graph_[operand].has_future ? future : present).push_back(operand);
+    }
+    if (future.size() != 1) return std::nullopt;
+    const Node inner = graph_[future[0]];
+    const bool seeks_answer = inner.op == (of_always ? Op::eventually : Op::always);
+    const bool answer_is_present = seeks_answer && !graph_[inner.operands[0]].has_future;
+    const bool fits = inner.interval.low == 0 || node.interval == ir::Interval{};
+    if (!answer_is_present || !inner.interval.bounded() || !fits) return std::nullopt;
+
+    Response result{.of_always = of_always, .outer = node.interval, .inner = inner.interval};
+    result.settled = streams_.of(body);
+    result.answer = streams_.of(inner.operands[0]);
+    result.unseen_answer = streams_.unseen(inner.operands[0]);
+    result.unseen_body = streams_.unseen(body);
+    const etlmon::Value idle = of_always ? etlmon::kTrue : etlmon::kFalse;  // where there is no position
+    if (!present.empty()) {
+        const NodeId excuse =
+            graph_.combine(of_always ? Op::disjunction : Op::conjunction, std::move(present), node.span);
+        const Slot slot = streams_.of(excuse);
+        result.excuse = streams_.shift(slot, inner.interval.low, 0, idle, kNone);
+        if (inner.interval.low > 0)
+            result.recent = streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, slot, inner.interval.low);
+    }
+    return result;
 }
 
 /// The min or max of what its parts say; those without future share one latch.

@@ -30,6 +30,7 @@ private:
     std::optional<std::uint32_t> machine(NodeId id);
     std::uint32_t latch(NodeId id);
     std::uint32_t fold(const ir::Node& node, NodeId id);
+    std::optional<Response> response(const ir::Node& node);
     std::uint32_t add(Reading reading);
     Machine::State state(const std::vector<NodeId>& obligations);
 

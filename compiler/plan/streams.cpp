@@ -141,6 +141,10 @@ Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_
                    .node = node});
 }
 
+Slot StreamBuilder::recent(StreamOp op, Slot slot, std::uint32_t length) {
+    return length == 1 ? slot : window(op, {slot}, length, 0, 0, kNone);
+}
+
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
 Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);

@@ -26,6 +26,11 @@ public:
     /// The same stream, later by `steps`.
     Slot delayed(Slot slot, std::uint32_t steps);
 
+    /// The stream `steps` positions earlier, `before` where there is none.
+    Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
+    /// Over the last `length` positions of a stream without lag.
+    Slot recent(StreamOp op, Slot slot, std::uint32_t length);
+
 private:
     Slot intern(Stream stream);
     Slot constant(Value value);
@@ -37,7 +42,6 @@ private:
     Slot future_binary(const ir::Node& node, NodeId id);
     Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag, std::uint32_t lag,
                 NodeId node);
-    Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
     Slot running(StreamOp op, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
