@@ -17,6 +17,7 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kEnding = ".npy";
+constexpr std::size_t kCandidates = 1000;  ///< for the name that was meant: a distance is computed to each
 
 Failure malformed(std::string message) {
     return {Code::malformed_archive, std::move(message)};
@@ -117,7 +118,6 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
 Failure Archive::missing(const std::string& key) const {
     if (keys_.empty()) return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
     std::string message = fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
-    constexpr std::size_t kCandidates = 1000;  // a distance is computed to each
     std::vector<std::string> candidates = keys_;
     candidates.resize(std::min(candidates.size(), kCandidates));
     if (auto nearest = diag::nearest_name(key, candidates))

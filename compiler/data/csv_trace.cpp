@@ -18,6 +18,7 @@ using diag::Code;
 using diag::Failure;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr std::size_t kCandidates = 1000;  ///< for the name that was meant: a distance is computed to each
 
 /// What a column of the file feeds: element `element` of channel `channel`.
 struct Slot {
@@ -71,7 +72,6 @@ private:
         std::string message = fmt::format("no column {}", in_quotes(name));
         const bool vector = channel.kind == Channel::Kind::vector;
         if (vector) message += fmt::format(", needed by input '{}' of {} elements", channel.name, channel.width);
-        constexpr std::size_t kCandidates = 1000;  // a distance is computed to each
         std::vector<std::string> candidates = names_;
         candidates.resize(std::min(candidates.size(), kCandidates));
         // z[15] is no misspelling of z[16]: where the vector is merely shorter, its neighbours are no suggestion.

@@ -16,6 +16,8 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
+constexpr int kNumberOverflow = 406;  ///< nlohmann's id of this error
+
 /// Builds the tree from nlohmann's events. Returning false stops the parser.
 class Builder {
 public:
@@ -45,7 +47,6 @@ public:
     }
 
     bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) {
-        constexpr int kNumberOverflow = 406;
         std::string what = "its end";
         if (error.id == kNumberOverflow)
             what = "a number that no double holds";

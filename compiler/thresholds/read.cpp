@@ -88,7 +88,7 @@ private:
     }
 
     std::string method(const Json& json, const std::string& path) {
-        const std::string value = text(json, path, "method");
+        std::string value = text(json, path, "method");
         const bool known = value == "f1" || value == "conformal" || value == "class_conditional";
         if (!failure_ && !known)
             fail(path + ".method", *json.find("method"), "'f1', 'conformal' or 'class_conditional'");
@@ -170,7 +170,7 @@ private:
     const Json* member(const Json& object, const std::string& path, const std::string& key, Json::Kind kind,
                        const std::string& expected) {
         if (failure_) return nullptr;
-        const std::string place = path.empty() ? key : path + "." + key;
+        const std::string place = path.empty() ? key : fmt::format("{}.{}", path, key);
         const Json* value = object.find(key);
         if (value == nullptr) {
             failure_ = Failure{Code::invalid_thresholds,
@@ -186,7 +186,8 @@ private:
         for (const std::string& key : object.keys) {
             if (failure_) return;
             if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-            std::string message = fmt::format("unknown key {}", in_quotes(path.empty() ? key : path + "." + key));
+            std::string message =
+                fmt::format("unknown key {}", in_quotes(path.empty() ? key : fmt::format("{}.{}", path, key)));
             if (auto nearest = diag::nearest_name(key, known))
                 message += fmt::format("; did you mean {}?", in_quotes(*nearest));
             failure_ = Failure{Code::invalid_thresholds, message};
