@@ -4,12 +4,12 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-# The folders of tests/ that a preset builds and runs. The release build runs all; its tests compile the generated code with g++ and clang and
-# under sanitizers themselves, so the other builds run those that differ with the compiler and the sanitizers of etlc.
+# The folders of tests/ that a preset builds and runs. The release build runs all. The tests of the runtime and of generated code compile what
+# they test themselves, with g++ and clang++ and with sanitizers; so the other builds run those of etlc.
 declare -A folders=(
     [release]="unit spec runtime monitor fuzz house package examples"
-    [debug]="unit spec runtime"
-    [clang]="unit spec runtime"
+    [debug]="unit spec fuzz"
+    [clang]="unit spec"
     [fuzz]="fuzz"
 )
 presets=("$@")
