@@ -86,8 +86,31 @@ private:
         if (clauses.size() > limits_.transitions || clauses.size() > kMaxClauses) throw TooLarge{};
     }
 
+    /// G[0,4] f and G[2,9] f are G[0,9] f: windows of one operand that touch become one, so that a requirement which
+    /// repeats at every step is one obligation and not a set of them.
+    Set merge_always(Set obligations) {
+        for (std::size_t i = 0; i < obligations.size(); ++i) {
+            for (std::size_t j = i + 1; j < obligations.size(); ++j) {
+                const Node a = graph_[obligations[i]];
+                const Node& b = graph_[obligations[j]];
+                if (a.op != Op::always || b.op != Op::always || a.operands != b.operands) continue;
+                const auto touches = [](Interval x, Interval y) { return !x.bounded() || y.low <= x.high + 1; };
+                if (!touches(a.interval, b.interval) || !touches(b.interval, a.interval)) continue;
+                const Interval whole{std::min(a.interval.low, b.interval.low), std::max(a.interval.high, b.interval.high)};
+                const NodeId merged = graph_.keep(Op::always, whole, a.operands, a.span);
+                obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(j));
+                obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(i));
+                obligations.insert(std::lower_bound(obligations.begin(), obligations.end(), merged), merged);
+                obligations.erase(std::unique(obligations.begin(), obligations.end()), obligations.end());
+                return merge_always(std::move(obligations));
+            }
+        }
+        return obligations;
+    }
+
     /// Obligations without those that another of the set implies.
-    Set reduce(const Set& obligations) const {
+    Set reduce(const Set& unmerged) {
+        const Set obligations = merge_always(unmerged);
         Set result;
         for (std::size_t i = 0; i < obligations.size(); ++i) {
             bool idle = false;
@@ -108,7 +131,7 @@ private:
         return result;
     }
 
-    Clauses both(const Clauses& a, const Clauses& b) const {
+    Clauses both(const Clauses& a, const Clauses& b) {
         Clauses result;
         for (const Clause& x : a)
             for (const Clause& y : b) add(result, {unite(x.literals, y.literals), reduce(unite(x.next, y.next))});
