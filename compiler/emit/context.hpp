@@ -51,6 +51,10 @@ void print_judge(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
+void print_pending(Printer& out, const Context& context, std::uint32_t reading);
+/// Of machines as tables: the lists of keys that say what the states are worth, as locals.
+void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading, const plan::Machine& machine);
+std::string table_name(const Context& context, std::uint32_t reading);
 
 /// A data member of the class: its declaration and how reset() sets it.
 struct Member {
@@ -62,5 +66,6 @@ struct Member {
 std::vector<Member> members(const Context& context);
 std::vector<Member> stream_members(const Context& context);
 std::vector<Member> reading_members(const Context& context);
+std::vector<Member> pending_members(const Context& context, std::uint32_t reading);
 
 }  // namespace etlc::emit

@@ -42,6 +42,7 @@ std::set<std::string> runtime_headers(const Context& context) {
                           StreamOp::window_until, StreamOp::window_release}))
         headers.insert("window");
     if (!context.names.table_locals.empty()) headers.insert("machine");
+    if (!context.names.pending.empty()) headers.insert("pending");
     return headers;
 }
 

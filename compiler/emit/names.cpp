@@ -155,7 +155,10 @@ private:
                 names_.guard_member[r] = member(members_, name + "_pending");
                 names_.recent_local[r] = judge_.claim(name + "_now");
             }
-            if (reading.kind == plan::Reading::Kind::machine)
+            if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
+            const bool has_table = reading.kind == plan::Reading::Kind::machine ||
+                                   (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);
+            if (has_table)
                 names_.table_locals[r] = {judge_.claim(name + "_guards"), judge_.claim(name + "_weak"),
                                           judge_.claim(name + "_strong")};
             return;
@@ -174,6 +177,22 @@ private:
             registers.push_back(member(members_, state));
             names_.register_next[r].push_back(judge_.claim(state));
         }
+    }
+
+    void name_pending(std::uint32_t r, const std::string& name) {
+        const plan::Pending& pending = plan_.readings[r].pending;
+        Names::PendingNames& names = names_.pending[r];
+        for (const plan::Pending::Part& part : pending.parts) {
+            const std::string words = identifier(graph_.text(part.node), "");
+            const bool few = !words.empty() && words.size() <= kLongestPartName;
+            names.parts.push_back(judge_.claim(few ? words + "_last" : name + "_last"));
+            names.leaves.push_back(part.leaf == plan::kNone
+                                       ? ""
+                                       : member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
+        }
+        names.count = judge_.claim(name + "_count");
+        names.position = judge_.claim("position");
+        if (pending.is_fold) names_.guard_member[r] = member(members_, name + "_guard");
     }
 
     void name_constants() {

@@ -47,6 +47,12 @@ struct Names {
         std::string guards, weak, strong;
     };
     std::map<std::uint32_t, TableLocals> table_locals;    ///< of machines as tables
+    struct PendingNames {
+        std::vector<std::string> parts;   ///< locals: readings at the last positions
+        std::vector<std::string> leaves;  ///< members: the last values; empty where the part is no leaf
+        std::string count, position;      ///< locals
+    };
+    std::map<std::uint32_t, PendingNames> pending;
     std::map<std::size_t, std::string> verdict_member;    ///< per monitor of the plan: a prefix monitor's last verdict
     std::map<check::Index, std::string> target_array;     ///< per distance: its rows
     std::map<check::Index, std::string> weight_array;     ///< per distance

@@ -210,10 +210,6 @@ void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
 
 // ---- machines as tables
 
-std::string table_name(const Context& context, std::uint32_t r) {
-    return context.names.reading_local.at(r) + "_table";
-}
-
 std::vector<std::string> keys(const Context& context, const std::vector<Slot>& slots, bool high) {
     std::vector<std::string> result{"etlmon::kTop"};
     for (Slot slot : slots) result.push_back(high ? context.high(slot) : context.low(slot));
@@ -228,7 +224,6 @@ std::string list(const std::vector<std::string>& items) {
 
 void print_table_machine(Printer& out, const Context& context, std::uint32_t r) {
     const Machine& machine = context.plan.readings[r].machine;
-    const plan::Table table = plan::make_table(machine);
     const Names::TableLocals& locals = context.names.table_locals.at(r);
     const std::string& kept = context.names.reading_member.at(r);
     std::vector<std::string> guards;
@@ -238,8 +233,7 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
         guards.push_back(values.empty() ? "etlmon::kTrue" : call("min", values));
     }
     print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak, list(keys(context, table.weak, false))));
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong, list(keys(context, table.strong, true))));
+    print_machine_keys(out, context, r, machine);
     const std::string tables = "tables::" + table_name(context, r);
     out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, locals.guards);
     out.line("{} = {}.read({}_owed, {}, {});", local(context, r), kept, tables, locals.weak, locals.strong);
@@ -252,9 +246,16 @@ void print_array(Printer& out, const std::string& type, const std::string& name,
     print_wrapped(out, text + "};");
 }
 
+/// The machine that is emitted as a table, if the reading has one.
+const Machine* tabled(const Reading& reading) {
+    if (reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine)) return &reading.machine;
+    if (reading.kind == Reading::Kind::pending && !reading.pending.is_fold) return &reading.pending.machine;
+    return nullptr;
+}
+
 void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
-    const plan::Table table = plan::make_table(reading.machine);
+    const plan::Table table = plan::make_table(*tabled(reading));
     const std::string name = table_name(context, r);
     out.line("// {}: {} states, {} transitions", context.graph.text(reading.node), table.ends.size(),
              table.transitions.size());
@@ -268,7 +269,7 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
 }
 
 bool is_table(const Reading& reading) {
-    return reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine);
+    return tabled(reading) != nullptr;
 }
 
 std::string owed_text(const Context& context, const std::vector<plan::NodeId>& obligations) {
@@ -281,11 +282,23 @@ std::string owed_text(const Context& context, const std::vector<plan::NodeId>& o
 
 }  // namespace
 
+std::string table_name(const Context& context, std::uint32_t r) {
+    return context.names.reading_local.at(r) + "_table";
+}
+
+void print_machine_keys(Printer& out, const Context& context, std::uint32_t r, const Machine& machine) {
+    const plan::Table table = plan::make_table(machine);
+    const Names::TableLocals& locals = context.names.table_locals.at(r);
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak, list(keys(context, table.weak, false))));
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong, list(keys(context, table.strong, true))));
+}
+
 void print_reading(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
     switch (reading.kind) {
         case Reading::Kind::latch: return print_latch(out, context, r);
         case Reading::Kind::fold: return print_fold(out, context, r);
+        case Reading::Kind::pending: return print_pending(out, context, r);
         case Reading::Kind::response: return print_response(out, context, r);
         case Reading::Kind::machine:
             return is_table(reading) ? print_table_machine(out, context, r) : print_unrolled(out, context, r);
@@ -313,6 +326,11 @@ std::vector<Member> reading_members(const Context& context) {
     std::vector<Member> result;
     for (std::uint32_t r = 0; r < context.plan.readings.size(); ++r) {
         const Reading& reading = context.plan.readings[r];
+        if (reading.kind == Reading::Kind::pending) {
+            const std::vector<Member> own = pending_members(context, r);
+            result.insert(result.end(), own.begin(), own.end());
+            continue;
+        }
         const std::string text = context.graph.text(reading.node);
         if (const auto registers = context.names.register_member.find(r); registers != context.names.register_member.end()) {
             for (std::size_t q = 0; q < registers->second.size(); ++q) {

@@ -25,6 +25,12 @@ void print_table(Printer& out, const std::string& prefix, const std::vector<Row>
     }
 }
 
+/// A formula in a table: its beginning, where it is long.
+std::string shortened(const std::string& text) {
+    constexpr std::size_t kLongest = 60;
+    return text.size() <= kLongest ? text : text.substr(0, kLongest - 4) + " ...";
+}
+
 std::string number(std::uint64_t x) {
     return fmt::format("{}", x);
 }
@@ -97,17 +103,20 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
         if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
         if (reading.kind == plan::Reading::Kind::disjunction) as = "max of parts";
         if (reading.kind == plan::Reading::Kind::response) as = "response";
+        if (reading.kind == plan::Reading::Kind::pending)
+            as = fmt::format("{}, anew at {} positions", reading.pending.is_fold ? "fold" : "state machine",
+                             reading.pending.horizon + 1);
         if (reading.kind == plan::Reading::Kind::machine)
             as = fmt::format("state machine, {} states, {} transitions{}", reading.machine.states.size(),
                              reading.machine.automaton.transitions.size(),
                              plan::unrolled(reading.machine) ? "" : ", as a table");
-        rows.push_back({graph.text(reading.node), as, number(cost.state_bytes), number(cost.code_bytes),
+        rows.push_back({shortened(graph.text(reading.node)), as, number(cost.state_bytes), number(cost.code_bytes),
                         number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {
         const plan::Cost cost = plan::cost_of(plan, stream);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
-        rows.push_back({stream.node == plan::kNone ? "(in between)" : graph.text(stream.node), "stream",
+        rows.push_back({stream.node == plan::kNone ? "(in between)" : shortened(graph.text(stream.node)), "stream",
                         number(cost.state_bytes), number(cost.code_bytes), number(cost.operations)});
     }
     if (rows.size() > 1) print_table(out, "  ", rows, 2);

@@ -32,8 +32,8 @@ Set unite(const Set& a, const Set& b) {
 
 class Construction {
 public:
-    Construction(ir::Graph& graph, const AutomatonLimits& limits, AutomatonSize& reached)
-        : graph_(graph), limits_(limits), reached_(reached) {}
+    Construction(ir::Graph& graph, Literals literals, const AutomatonLimits& limits, AutomatonSize& reached)
+        : graph_(graph), literals_(literals), limits_(limits), reached_(reached) {}
 
     Automaton build(NodeId formula) {
         guard_number({});
@@ -161,7 +161,8 @@ private:
 
     Clauses expand_node(NodeId id) {
         const Node node = graph_[id];  // a copy: the graph grows meanwhile
-        if (!node.has_future && ir::info(node.op).tense != ir::Tense::future) return literal(id);
+        const bool bounded = node.horizon != ir::kUnbounded;
+        if (!node.has_future || (literals_ == Literals::with_bounded_future && bounded)) return literal(id);
         const bool opens_later = node.interval.low > 0;
         const bool last = node.interval.high == 0;
         switch (node.op) {
@@ -222,6 +223,7 @@ private:
     static constexpr std::size_t kMaxClauses = 4096;  // absorption compares pairs
 
     ir::Graph& graph_;
+    Literals literals_;
     const AutomatonLimits& limits_;
     AutomatonSize& reached_;
     Automaton automaton_;
@@ -236,10 +238,10 @@ bool is_strong(Op op) {
     return op == Op::eventually || op == Op::until;
 }
 
-std::optional<Automaton> build_automaton(ir::Graph& graph, NodeId formula, const AutomatonLimits& limits,
-                                         AutomatonSize& reached) {
+std::optional<Automaton> build_automaton(ir::Graph& graph, NodeId formula, Literals literals,
+                                         const AutomatonLimits& limits, AutomatonSize& reached) {
     try {
-        return Construction(graph, limits, reached).build(formula);
+        return Construction(graph, literals, limits, reached).build(formula);
     } catch (const TooLarge&) {
         return std::nullopt;
     }

@@ -37,12 +37,15 @@ struct AutomatonLimits {
     std::size_t transitions = 65536;
 };
 
+/// What the construction takes as a literal: formulas without future, or all whose future is bounded.
+enum class Literals : std::uint8_t { without_future, with_bounded_future };
+
 /// The automaton, or nothing where it would be larger than the limits; `reached` then tells how far it came.
 struct AutomatonSize {
     std::size_t states = 0;
     std::size_t transitions = 0;
 };
-std::optional<Automaton> build_automaton(ir::Graph& graph, ir::NodeId formula, const AutomatonLimits& limits,
-                                         AutomatonSize& reached);
+std::optional<Automaton> build_automaton(ir::Graph& graph, ir::NodeId formula, Literals literals,
+                                         const AutomatonLimits& limits, AutomatonSize& reached);
 
 }  // namespace etlc::plan

@@ -70,6 +70,36 @@ Cost response_cost(const Response& response) {
     return cost;
 }
 
+/// Operations on values or readings at one position, in units of the temporal loops of etlmon/pending.hpp.
+std::uint64_t pending_steps(const Pending& pending) {
+    std::uint64_t steps = 0;
+    for (const Pending::Part& part : pending.parts) {
+        const bool temporal = part.unseen != kNone;
+        const std::uint64_t window = std::min(part.interval.high, pending.horizon) + std::uint64_t{1};
+        if (part.leaf == kNone) steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2 : part.operands.size() - 1;
+    }
+    if (pending.is_fold) return steps + 3;
+    steps += 2 * pending.machine.automaton.transitions.size();
+    for (const auto& guard : pending.guards) steps += guard.size();
+    return steps;
+}
+
+Cost pending_cost(const Pending& pending) {
+    constexpr std::uint64_t kKeysPerReading = 4;
+    const std::uint64_t positions = pending.horizon + std::uint64_t{1};
+    Cost cost;
+    std::uint64_t leaves = 0;
+    for (const Pending::Part& part : pending.parts) leaves += part.leaf != kNone ? 1 : 0;
+    cost.state_bytes = leaves * (positions * kValue + kWord);
+    cost.state_bytes += kValue * (pending.is_fold ? 2 : pending.machine.states.size());
+    cost.operations = positions * pending_steps(pending) * kKeysPerReading;
+    cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
+    if (!pending.is_fold)
+        cost.code_bytes += pending.machine.automaton.transitions.size() * kTransitionBytes +
+                           pending.machine.states.size() * kStateBytes + pending.guards.size() * kCodePerValueOperation;
+    return cost;
+}
+
 /// Updates and, for the readings, two comparisons of values a state.
 Cost machine_cost(const Machine& machine) {
     const std::size_t read = 2 * machine.states.size();
@@ -113,20 +143,8 @@ public:
         if (!readings_.insert(index).second) return;
         const Reading& r = plan_.readings[index];
         for (std::uint32_t operand : r.operands) reading(operand);
-        if (r.kind == Reading::Kind::latch) stream(r.latch.operand);
-        if (r.kind == Reading::Kind::fold) {
-            for (Slot slot : {r.fold.left, r.fold.right, r.fold.unseen}) stream(slot);
-        }
-        if (r.kind == Reading::Kind::response)
-            for (Slot slot : {r.response.settled, r.response.excuse, r.response.recent, r.response.answer,
-                              r.response.unseen_answer, r.response.unseen_body})
-                stream(slot);
-        for (const auto& guard : r.machine.guards)
-            for (Slot slot : guard) stream(slot);
-        for (const Machine::State& state : r.machine.states) {
-            stream(state.weak_unseen);
-            stream(state.strong_unseen);
-        }
+        Reading copy = r;
+        for (const Slot* slot : slots_of(copy)) stream(*slot);
     }
 
     void monitor(const Monitor& monitor) {
@@ -215,6 +233,7 @@ Cost cost_of(const Plan&, const Reading& reading) {
     switch (reading.kind) {
         case Reading::Kind::latch: return values(1, 0);
         case Reading::Kind::fold: return fold_cost(reading.fold);
+        case Reading::Kind::pending: return pending_cost(reading.pending);
         case Reading::Kind::response: return response_cost(reading.response);
         case Reading::Kind::machine: return machine_cost(reading.machine);
         case Reading::Kind::conjunction:

@@ -230,6 +230,7 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
         case Reading::Kind::fold:
             state.registers = ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
+        case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
         case Reading::Kind::response: state.registers.assign(2, reading.response.of_always ? kTrue : kFalse); break;
         case Reading::Kind::machine:
             state.registers.assign(reading.machine.states.size(), kFalse);
@@ -255,6 +256,7 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
             if (steps_ == 0) state.registers[0] = streams_[reading.latch.operand];
             return etlmon::settled(state.registers[0]);
         case Reading::Kind::fold: return advance_fold(reading.fold, state);
+        case Reading::Kind::pending: return state.pending->advance(steps_, streams_);
         case Reading::Kind::response: return advance_response(reading.response, state);
         case Reading::Kind::machine: return advance_machine(reading.machine, state);
         default: break;

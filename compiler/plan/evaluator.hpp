@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "etlmon/kernel.hpp"
@@ -11,6 +12,7 @@
 #include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
 #include "plan/inputs.hpp"
+#include "plan/pending_evaluator.hpp"
 #include "plan/plan.hpp"
 #include "plan/table.hpp"
 
@@ -50,6 +52,7 @@ private:
         std::vector<Value> guards;
         std::vector<Key> weak;         ///< this step's keys of the table's lists
         std::vector<Key> strong;
+        std::optional<PendingEvaluator> pending;
     };
 
     void prepare_distances();

@@ -61,7 +61,9 @@ public:
 
 private:
     static bool counts(const Reading& reading) {
-        if (reading.kind == Reading::Kind::latch || reading.kind == Reading::Kind::response) return true;
+        const bool by_position = reading.kind == Reading::Kind::latch || reading.kind == Reading::Kind::response ||
+                                 reading.kind == Reading::Kind::pending;
+        if (by_position) return true;
         return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
     }
 
@@ -97,26 +99,11 @@ private:
     /// Every place outside the streams that names one.
     template <class Visit>
     void for_each_slot(Visit visit) {
-        const auto visit_some = [&](Slot& slot) {
-            if (slot != kNone) visit(slot);
-        };
-        for (Reading& reading : plan_.readings) {
-            if (reading.kind == Reading::Kind::latch) visit(reading.latch.operand);
-            if (reading.kind == Reading::Kind::fold)
-                for (Slot* slot : {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}) visit_some(*slot);
-            if (reading.kind == Reading::Kind::response) {
-                Response& r = reading.response;
-                for (Slot* slot : {&r.settled, &r.excuse, &r.recent, &r.answer, &r.unseen_answer, &r.unseen_body})
-                    visit_some(*slot);
-            }
-            for (auto& guard : reading.machine.guards)
-                for (Slot& slot : guard) visit(slot);
-            for (Machine::State& state : reading.machine.states) {
-                visit_some(state.weak_unseen);
-                visit_some(state.strong_unseen);
-            }
-        }
-        for (Monitor& monitor : plan_.monitors) visit_some(monitor.stream);
+        for (Reading& reading : plan_.readings)
+            for (Slot* slot : slots_of(reading))
+                if (*slot != kNone) visit(*slot);
+        for (Monitor& monitor : plan_.monitors)
+            if (monitor.sliding) visit(monitor.stream);
     }
 
     void collect_inputs() {

@@ -108,16 +108,40 @@ struct Machine {
     std::vector<std::vector<Slot>> guards;  ///< per guard of the automaton, its literals as streams
 };
 
+/// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled `horizon` steps late; at the
+/// positions since, they are evaluated anew at every step on the prefix as it ends now (etlmon/pending.hpp), and the
+/// registers, which stand where everything is settled, are carried over them.
+struct Pending {
+    struct Part {
+        NodeId node = kNone;
+        Slot leaf = kNone;                    ///< a formula without future, else:
+        ir::Op op = ir::Op::conjunction;
+        ir::Interval interval;
+        std::vector<std::uint32_t> operands;  ///< parts
+        Slot unseen = kNone;                  ///< of temporal operators: of the last operand
+    };
+    std::vector<Part> parts;                  ///< operands first
+    std::uint32_t horizon = 0;
+    bool is_fold = true;
+    Fold fold;                                ///< is_fold: left and right are parts
+    Machine machine;                          ///< else: its guards are in `guards`
+    std::vector<std::vector<std::uint32_t>> guards;  ///< per guard of the automaton, parts
+};
+
 struct Reading {
-    enum class Kind : std::uint8_t { latch, fold, response, machine, conjunction, disjunction };
+    enum class Kind : std::uint8_t { latch, fold, response, machine, pending, conjunction, disjunction };
     Kind kind = Kind::latch;
     NodeId node = 0;
     Latch latch;
     Fold fold;
     Response response;
     Machine machine;
+    Pending pending;
     std::vector<std::uint32_t> operands;  ///< readings, of conjunction and disjunction
 };
+
+/// Every place in a reading that names a stream; some may be kNone.
+std::vector<Slot*> slots_of(Reading& reading);
 
 // ---- the plan ------------------------------------------------------------------------------------------------------
 

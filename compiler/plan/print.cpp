@@ -86,6 +86,21 @@ std::string machine_text(const Machine& machine, const ir::Graph& graph) {
     return text;
 }
 
+std::string pending_text(const Pending& pending, const ir::Graph& graph) {
+    std::string text = fmt::format("{}, over the last {} positions anew at every step\n",
+                                   pending.is_fold ? "fold" : "state machine", pending.horizon + 1);
+    for (std::size_t i = 0; i < pending.parts.size(); ++i) {
+        const Pending::Part& part = pending.parts[i];
+        text += fmt::format("       p{} =", i);
+        if (part.leaf != kNone) text += fmt::format(" s{}", part.leaf);
+        if (part.leaf == kNone) text += fmt::format(" {}", ir::info(part.op).symbol);
+        for (std::uint32_t operand : part.operands) text += fmt::format(" p{}", operand);
+        text += fmt::format("  // {}\n", graph.text(part.node));
+    }
+    if (!pending.is_fold) text += "       " + machine_text(pending.machine, graph);
+    return text;
+}
+
 std::string reading_text(const Reading& reading, const ir::Graph& graph) {
     std::string text;
     switch (reading.kind) {
@@ -94,6 +109,7 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
             text = fmt::format("fold {} over", ir::info(reading.fold.op).symbol);
             if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
             return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
+        case Reading::Kind::pending: return pending_text(reading.pending, graph);
         case Reading::Kind::response:
             text = fmt::format("response, settled s{}", reading.response.settled);
             if (reading.response.excuse != kNone) text += fmt::format(", excuse s{}", reading.response.excuse);

@@ -10,6 +10,9 @@ using ir::Op;
 namespace {
 
 
+/// Machines up to this size are preferred to anything else.
+constexpr AutomatonLimits kSmallMachine{256, 2048};
+
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
 bool loops_freely(const Automaton& automaton, std::uint32_t state) {
     return std::any_of(automaton.transitions.begin(), automaton.transitions.end(), [&](const Transition& t) {
@@ -32,7 +35,7 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
     else if (auto body = response(node))
         reading = add({.kind = Reading::Kind::response, .node = id, .response = *body});
     else
-        reading = machine(id);
+        reading = nested(node, id);
     if (reading) known_.emplace(id, *reading);
     return reading;
 }
@@ -121,23 +124,124 @@ Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
     return state;
 }
 
-std::optional<std::uint32_t> ReadingBuilder::machine(NodeId id) {
+/// The machine of an automaton, but for its guards.
+Machine ReadingBuilder::machine_of(Automaton automaton) {
+    Machine machine;
+    for (const auto& obligations : automaton.states) machine.states.push_back(state(obligations));
+    machine.states[0].always_true = loops_freely(automaton, 0);
+    machine.automaton = std::move(automaton);
+    return machine;
+}
+
+std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits& limits) {
     AutomatonSize reached;
-    auto automaton = build_automaton(graph_, id, limits_, reached);
+    auto automaton = build_automaton(graph_, id, Literals::without_future, limits, reached);
     if (!automaton) {
         oversize_.push_back({id, reached});
         return std::nullopt;
     }
-    Reading reading{.kind = Reading::Kind::machine, .node = id};
-    for (const auto& obligations : automaton->states) reading.machine.states.push_back(state(obligations));
-    reading.machine.states[0].always_true = loops_freely(*automaton, 0);
-    for (const auto& literals : automaton->guards) {
+    Machine result = machine_of(std::move(*automaton));
+    for (const auto& literals : result.automaton.guards) {
         std::vector<Slot> slots;
         for (NodeId literal : literals) slots.push_back(streams_.of(literal));
-        reading.machine.guards.push_back(std::move(slots));
+        result.guards.push_back(std::move(slots));
     }
-    reading.machine.automaton = std::move(*automaton);
-    return add(std::move(reading));
+    return result;
+}
+
+/// The part of `pending` that is this formula, with its operands before it.
+std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id) {
+    if (const auto found = known.find(id); found != known.end()) return found->second;
+    const Node node = graph_[id];
+    Pending::Part part{.node = id};
+    if (!node.has_future) {
+        part.leaf = streams_.of(id);
+    } else {
+        part.op = node.op;
+        part.interval = node.interval;
+        for (NodeId operand : node.operands) part.operands.push_back(pending_part(pending, known, operand));
+        if (ir::info(node.op).tense == ir::Tense::future) part.unseen = streams_.unseen(node.operands.back());
+    }
+    pending.horizon = std::max(pending.horizon, node.horizon);
+    pending.parts.push_back(std::move(part));
+    return known[id] = static_cast<std::uint32_t>(pending.parts.size() - 1);
+}
+
+/// The operator, or the automaton of what is unbounded, over the parts whose future is bounded.
+std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
+    Reading reading{.kind = Reading::Kind::pending, .node = id};
+    Pending& pending = reading.pending;
+    std::map<NodeId, std::uint32_t> known;
+    pending.is_fold = std::all_of(node.operands.begin(), node.operands.end(),
+                                  [&](NodeId operand) { return graph_[operand].horizon != kUnbounded; });
+    if (pending.is_fold) {
+        pending.fold = {.op = node.op, .interval = node.interval};
+        if (node.operands.size() == 2) pending.fold.left = pending_part(pending, known, node.operands[0]);
+        pending.fold.right = pending_part(pending, known, node.operands.back());
+        pending.fold.unseen = streams_.unseen(node.operands.back());
+        return reading;
+    }
+    AutomatonSize reached;
+    auto automaton = build_automaton(graph_, id, Literals::with_bounded_future, limits_, reached);
+    if (!automaton) return std::nullopt;
+    pending.machine = machine_of(std::move(*automaton));
+    for (const auto& literals : pending.machine.automaton.guards) {
+        std::vector<std::uint32_t> parts;
+        for (NodeId literal : literals) parts.push_back(pending_part(pending, known, literal));
+        pending.guards.push_back(std::move(parts));
+    }
+    return reading;
+}
+
+/// A small machine where there is one, else pending positions, else a machine up to the limits.
+std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
+    const std::size_t failures = oversize_.size();
+    const AutomatonLimits small{std::min(limits_.states, kSmallMachine.states),
+                                std::min(limits_.transitions, kSmallMachine.transitions)};
+    auto direct = machine(id, small);
+    if (!direct) {
+        auto reading = pending(node, id);
+        oversize_.resize(failures);
+        if (reading && reading->pending.horizon > 0) return add(std::move(*reading));
+        direct = machine(id, limits_);
+    }
+    if (!direct) return std::nullopt;
+    return add({.kind = Reading::Kind::machine, .node = id, .machine = std::move(*direct)});
+}
+
+std::vector<Slot*> slots_of(Reading& reading) {
+    const auto of_states = [](Machine& machine, std::vector<Slot*>& slots) {
+        for (Machine::State& state : machine.states) {
+            slots.push_back(&state.weak_unseen);
+            slots.push_back(&state.strong_unseen);
+        }
+    };
+    std::vector<Slot*> slots;
+    switch (reading.kind) {
+        case Reading::Kind::latch: slots = {&reading.latch.operand}; break;
+        case Reading::Kind::fold: slots = {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}; break;
+        case Reading::Kind::response: {
+            Response& r = reading.response;
+            slots = {&r.settled, &r.excuse, &r.recent, &r.answer, &r.unseen_answer, &r.unseen_body};
+            break;
+        }
+        case Reading::Kind::machine:
+            for (auto& guard : reading.machine.guards)
+                for (Slot& slot : guard) slots.push_back(&slot);
+            of_states(reading.machine, slots);
+            break;
+        case Reading::Kind::pending:
+            for (Pending::Part& part : reading.pending.parts) {
+                slots.push_back(&part.leaf);
+                slots.push_back(&part.unseen);
+            }
+            if (reading.pending.is_fold) slots.push_back(&reading.pending.fold.unseen);
+            of_states(reading.pending.machine, slots);
+            break;
+        case Reading::Kind::conjunction:
+        case Reading::Kind::disjunction: break;
+    }
+    return slots;
 }
 
 }  // namespace etlc::plan

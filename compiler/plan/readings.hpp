@@ -27,12 +27,17 @@ public:
 
 private:
     std::optional<std::uint32_t> combination(const ir::Node& node, NodeId id);
-    std::optional<std::uint32_t> machine(NodeId id);
+    /// A state machine over formulas without future, of at most so many states and transitions.
+    std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
+    std::optional<Reading> pending(const ir::Node& node, NodeId id);
+    std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
+    std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
     std::uint32_t latch(NodeId id);
     std::uint32_t fold(const ir::Node& node, NodeId id);
     std::optional<Response> response(const ir::Node& node);
     std::uint32_t add(Reading reading);
     Machine::State state(const std::vector<NodeId>& obligations);
+    Machine machine_of(Automaton automaton);
 
     ir::Graph& graph_;
     StreamBuilder& streams_;

@@ -37,14 +37,15 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
 
 /// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper: any
 /// state, what it owes strongly is worth its highest unseen value.
-inline Reading machine_read(const Value* now, uint32_t states, const Owed* owed, const Key* weak,
-                            const Key* strong) noexcept {
+template <class V>
+Reading machine_read(const V* now, uint32_t states, const Owed* owed, const Key* weak, const Key* strong) noexcept {
   Reading reading{kFalse, kBottom, kBottom};
   for (uint32_t q = 0; q < states; ++q) {
-    reading.upper = max(reading.upper, min(now[q].high, strong[owed[q].strong]));
+    const Reading at = reading_of(now[q]);
+    reading.upper = max(reading.upper, min(at.upper, strong[owed[q].strong]));
     if (owed[q].weak == kStrongly) continue;
-    reading.rho = max(reading.rho, now[q]);
-    reading.lower = max(reading.lower, min(now[q].low, weak[owed[q].weak]));
+    reading.rho = max(reading.rho, at.rho);
+    reading.lower = max(reading.lower, min(at.lower, weak[owed[q].weak]));
   }
   return reading;
 }

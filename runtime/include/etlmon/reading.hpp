@@ -27,6 +27,10 @@ constexpr Reading max(Reading a, Reading b) noexcept {
 /// A reading that no continuation changes.
 constexpr Reading settled(Value rho) noexcept { return {rho, rho.low, rho.high}; }
 
+/// A register as a reading.
+constexpr Reading reading_of(Value settled_value) noexcept { return settled(settled_value); }
+constexpr Reading reading_of(Reading reading) noexcept { return reading; }
+
 inline Verdict prefix_verdict(Reading reading) noexcept {
   return prefix_verdict(reading.rho, reading.lower, reading.upper);
 }

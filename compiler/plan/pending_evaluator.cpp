@@ -1,0 +1,100 @@
+#include "plan/pending_evaluator.hpp"
+
+#include <algorithm>
+
+namespace etlc::plan {
+
+using etlmon::kFalse;
+using etlmon::kTrue;
+
+PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
+    if (!pending.is_fold) table_ = make_table(pending.machine);
+    leaves_.resize(pending.parts.size());
+    parts_.assign(pending.parts.size(), Readings(pending.horizon + std::size_t{1}));
+    reset();
+}
+
+void PendingEvaluator::reset() {
+    for (auto& leaf : leaves_) leaf.clear();
+    if (pending_.is_fold) {
+        const bool max = ir::takes_max(pending_.fold.op);
+        registers_ = max ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
+    } else {
+        registers_.assign(pending_.machine.states.size(), kFalse);
+        registers_[0] = kTrue;
+    }
+}
+
+etlmon::Reading PendingEvaluator::advance(std::uint32_t step, const std::vector<Value>& streams) {
+    const std::uint32_t count = std::min(step, pending_.horizon) + 1;
+    evaluate_parts(count, streams);
+    return pending_.is_fold ? advance_fold(step, count, streams) : advance_machine(step, count, streams);
+}
+
+void PendingEvaluator::evaluate_parts(std::uint32_t count, const std::vector<Value>& streams) {
+    for (std::size_t i = 0; i < pending_.parts.size(); ++i) evaluate_part(i, count, streams);
+}
+
+void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count, const std::vector<Value>& streams) {
+    const Pending::Part& part = pending_.parts[index];
+    Readings& out = parts_[index];
+    if (part.leaf != kNone) {
+        auto& leaf = leaves_[index];
+        if (leaf.size() > pending_.horizon) leaf.erase(leaf.begin());
+        leaf.push_back(streams[part.leaf]);
+        std::transform(leaf.begin(), leaf.end(), out.begin(), [](Value value) { return etlmon::settled(value); });
+        return;
+    }
+    if (part.unseen == kNone) {
+        out = parts_[part.operands[0]];
+        for (std::size_t i = 1; i < part.operands.size(); ++i) {
+            const Readings& other = parts_[part.operands[i]];
+            if (part.op == ir::Op::conjunction)
+                etlmon::pending_and(out.data(), other.data(), out.data(), count);
+            else
+                etlmon::pending_or(out.data(), other.data(), out.data(), count);
+        }
+        return;
+    }
+    const etlmon::Reading* left = part.operands.size() == 2 ? parts_[part.operands[0]].data() : nullptr;
+    const etlmon::Reading* right = parts_[part.operands.back()].data();
+    const auto [low, high] = part.interval;
+    if (ir::takes_max(part.op))
+        etlmon::pending_until(left, right, out.data(), count, low, high, streams[part.unseen].high);
+    else
+        etlmon::pending_release(left, right, out.data(), count, low, high, streams[part.unseen].low);
+}
+
+etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count, const std::vector<Value>& streams) {
+    const Fold& fold = pending_.fold;
+    const etlmon::Reading* left = fold.left == kNone ? nullptr : parts_[fold.left].data();
+    const etlmon::Reading* right = parts_[fold.right].data();
+    const auto [low, high] = fold.interval;
+    if (ir::takes_max(fold.op))
+        return etlmon::pending_until_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon, low,
+                                                high, streams[fold.unseen].high);
+    return etlmon::pending_release_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon, low,
+                                              high, streams[fold.unseen].low);
+}
+
+etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
+                                                  const std::vector<Value>& streams) {
+    const std::size_t width = pending_.guards.size();
+    Readings guards(count * width, etlmon::kReadsTrue);
+    for (std::uint32_t p = 0; p < count; ++p)
+        for (std::size_t g = 0; g < width; ++g)
+            for (std::uint32_t part : pending_.guards[g]) guards[p * width + g] = min(guards[p * width + g], parts_[part][p]);
+    std::vector<Key> weak{etlmon::kTop};
+    std::vector<Key> strong{etlmon::kTop};
+    for (Slot slot : table_.weak) weak.push_back(streams[slot].low);
+    for (Slot slot : table_.strong) strong.push_back(streams[slot].high);
+    const std::size_t states = registers_.size();
+    Readings scratch(2 * states);
+    std::vector<Value> values(width + states);
+    return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states), guards.data(),
+                                   static_cast<std::uint32_t>(width), count, step >= pending_.horizon,
+                                   table_.transitions.data(), table_.ends.data(), table_.owed.data(), weak.data(),
+                                   strong.data(), scratch.data(), values.data());
+}
+
+}  // namespace etlc::plan
