@@ -1,6 +1,6 @@
 // The pipeline: .etl text -> tree -> model -> graph -> plan -> text.
-// Takes: a request. Gives: the text asked for, or findings in the sink. Keeps true: each stage is a function from value to
-// value; the pipeline stops after the first stage that found an error.
+// Takes: a request. Gives: the text asked for, or findings in the sink. Keeps true: each stage is a function from value
+// to value; the pipeline stops after the first stage that found an error.
 #pragma once
 
 #include <memory>

@@ -116,7 +116,9 @@ void add_common_options(CLI::App& app, Call& call) {
         ->capture_default_str();
     app.add_option("--max-work", call.request.limits.operations, "most operations of the temporal part a step")
         ->capture_default_str();
-    app.add_option("-W", call.warnings, "-Werror: warnings are errors")->type_name("error")->check(CLI::IsMember({"error"}));
+    app.add_option("-W", call.warnings, "-Werror: warnings are errors")
+        ->type_name("error")
+        ->check(CLI::IsMember({"error"}));
     app.add_option("--diagnostics", call.diagnostics, "how to print them")
         ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
@@ -128,8 +130,10 @@ bool names_namespace(std::string_view name) {
     for (std::size_t i = 0; i < name.size(); ++i) {
         const auto c = static_cast<unsigned char>(name[i]);
         const bool separator = starts ? false : name.substr(i, 2) == "::";
-        if (separator) ++i;
-        else if (starts ? std::isalpha(c) == 0 : std::isalnum(c) == 0 && c != '_') return false;
+        if (separator)
+            ++i;
+        else if (starts ? std::isalpha(c) == 0 : std::isalnum(c) == 0 && c != '_')
+            return false;
         starts = separator;
     }
     return !starts;
@@ -154,14 +158,17 @@ void add_compile_options(CLI::App& app, Call& call) {
                 return names_namespace(name) ? std::string() : fmt::format("'{}' is not the name of a namespace", name);
             },
             ""));
-    app.add_option("--depfile", call.depfile, "also write what the output depends on, for make and ninja")->type_name("FILE");
+    app.add_option("--depfile", call.depfile, "also write what the output depends on, for make and ninja")
+        ->type_name("FILE");
 }
 
 /// The call's own mistakes that CLI11 cannot see; empty where there are none.
 std::string mistake_in(const Call& call, const CLI::App& app) {
     const bool prints_stage = app.count("--emit") > 0;
-    if (call.check_only && (prints_stage || !call.output.empty())) return "--check goes neither with --emit nor with -o";
-    if (!call.check_only && !prints_stage && call.output.empty()) return "say where to write the header with -o, or --check";
+    if (call.check_only && (prints_stage || !call.output.empty()))
+        return "--check goes neither with --emit nor with -o";
+    if (!call.check_only && !prints_stage && call.output.empty())
+        return "say where to write the header with -o, or --check";
     if (!call.depfile.empty() && (call.output.empty() || call.output == "-")) return "--depfile needs -o FILE";
     return "";
 }
@@ -185,9 +192,10 @@ int parse_arguments(CLI::App& app, int argc, char** argv) {
 
 int compile_command(int argc, char** argv) {
     Call call;
-    CLI::App app("etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
-                 "Other commands: etlc run SPEC.etl --trace FILE",
-                 "etlc");
+    CLI::App app(
+        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
+        "Other commands: etlc run SPEC.etl --trace FILE",
+        "etlc");
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
     add_compile_options(app, call);
@@ -199,7 +207,8 @@ int compile_command(int argc, char** argv) {
 
 int run_command(int argc, char** argv) {
     Call call;
-    CLI::App app("Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.", "etlc run");
+    CLI::App app("Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.",
+                 "etlc run");
     add_common_options(app, call);
     app.add_option("--trace", call.run.trace, "the trace: .csv or .npz")->type_name("FILE")->required();
     app.add_option("-o,--output", call.run.output, "where to write the verdicts, as CSV; - is standard output")

@@ -29,7 +29,8 @@ std::string quoted(std::string_view text) {
 
 /// Streams whose value is one register: the register itself is the value of this step.
 bool is_register(StreamOp op) {
-    return op == StreamOp::running_max || op == StreamOp::running_min || op == StreamOp::since || op == StreamOp::trigger;
+    return op == StreamOp::running_max || op == StreamOp::running_min || op == StreamOp::since ||
+           op == StreamOp::trigger;
 }
 
 }  // namespace
@@ -111,10 +112,11 @@ std::string Context::place(source::Span span) const {
 std::string Context::place(plan::NodeId node) const {
     const std::string text = graph.text(node);
     const std::string words = place(graph[node].span);
-    const bool as_written = words.size() >= text.size() && words.compare(words.size() - text.size(), text.size(), text) == 0;
+    const bool as_written =
+        words.size() >= text.size() && words.compare(words.size() - text.size(), text.size(), text) == 0;
     if (as_written || graph[node].span == source::Span{}) return words;
     return quoted(text) == quoted(model.file.text(graph[node].span)) ? words
-                                                                    : fmt::format("{}  ({})", words, quoted(text));
+                                                                     : fmt::format("{}  ({})", words, quoted(text));
 }
 
 }  // namespace etlc::emit

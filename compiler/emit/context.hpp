@@ -61,7 +61,7 @@ struct Member {
     std::string type;
     std::string name;
     std::string comment;
-    std::string reset;       ///< a statement
+    std::string reset;  ///< a statement
 };
 std::vector<Member> members(const Context& context);
 std::vector<Member> stream_members(const Context& context);

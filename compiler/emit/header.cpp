@@ -58,7 +58,8 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
     const std::string minor = version.substr(dot + 1, version.find('.', dot + 1) - dot - 1);
     out.line();
     out.line("#if ETLMON_VERSION_MAJOR != {} || ETLMON_VERSION_MINOR != {}", major, minor);
-    out.line("#error \"made by etlc {0}.{1}: run etlc again, or use the etlmon {0}.{1} that it was made for\"", major, minor);
+    out.line("#error \"made by etlc {0}.{1}: run etlc again, or use the etlmon {0}.{1} that it was made for\"", major,
+             minor);
     out.line("#endif");
     out.line();
 }
@@ -93,9 +94,10 @@ void print_telemetry(Printer& out, const Context& context) {
     for (const auto& [p, member] : context.names.predicate_member) {
         const check::Predicate& predicate = context.model.predicates[p];
         const bool plain = predicate.plain_distance();
-        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member, plain ? ".delta" : "");
+        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member,
+                 plain ? ".delta" : "");
         out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}", predicate.name,
-                     float_literal(predicate.threshold.value));
+                 float_literal(predicate.threshold.value));
         if (plain) out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}", predicate.name, member);
     }
 }
@@ -127,8 +129,9 @@ void print_atoms(Printer& out, const Context& context) {
 void print_public_part(Printer& out, const Context& context, const std::vector<Member>& all) {
     const plan::Cost& cost = context.plan.cost;
     out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)", cost.state_bytes);
-    out.line("static constexpr uint32_t kOperations = {};  ///< of the temporal part in the worst step: min, max, compare",
-             cost.operations);
+    out.line(
+        "static constexpr uint32_t kOperations = {};  ///< of the temporal part in the worst step: min, max, compare",
+        cost.operations);
     out.line("static constexpr uint32_t kDistanceElements = {};  ///< target elements measured in a step",
              cost.distance_operations);
     out.line();
@@ -143,8 +146,12 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     out.line("Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }");
     out.line();
     if (context.plan.has_sliding) {
-        out.line("/// The trace has ended: each call reports one of the last positions of the sliding monitors, cut at the end;");
-        out.line("/// a monitor that has reported its last is undecided from then on. Prefix monitors repeat their verdict.");
+        out.line(
+            "/// The trace has ended: each call reports one of the last positions of the sliding monitors, cut at the "
+            "end;");
+        out.line(
+            "/// a monitor that has reported its last is undecided from then on. Prefix monitors repeat their "
+            "verdict.");
         out.open("Verdicts finish() noexcept {");
         out.line("if (finished_ != 0xffffffffu) ++finished_;");
         out.line("return judge(Atoms());");
@@ -152,7 +159,9 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
         out.line();
     }
     if (!context.names.predicate_member.empty()) {
-        out.line("/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its");
+        out.line(
+            "/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside "
+            "its");
         out.line("/// threshold, and the row of the nearest target.");
         print_telemetry(out, context);
         out.line();
@@ -180,7 +189,8 @@ void print_class(Printer& out, const Context& context) {
     print_judge(out, context);
     out.line();
     std::vector<std::pair<std::string, std::string>> lines;
-    for (const Member& member : all) lines.emplace_back(fmt::format("{} {};", member.type, member.name), member.comment);
+    for (const Member& member : all)
+        lines.emplace_back(fmt::format("{} {};", member.type, member.name), member.comment);
     print_aligned(out, lines);
     out.close("};");
     out.line("static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");

@@ -49,8 +49,9 @@ void print_numbers(Printer& out, const std::string& name, const std::string& siz
 void print_rows(Printer& out, const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
-    out.line("/// {}: {} of {} elements{}", target.origin, target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
-             target.dimension, plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+    out.line("/// {}: {} of {} elements{}", target.origin,
+             target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows), target.dimension,
+             plan::rows_as_given(distance) ? "" : ", scaled to length 1");
     print_numbers(out, context.names.target_array.at(d), fmt::format("{} * {}", target.rows, target.dimension),
                   plan::prepared_rows(context.model, distance));
 }

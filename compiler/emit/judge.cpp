@@ -38,7 +38,9 @@ void print_readings(Printer& out, const Context& context) {
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool reads_atoms = !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
-    out.line("/// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper");
+    out.line(
+        "/// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower "
+        "and upper");
     out.line("/// bound that no continuation leaves.");
     out.open(fmt::format("Verdicts judge({}const Atoms& now) noexcept {{", reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max;");

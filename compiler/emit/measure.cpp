@@ -103,8 +103,7 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
         return;
     }
     std::string elements;
-    for (Index i : distance.point)
-        elements += (elements.empty() ? "*" : ", *") + context.names.input_local.at(i);
+    for (Index i : distance.point) elements += (elements.empty() ? "*" : ", *") + context.names.input_local.at(i);
     print_wrapped(out, fmt::format("if ({}) {{", all_present(context, distance.point)));
     out.indent();
     print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
@@ -178,7 +177,8 @@ private:
         out_.line("// {}", context_.place(predicate.span));
         const std::string delta =
             predicate.plain_distance() ? plain(predicate, variable, kept) : general(predicate, variable, kept);
-        const std::string range = value_literal({etlmon::key_of(predicate.robustness.low), etlmon::key_of(predicate.robustness.high)});
+        const std::string range =
+            value_literal({etlmon::key_of(predicate.robustness.low), etlmon::key_of(predicate.robustness.high)});
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", context_.names.predicate_atom.at(p),
                                         predicate.upper_bound() ? "at_most" : "at_least", delta,
                                         kept ? fmt::format("threshold_{}()", predicate.name)

@@ -214,8 +214,8 @@ private:
     Names names_;
     Scope measure_{{"in", "now", "missing", "point", "Value", "Atoms"}};
     Scope atoms_{{"Value", "Key", "Reading"}};
-    Scope judge_{{"now", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue", "kFalse", "guards", "weak",
-                  "strong", "measure", "judge", "advance"}};
+    Scope judge_{{"now", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue", "kFalse", "guards",
+                  "weak", "strong", "measure", "judge", "advance"}};
     Scope members_;
     Scope constants_;
 };
@@ -233,7 +233,8 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
     std::string name;
     for (std::size_t i = 0; i < text.size();) {
         std::size_t end = i;
-        while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_')) ++end;
+        while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
+            ++end;
         if (end > i) {
             append_word(name, word_for_operator(without_trailing_underscore(std::string(text.substr(i, end - i)))));
         } else {

@@ -1,6 +1,6 @@
 // The names of generated code: all of them are made here.
-// Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from the spec, are legal C++,
-// differ from each other within their scope, and are the same on every run.
+// Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from the spec, are legal
+// C++, differ from each other within their scope, and are the same on every run.
 #pragma once
 
 #include <map>
@@ -23,39 +23,41 @@ private:
     std::set<std::string> taken_;
 };
 
-/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too long ones give `otherwise`.
+/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too long ones give
+/// `otherwise`.
 std::string identifier(std::string_view text, const std::string& otherwise);
 
 struct Names {
-    std::map<check::Index, std::string> input_local;      ///< in measure(): the pointer to this step's sample
-    std::map<check::Index, std::string> input_buffer;     ///< in measure(): widened elements, or a flag as a word
-    std::map<check::Index, std::string> distance_local;   ///< in measure(): what the kernel gave
-    std::map<check::Index, std::string> predicate_local;  ///< in measure(): delta of a predicate without telemetry
-    std::map<check::Index, std::string> predicate_atom;   ///< field of Atoms
-    std::map<check::Index, std::string> flag_atom;        ///< field of Atoms
-    std::map<check::Index, std::string> predicate_member; ///< telemetry, of named predicates
+    std::map<check::Index, std::string> input_local;       ///< in measure(): the pointer to this step's sample
+    std::map<check::Index, std::string> input_buffer;      ///< in measure(): widened elements, or a flag as a word
+    std::map<check::Index, std::string> distance_local;    ///< in measure(): what the kernel gave
+    std::map<check::Index, std::string> predicate_local;   ///< in measure(): delta of a predicate without telemetry
+    std::map<check::Index, std::string> predicate_atom;    ///< field of Atoms
+    std::map<check::Index, std::string> flag_atom;         ///< field of Atoms
+    std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
     std::map<check::Index, std::string> hold_member;
     std::map<plan::Slot, std::string> stream_local;
     std::map<plan::Slot, std::string> stream_member;
     std::map<std::uint32_t, std::string> reading_local;
     std::map<std::uint32_t, std::string> reading_member;
-    std::map<std::uint32_t, std::string> guard_member;    ///< of folds with two sides and of responses: their second value
-    std::map<std::uint32_t, std::string> recent_local;    ///< of responses that wait before their window
+    std::map<std::uint32_t, std::string>
+        guard_member;  ///< of folds with two sides and of responses: their second value
+    std::map<std::uint32_t, std::string> recent_local;                  ///< of responses that wait before their window
     std::map<std::uint32_t, std::vector<std::string>> register_member;  ///< of unrolled machines, per state
     std::map<std::uint32_t, std::vector<std::string>> register_next;    ///< their values of this step, as locals
     struct TableLocals {
         std::string guards, weak, strong;
     };
-    std::map<std::uint32_t, TableLocals> table_locals;    ///< of machines as tables
+    std::map<std::uint32_t, TableLocals> table_locals;  ///< of machines as tables
     struct PendingNames {
         std::vector<std::string> parts;   ///< locals: readings at the last positions
         std::vector<std::string> leaves;  ///< members: the last values; empty where the part is no leaf
         std::string count, position;      ///< locals
     };
     std::map<std::uint32_t, PendingNames> pending;
-    std::map<std::size_t, std::string> verdict_member;    ///< per monitor of the plan: a prefix monitor's last verdict
-    std::map<check::Index, std::string> target_array;     ///< per distance: its rows
-    std::map<check::Index, std::string> weight_array;     ///< per distance
+    std::map<std::size_t, std::string> verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
+    std::map<check::Index, std::string> target_array;   ///< per distance: its rows
+    std::map<check::Index, std::string> weight_array;   ///< per distance
 };
 
 Names make_names(const plan::Plan& plan, const ir::Graph& graph);

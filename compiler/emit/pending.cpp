@@ -31,8 +31,8 @@ void print_part(Printer& out, const Context& context, const Pending& pending, co
     }
     const bool max = ir::takes_max(part.op);
     const std::string left = part.operands.size() == 2 ? names.parts[part.operands[0]] : "nullptr";
-    print_wrapped(out, fmt::format("etlmon::{}({}, {}, {}, {}, {}, {}, {});", max ? "pending_until" : "pending_release", left,
-                                   names.parts[part.operands.back()], array, names.count, part.interval.low,
+    print_wrapped(out, fmt::format("etlmon::{}({}, {}, {}, {}, {}, {}, {});", max ? "pending_until" : "pending_release",
+                                   left, names.parts[part.operands.back()], array, names.count, part.interval.low,
                                    part.interval.high, max ? context.high(part.unseen) : context.low(part.unseen)));
 }
 
@@ -67,9 +67,10 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     out.close();
     print_machine_keys(out, context, r, pending.machine);
     const std::string tables = "tables::" + table_name(context, r);
-    print_wrapped(out, fmt::format("const Reading {} = {}.read({}, {}, step_ >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
-                                   context.names.reading_local.at(r), context.names.reading_member.at(r), locals.guards,
-                                   names.count, pending.horizon, tables, tables, tables, locals.weak, locals.strong));
+    print_wrapped(
+        out, fmt::format("const Reading {} = {}.read({}, {}, step_ >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
+                         context.names.reading_local.at(r), context.names.reading_member.at(r), locals.guards,
+                         names.count, pending.horizon, tables, tables, tables, locals.weak, locals.strong));
 }
 
 }  // namespace
@@ -96,8 +97,9 @@ std::vector<Member> pending_members(const Context& context, std::uint32_t r) {
     }
     const std::string& name = context.names.reading_member.at(r);
     if (!pending.is_fold) {
-        result.push_back({fmt::format("etlmon::PendingMachine<{}, {}>", pending.machine.states.size(), pending.guards.size()),
-                          name, text, name + ".reset();"});
+        result.push_back(
+            {fmt::format("etlmon::PendingMachine<{}, {}>", pending.machine.states.size(), pending.guards.size()), name,
+             text, name + ".reset();"});
         return result;
     }
     const bool max = ir::takes_max(pending.fold.op);

@@ -17,9 +17,7 @@ public:
         text_.push_back('\n');
     }
     template <class... Args>
-    void line(fmt::format_string<Args...> format, Args&&... args)
-        requires(sizeof...(Args) > 0)
-    {
+    void line(fmt::format_string<Args...> format, Args&&... args) requires(sizeof...(Args) > 0) {
         line(std::string_view(fmt::format(format, std::forward<Args>(args)...)));
     }
     /// A blank line, unless there is one or a block begins here.

@@ -20,8 +20,8 @@ std::string local(const Context& context, std::uint32_t r) {
 }
 
 /// A reading from its three parts: on one line where they fit.
-void print_parts(Printer& out, const Context& context, std::uint32_t r, const std::string& rho, const std::string& lower,
-                 const std::string& upper) {
+void print_parts(Printer& out, const Context& context, std::uint32_t r, const std::string& rho,
+                 const std::string& lower, const std::string& upper) {
     const std::string one_line = fmt::format("{} = {{{}, {}, {}}};", local(context, r), rho, lower, upper);
     if (out.column() + one_line.size() <= kLineWidth) return out.line(one_line);
     out.line("{} = {{", local(context, r));
@@ -68,13 +68,12 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string step = binary ? fmt::format("{}({}, {})", narrow, guard, right) : right;
     const std::string open = open_condition(fold.interval);
 
-    print_wrapped(out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open), best, widen, best,
-                                   step));
+    print_wrapped(out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open), best, widen,
+                                   best, step));
     if (binary) print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard, context.value(fold.left)));
 
     const std::string unseen_key = takes_max ? context.high(fold.unseen) : context.low(fold.unseen);
-    const std::string unseen =
-        binary ? widened(!takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
+    const std::string unseen = binary ? widened(!takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
     std::string bound = widened(takes_max, fmt::format("{}.{}", best, end), unseen);
     if (fold.interval.bounded()) bound = fmt::format("step_ < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
     const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
@@ -100,7 +99,9 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const char* best = response.of_always ? "max" : "min";
     const char* far_end = response.of_always ? "high" : "low";
     const std::string answer = context.value(response.answer);
-    const auto assign = [&](const std::string& target, const std::string& value) { return target + " = " + value + ";"; };
+    const auto assign = [&](const std::string& target, const std::string& value) {
+        return target + " = " + value + ";";
+    };
 
     print_wrapped(out, conditional(open_at(response.outer, response.inner.high),
                                    assign(settled, call(worst, {settled, context.value(response.settled)}))));
@@ -161,7 +162,8 @@ void print_registers(Printer& out, const Context& context, std::uint32_t r) {
         print_wrapped(out, fmt::format("{} = {};", target, terms.empty() ? "etlmon::kFalse" : call("max", terms)));
     }
     if (program.in_place) return;
-    for (const plan::Update& update : program.updates) out.line("{} = {};", registers[update.state], next[update.state]);
+    for (const plan::Update& update : program.updates)
+        out.line("{} = {};", registers[update.state], next[update.state]);
 }
 
 /// The max over states of min(register, key), states with the same key together.
@@ -332,7 +334,8 @@ std::vector<Member> reading_members(const Context& context) {
             continue;
         }
         const std::string text = context.graph.text(reading.node);
-        if (const auto registers = context.names.register_member.find(r); registers != context.names.register_member.end()) {
+        if (const auto registers = context.names.register_member.find(r);
+            registers != context.names.register_member.end()) {
             for (std::size_t q = 0; q < registers->second.size(); ++q) {
                 if (reading.machine.states[q].always_true) continue;
                 const std::string& name = registers->second[q];

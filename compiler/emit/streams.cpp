@@ -63,14 +63,16 @@ std::string statement(const Context& context, Slot slot) {
         }
         case StreamOp::delay: return fmt::format("{}{}.push({});", local, kept(), at(0));
         case StreamOp::shift:
-            return fmt::format("{}{}.push({});", local, kept(), guarded(context, stream, 0, value_literal(stream.value)));
+            return fmt::format("{}{}.push({});", local, kept(),
+                               guarded(context, stream, 0, value_literal(stream.value)));
         case StreamOp::running_max:
         case StreamOp::running_min:
             return fmt::format("{0} = {1}({0}, {2});", kept(), max ? "max" : "min", guarded(context, stream, 0, none));
         case StreamOp::since:
         case StreamOp::trigger:
             return fmt::format("{0} = {1}({2}, {3}({0}, {4}));", kept(), max ? "max" : "min",
-                               guarded(context, stream, 1, none), max ? "min" : "max", guarded(context, stream, 0, other));
+                               guarded(context, stream, 1, none), max ? "min" : "max",
+                               guarded(context, stream, 0, other));
         case StreamOp::window_max:
         case StreamOp::window_min:
             if (stream.length == 1) return fmt::format("{}{};", local, guarded(context, stream, 0, none));

@@ -19,7 +19,8 @@ void print_table(Printer& out, const std::string& prefix, const std::vector<Row>
     for (const Row& row : rows) {
         std::string line = prefix;
         for (std::size_t c = 0; c < row.size(); ++c)
-            line += c < first_number ? fmt::format("{:<{}}  ", row[c], widths[c]) : fmt::format("{:>{}}  ", row[c], widths[c]);
+            line += c < first_number ? fmt::format("{:<{}}  ", row[c], widths[c])
+                                     : fmt::format("{:>{}}  ", row[c], widths[c]);
         line.erase(line.find_last_not_of(' ') + 1);
         out.line(line);
     }
@@ -84,8 +85,12 @@ void print_summary(Printer& out, const Context& context) {
     out.line("//");
     print_tables(out, "//   ", context.plan);
     out.line("//");
-    out.line("// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and comparisons of");
-    out.line("// robustness keys in the worst step. distance elements: target elements that a step compares with its input.");
+    out.line(
+        "// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and "
+        "comparisons of");
+    out.line(
+        "// robustness keys in the worst step. distance elements: target elements that a step compares with its "
+        "input.");
 }
 
 std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options&) {

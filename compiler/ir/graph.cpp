@@ -107,19 +107,23 @@ NodeId Graph::combine(Op op, std::vector<NodeId> operands, Span span) {
     return intern({.op = op, .operands = std::move(flat), .span = span});
 }
 
-// The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it is false at the last step.
+// The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it is false at the last
+// step.
 NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
     const bool max = takes_max(op);
     const NodeId empty = constant(!max);
     if (operand == empty) return empty;
     if (interval.low == 0 && (interval.high == 0 || operand == constant(max))) return operand;
     const Node& inner = nodes_[operand];
-    if (inner.op == op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
+    if (inner.op ==
+        op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
         const std::uint32_t low = add_steps(interval.low, inner.interval.low);
         const std::uint32_t high = add_steps(interval.high, inner.interval.high);
-        // An unbounded O at the present never falls below what it has seen, which its bounds use: it stays around O[1,b].
+        // An unbounded O at the present never falls below what it has seen, which its bounds use: it stays around
+        // O[1,b].
         const bool remembers = interval == Interval{} && inner.interval.low > 0 && info(op).tense == Tense::past;
-        const bool exact = !remembers && low <= check::kMaxBound && (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
+        const bool exact = !remembers && low <= check::kMaxBound &&
+                           (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
         if (exact) return unary(op, {low, high}, inner.operands.front(), span);
     }
     return intern({.op = op, .interval = interval, .operands = {operand}, .span = span});

@@ -1,7 +1,8 @@
 // The formulas of all monitors as one hash-consed graph in negation normal form.
-// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of formulas is equality of ids.
-// Keeps true: operands have smaller ids; only predicates and flags are negated; && and || are flat, sorted and without
-// repeats; the laws applied on the way (see simplify.cpp) hold for min and max on every prefix, so p && !p stays.
+// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of formulas is equality of
+// ids. Keeps true: operands have smaller ids; only predicates and flags are negated; && and || are flat, sorted and
+// without repeats; the laws applied on the way (see simplify.cpp) hold for min and max on every prefix, so p && !p
+// stays.
 #pragma once
 
 #include <cstdint>
@@ -53,13 +54,13 @@ struct Interval {
 
 struct Node {
     Op op = Op::constant_true;
-    bool negated = false;          ///< predicate and flag only
-    Index index = 0;               ///< predicate: of the model's predicates; flag: of its inputs
-    Interval interval{};           ///< of temporal operators
+    bool negated = false;  ///< predicate and flag only
+    Index index = 0;       ///< predicate: of the model's predicates; flag: of its inputs
+    Interval interval{};   ///< of temporal operators
     std::vector<NodeId> operands;
-    bool has_future = false;       ///< a future operator in it, itself included
-    std::uint32_t horizon = 0;     ///< steps of future it needs; kUnbounded without end
-    Span span{};                   ///< where the spec first says it; not part of its identity
+    bool has_future = false;    ///< a future operator in it, itself included
+    std::uint32_t horizon = 0;  ///< steps of future it needs; kUnbounded without end
+    Span span{};                ///< where the spec first says it; not part of its identity
 
     bool same_as(const Node& other) const;
 };

@@ -96,7 +96,8 @@ private:
 Program lower(const check::Model& model) {
     Program program{Graph(model), {}};
     Lowering lowering(model, program.graph);
-    for (const check::Monitor& monitor : model.monitors) program.monitors.push_back(lowering.lower(monitor.formula, false));
+    for (const check::Monitor& monitor : model.monitors)
+        program.monitors.push_back(lowering.lower(monitor.formula, false));
     return program;
 }
 

@@ -82,8 +82,7 @@ std::string Graph::text(NodeId id) const {
     switch (row.arity) {
         case Arity::atom: return atom_text(*this, node);
         case Arity::many: return join(*this, node);
-        case Arity::unary:
-            return fmt::format("{} {}", operator_text(node), operand_text(*this, node.operands[0]));
+        case Arity::unary: return fmt::format("{} {}", operator_text(node), operand_text(*this, node.operands[0]));
         case Arity::binary: break;
     }
     const std::string left = operand_text(*this, node.operands[0]);

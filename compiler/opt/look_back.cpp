@@ -1,5 +1,5 @@
-// F (f && F[a,b] g) is F (g && O[a,b] f), and G (f || G[a,b] g) is G (g || H[a,b] f): whichever of two positions is asked
-// first, the pair is the same. The past is a window over one stream, where the future is a state per step of it.
+// F (f && F[a,b] g) is F (g && O[a,b] f), and G (f || G[a,b] g) is G (g || H[a,b] f): whichever of two positions is
+// asked first, the pair is the same. The past is a window over one stream, where the future is a state per step of it.
 // Only for bounded windows, and f without unbounded past, whose range of unseen values would depend on what is known.
 #include <algorithm>
 

@@ -1,6 +1,6 @@
-// G (f || (p U[0,b] q)) is G (f || F[0,b] q) && G (p || T), where T, min over j of max(f(j), q over [j, now]), says that no
-// f is waiting for its q: while one is, p must hold. Without f: G (p U[0,b] q) is G F[0,b] q && G (p || q). With a window
-// from a > 0 on, p must hold at every position: G (p U[a,b] q) is G p && G F[a,b] q. The dual likewise.
+// G (f || (p U[0,b] q)) is G (f || F[0,b] q) && G (p || T), where T, min over j of max(f(j), q over [j, now]), says
+// that no f is waiting for its q: while one is, p must hold. Without f: G (p U[0,b] q) is G F[0,b] q && G (p || q).
+// With a window from a > 0 on, p must hold at every position: G (p U[a,b] q) is G p && G F[a,b] q. The dual likewise.
 // The identities hold for truth values on every prefix, and so for min and max: both only compare.
 #include <algorithm>
 

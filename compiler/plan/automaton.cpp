@@ -59,8 +59,7 @@ private:
             case Op::eventually: return w.op == Op::eventually && w.interval.contains(s.interval);
             case Op::until:
                 return ((w.op == Op::until && same_left) || w.op == Op::eventually) && w.interval.contains(s.interval);
-            case Op::always:
-                return (w.op == Op::always || w.op == Op::release) && s.interval.contains(w.interval);
+            case Op::always: return (w.op == Op::always || w.op == Op::release) && s.interval.contains(w.interval);
             case Op::release: return w.op == Op::release && same_left && s.interval.contains(w.interval);
             default: return false;
         }
@@ -74,7 +73,8 @@ private:
 
     /// The first clause makes the second idle: whatever satisfies the second satisfies the first.
     bool absorbs(const Clause& kept, const Clause& dropped) const {
-        return std::includes(dropped.literals.begin(), dropped.literals.end(), kept.literals.begin(), kept.literals.end()) &&
+        return std::includes(dropped.literals.begin(), dropped.literals.end(), kept.literals.begin(),
+                             kept.literals.end()) &&
                all_implied(kept.next, dropped.next);
     }
 
@@ -96,7 +96,8 @@ private:
                 if (a.op != Op::always || b.op != Op::always || a.operands != b.operands) continue;
                 const auto touches = [](Interval x, Interval y) { return !x.bounded() || y.low <= x.high + 1; };
                 if (!touches(a.interval, b.interval) || !touches(b.interval, a.interval)) continue;
-                const Interval whole{std::min(a.interval.low, b.interval.low), std::max(a.interval.high, b.interval.high)};
+                const Interval whole{std::min(a.interval.low, b.interval.low),
+                                     std::max(a.interval.high, b.interval.high)};
                 const NodeId merged = graph_.keep(Op::always, whole, a.operands, a.span);
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(j));
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(i));
@@ -149,9 +150,11 @@ private:
         return {Clause{{id}, {}}};
     }
 
-    /// The window one step later, as an obligation for the next position. It keeps its operator even where the window is
-    /// [0,0], since at the end of the prefix F and U are false there and G and R are true.
-    Clauses later(const Node& node) { return next(graph_.keep(node.op, node.interval.earlier(), node.operands, node.span)); }
+    /// The window one step later, as an obligation for the next position. It keeps its operator even where the window
+    /// is [0,0], since at the end of the prefix F and U are false there and G and R are true.
+    Clauses later(const Node& node) {
+        return next(graph_.keep(node.op, node.interval.earlier(), node.operands, node.span));
+    }
 
     const Clauses& expand(NodeId id) {
         if (const auto known = expansions_.find(id); known != expansions_.end()) return known->second;

@@ -1,11 +1,13 @@
 // The general method for future formulas: a weighted automaton over (max, min).
-// Takes: a formula in negation normal form. Gives: states, each a set of obligations (temporal formulas that must hold from
-// the next position), and guarded transitions. Keeps true: with v'[T] = max over transitions S -> T of min(v[S], guard),
-// starting from v[initial] = +inf, the greatest v[S] over the states that owe nothing strongly is rho(f, 0, i) on every prefix.
+// Takes: a formula in negation normal form. Gives: states, each a set of obligations (temporal formulas that must hold
+// from the next position), and guarded transitions. Keeps true: with v'[T] = max over transitions S -> T of min(v[S],
+// guard), starting from v[initial] = +inf, the greatest v[S] over the states that owe nothing strongly is rho(f, 0, i)
+// on every prefix.
 //
-// A formula expands, at a position, into a disjunction of (literals now, obligations next): F f is "f now, or F f next",
-// G f is "f now, and G f next", U and R alike, windows count down. Sub-formulas without future are literals: they stream.
-// A clause that another makes idle goes: its literals and obligations imply the other's. p && !p stays: its value is -|p|.
+// A formula expands, at a position, into a disjunction of (literals now, obligations next): F f is "f now, or F f
+// next", G f is "f now, and G f next", U and R alike, windows count down. Sub-formulas without future are literals:
+// they stream. A clause that another makes idle goes: its literals and obligations imply the other's. p && !p stays:
+// its value is -|p|.
 #pragma once
 
 #include <cstdint>

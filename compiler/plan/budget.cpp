@@ -76,7 +76,8 @@ std::uint64_t pending_steps(const Pending& pending) {
     for (const Pending::Part& part : pending.parts) {
         const bool temporal = part.unseen != kNone;
         const std::uint64_t window = std::min(part.interval.high, pending.horizon) + std::uint64_t{1};
-        if (part.leaf == kNone) steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2 : part.operands.size() - 1;
+        if (part.leaf == kNone)
+            steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2 : part.operands.size() - 1;
     }
     if (pending.is_fold) return steps + 3;
     steps += 2 * pending.machine.automaton.transitions.size();
@@ -147,9 +148,7 @@ public:
         for (const Slot* slot : slots_of(copy)) stream(*slot);
     }
 
-    void monitor(const Monitor& monitor) {
-        monitor.sliding ? stream(monitor.stream) : reading(monitor.reading);
-    }
+    void monitor(const Monitor& monitor) { monitor.sliding ? stream(monitor.stream) : reading(monitor.reading); }
 
     Cost cost() const {
         const check::Model& model = *plan_.model;
@@ -201,7 +200,8 @@ std::size_t registers(const Machine& machine) {
 }
 
 bool unrolled(const Machine& machine) {
-    return machine.states.size() <= kMaxUnrolledStates && machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
+    return machine.states.size() <= kMaxUnrolledStates &&
+           machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
 }
 
 Cost cost_of(const Plan&, const Stream& stream) {

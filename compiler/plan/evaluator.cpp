@@ -82,7 +82,8 @@ const std::vector<etlmon::Verdict>& Evaluator::finish() {
 
 bool Evaluator::usable(const check::Input& input, const Sample& sample) const {
     if (!sample.present || sample.values.empty()) return false;
-    const bool finite = std::all_of(sample.values.begin(), sample.values.end(), [](float x) { return std::isfinite(x); });
+    const bool finite =
+        std::all_of(sample.values.begin(), sample.values.end(), [](float x) { return std::isfinite(x); });
     if (!finite) return false;
     if (input.type != check::InputType::scalar) return true;
     return input.range.low <= sample.values[0] && sample.values[0] <= input.range.high;
@@ -159,13 +160,17 @@ Value Evaluator::advance_window(const Stream& stream, StreamState& state) const 
         case StreamOp::window_min:
             return push<etlmon::Least<Value>>(state.values, state.cursor, n, operand(stream, 0, kTrue));
         case StreamOp::window_since:
-            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue)).value;
+            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue))
+                .value;
         case StreamOp::window_trigger:
-            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse)).value;
+            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse))
+                .value;
         case StreamOp::window_until:
-            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue)).value;
+            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue))
+                .value;
         default:
-            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse)).value;
+            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse))
+                .value;
     }
 }
 
@@ -188,7 +193,8 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
         }
         case StreamOp::delay: return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
         case StreamOp::shift:
-            return etlmon::delay_push(state.values.data(), state.cursor, stream.length, operand(stream, 0, stream.value));
+            return etlmon::delay_push(state.values.data(), state.cursor, stream.length,
+                                      operand(stream, 0, stream.value));
         case StreamOp::running_max: return state.values[0] = max(state.values[0], operand(stream, 0, kFalse));
         case StreamOp::running_min: return state.values[0] = min(state.values[0], operand(stream, 0, kTrue));
         case StreamOp::since:
@@ -228,7 +234,8 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
     switch (reading.kind) {
         case Reading::Kind::latch: state.registers.assign(1, kFalse); break;
         case Reading::Kind::fold:
-            state.registers = ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
+            state.registers =
+                ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
         case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
         case Reading::Kind::response: state.registers.assign(2, reading.response.of_always ? kTrue : kFalse); break;
@@ -289,7 +296,8 @@ etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) c
     return reading;
 }
 
-/// registers[0]: settled positions; registers[1]: pending ones. Below, `best` and `worst` are the min and max of an always.
+/// registers[0]: settled positions; registers[1]: pending ones. Below, `best` and `worst` are the min and max of an
+/// always.
 etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
     const bool always = response.of_always;
     const auto worst = [&](Value a, Value b) { return always ? min(a, b) : max(a, b); };
@@ -334,17 +342,19 @@ etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState&
     std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);
 
     const auto states = static_cast<std::uint32_t>(machine.states.size());
-    etlmon::machine_advance(state.registers.data(), state.next.data(), states, table.transitions.data(), table.ends.data(),
-                            state.guards.data());
+    etlmon::machine_advance(state.registers.data(), state.next.data(), states, table.transitions.data(),
+                            table.ends.data(), state.guards.data());
     std::swap(state.registers, state.next);
-    return etlmon::machine_read(state.registers.data(), states, table.owed.data(), state.weak.data(), state.strong.data());
+    return etlmon::machine_read(state.registers.data(), states, table.owed.data(), state.weak.data(),
+                                state.strong.data());
 }
 
 void Evaluator::judge() {
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
         const Monitor& monitor = plan_.monitors[m];
         if (monitor.sliding)
-            verdicts_[m] = exists(monitor.horizon) ? etlmon::sliding_verdict(streams_[monitor.stream]) : etlmon::Verdict{};
+            verdicts_[m] =
+                exists(monitor.horizon) ? etlmon::sliding_verdict(streams_[monitor.stream]) : etlmon::Verdict{};
         else if (finished_ == 0)
             verdicts_[m] = etlmon::prefix_verdict(readings_[monitor.reading]);
     }

@@ -1,6 +1,6 @@
 // The plan, executed: what `etlc run` and calibration step.
-// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the generated class gives, from
-// the same runtime code. Keeps true: constant memory, work per step independent of history.
+// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the generated class gives,
+// from the same runtime code. Keeps true: constant memory, work per step independent of history.
 #pragma once
 
 #include <cstdint>
@@ -26,7 +26,8 @@ public:
     /// One time step; `samples` by index of the model's inputs (those that no monitor depends on are not looked at).
     /// The verdicts are by index of plan.monitors and good until the next call.
     const std::vector<etlmon::Verdict>& step(const std::vector<Sample>& samples);
-    /// The trace has ended: sliding monitors report one of their last positions per call, prefix monitors their last verdict.
+    /// The trace has ended: sliding monitors report one of their last positions per call, prefix monitors their last
+    /// verdict.
     const std::vector<etlmon::Verdict>& finish();
 
     /// delta of the last step, by index of the model's predicates; NaN where it was unknown.
@@ -50,7 +51,7 @@ private:
         std::vector<Value> next;       ///< machine: the registers being made
         Table table;
         std::vector<Value> guards;
-        std::vector<Key> weak;         ///< this step's keys of the table's lists
+        std::vector<Key> weak;  ///< this step's keys of the table's lists
         std::vector<Key> strong;
         std::optional<PendingEvaluator> pending;
     };
@@ -77,23 +78,23 @@ private:
 
     const Plan& plan_;
     const check::Model& model_;
-    std::vector<std::vector<float>> points_;      ///< per distance: scratch for vectors of scalars
-    std::vector<std::vector<float>> prepared_;    ///< per target and distance: rows as the kernels want them
-    std::vector<const float*> inputs_;            ///< per input of the model: this step's values; null: missing
+    std::vector<std::vector<float>> points_;    ///< per distance: scratch for vectors of scalars
+    std::vector<std::vector<float>> prepared_;  ///< per target and distance: rows as the kernels want them
+    std::vector<const float*> inputs_;          ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<etlmon::Measured> distances_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
-    std::vector<Value> literals_;                 ///< per predicate
-    std::vector<Value> flags_;                    ///< per input
+    std::vector<Value> literals_;  ///< per predicate
+    std::vector<Value> flags_;     ///< per input
     std::vector<Value> streams_;
     std::vector<StreamState> stream_states_;
     std::vector<etlmon::Reading> readings_;
     std::vector<ReadingState> reading_states_;
     std::vector<etlmon::Verdict> verdicts_;
-    std::uint32_t steps_ = 0;                     ///< index of the current step, calls of finish() included; saturates
+    std::uint32_t steps_ = 0;  ///< index of the current step, calls of finish() included; saturates
     bool started_ = false;
-    std::uint32_t finished_ = 0;                  ///< calls of finish()
+    std::uint32_t finished_ = 0;  ///< calls of finish()
     std::uint32_t missing_steps_ = 0;
 };
 

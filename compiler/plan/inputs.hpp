@@ -19,6 +19,7 @@ struct Sample {
 };
 
 /// The sample, or nothing where a number is not of the input's type: `why` then says which and what was expected.
-std::optional<Sample> narrow(const check::Input& input, bool present, const std::vector<double>& numbers, std::string& why);
+std::optional<Sample> narrow(const check::Input& input, bool present, const std::vector<double>& numbers,
+                             std::string& why);
 
 }  // namespace etlc::plan

@@ -65,16 +65,17 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count, con
         etlmon::pending_release(left, right, out.data(), count, low, high, streams[part.unseen].low);
 }
 
-etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count, const std::vector<Value>& streams) {
+etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count,
+                                               const std::vector<Value>& streams) {
     const Fold& fold = pending_.fold;
     const etlmon::Reading* left = fold.left == kNone ? nullptr : parts_[fold.left].data();
     const etlmon::Reading* right = parts_[fold.right].data();
     const auto [low, high] = fold.interval;
     if (ir::takes_max(fold.op))
-        return etlmon::pending_until_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon, low,
-                                                high, streams[fold.unseen].high);
-    return etlmon::pending_release_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon, low,
-                                              high, streams[fold.unseen].low);
+        return etlmon::pending_until_from_start(registers_[0], registers_[1], left, right, count, step,
+                                                pending_.horizon, low, high, streams[fold.unseen].high);
+    return etlmon::pending_release_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon,
+                                              low, high, streams[fold.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
@@ -83,7 +84,8 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
     Readings guards(count * width, etlmon::kReadsTrue);
     for (std::uint32_t p = 0; p < count; ++p)
         for (std::size_t g = 0; g < width; ++g)
-            for (std::uint32_t part : pending_.guards[g]) guards[p * width + g] = min(guards[p * width + g], parts_[part][p]);
+            for (std::uint32_t part : pending_.guards[g])
+                guards[p * width + g] = min(guards[p * width + g], parts_[part][p]);
     std::vector<Key> weak{etlmon::kTop};
     std::vector<Key> strong{etlmon::kTop};
     for (Slot slot : table_.weak) weak.push_back(streams[slot].low);

@@ -34,7 +34,10 @@ public:
     /// False where a monitor is too large; the sink then says which part.
     bool add_monitor(Index index, diag::Sink& sink) {
         const check::Monitor& source = plan_.model->monitors[index];
-        Monitor monitor{.name = source.name, .sliding = source.sliding, .horizon = source.horizon, .index = index,
+        Monitor monitor{.name = source.name,
+                        .sliding = source.sliding,
+                        .horizon = source.horizon,
+                        .index = index,
                         .node = program_.monitors[index]};
         if (source.sliding) {
             plan_.has_sliding = true;
@@ -43,7 +46,8 @@ public:
         } else {
             const std::size_t known = readings_.oversize().size();
             const auto reading = readings_.of(program_.monitors[index]);
-            for (std::size_t i = known; i < readings_.oversize().size(); ++i) report(source, readings_.oversize()[i], sink);
+            for (std::size_t i = known; i < readings_.oversize().size(); ++i)
+                report(source, readings_.oversize()[i], sink);
             if (!reading) return false;
             monitor.reading = *reading;
         }
@@ -70,10 +74,13 @@ private:
     void report(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, diag::Sink& sink) const {
         const ir::Node& node = program_.graph[part.node];
         sink.report(diag::Code::formula_too_large, node.span,
-                    fmt::format("monitor '{}' needs a state machine larger than the limits for '{}': building it stopped "
-                                "at {} states and {} transitions",
-                                monitor.name, program_.graph.text(part.node), part.reached.states, part.reached.transitions))
-            .note("shorter windows or fewer nested operators make it smaller; --max-state and --max-code move the limits");
+                    fmt::format(
+                        "monitor '{}' needs a state machine larger than the limits for '{}': building it stopped "
+                        "at {} states and {} transitions",
+                        monitor.name, program_.graph.text(part.node), part.reached.states, part.reached.transitions))
+            .note(
+                "shorter windows or fewer nested operators make it smaller; --max-state and --max-code move the "
+                "limits");
     }
 
     /// Folding leaves streams behind that nothing reads.
@@ -151,9 +158,10 @@ bool exceeds(const Cost& cost, const Limits& limits) {
 void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
     if (!exceeds(plan.cost, limits)) return;
     const check::Model& model = *plan.model;
-    auto& error = sink.report(diag::Code::over_budget, model.monitors.front().span,
-                              fmt::format("the monitor class needs {}; the limits are {}, {} and {}", figures(plan.cost),
-                                          limits.state_bytes, limits.code_bytes, limits.operations));
+    auto& error =
+        sink.report(diag::Code::over_budget, model.monitors.front().span,
+                    fmt::format("the monitor class needs {}; the limits are {}, {} and {}", figures(plan.cost),
+                                limits.state_bytes, limits.code_bytes, limits.operations));
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         error.note(model.monitors[plan.monitors[m].index].span,
                    fmt::format("'{}' alone needs {}", plan.monitors[m].name, figures(plan.monitor_costs[m])));

@@ -28,35 +28,35 @@ using Slot = std::uint32_t;  ///< index of a stream
 // ---- streams: a robustness for one position after the other --------------------------------------------------------
 
 enum class StreamOp : std::uint8_t {
-    constant,        ///< `value`
-    predicate,       ///< of the model's predicates
-    flag,            ///< a bool input, by its index in the model
-    negation,        ///< of a predicate or flag
-    conjunction,     ///< min of the operands
-    disjunction,     ///< max of the operands
-    delay,           ///< the operand `length` steps ago: later by `length`, so that operands of different lag meet
-    shift,           ///< the operand `length` positions earlier; `value` where there is none
-    running_max,     ///< over all positions so far
+    constant,     ///< `value`
+    predicate,    ///< of the model's predicates
+    flag,         ///< a bool input, by its index in the model
+    negation,     ///< of a predicate or flag
+    conjunction,  ///< min of the operands
+    disjunction,  ///< max of the operands
+    delay,        ///< the operand `length` steps ago: later by `length`, so that operands of different lag meet
+    shift,        ///< the operand `length` positions earlier; `value` where there is none
+    running_max,  ///< over all positions so far
     running_min,
-    window_max,      ///< over the last `length` positions
+    window_max,  ///< over the last `length` positions
     window_min,
-    since,           ///< v = max(g, min(v, f))
-    trigger,         ///< v = min(g, max(v, f))
-    window_since,    ///< since, over the last `length` positions
+    since,         ///< v = max(g, min(v, f))
+    trigger,       ///< v = min(g, max(v, f))
+    window_since,  ///< since, over the last `length` positions
     window_trigger,
-    window_until,    ///< until, at the first of the last `length` positions
+    window_until,  ///< until, at the first of the last `length` positions
     window_release,
 };
 
 struct Stream {
     StreamOp op = StreamOp::constant;
     std::vector<Slot> operands;
-    Index index = 0;           ///< predicate or flag
-    std::uint32_t length = 0;  ///< of delays, shifts and windows
-    Value value{};             ///< constant; shift: where there is no earlier position
-    std::uint32_t lag = 0;     ///< after step i the stream tells about position i - lag
+    Index index = 0;                ///< predicate or flag
+    std::uint32_t length = 0;       ///< of delays, shifts and windows
+    Value value{};                  ///< constant; shift: where there is no earlier position
+    std::uint32_t lag = 0;          ///< after step i the stream tells about position i - lag
     std::uint32_t operand_lag = 0;  ///< and its operands about position i - operand_lag; a constant is of any lag
-    NodeId node = kNone;       ///< the formula it is, for comments; kNone for the values in between
+    NodeId node = kNone;            ///< the formula it is, for comments; kNone for the values in between
 };
 
 // ---- readings: what prefix monitors say about position 0 -----------------------------------------------------------
@@ -70,23 +70,24 @@ struct Latch {
 struct Fold {
     ir::Op op = ir::Op::eventually;
     ir::Interval interval;
-    Slot left = kNone;    ///< of U and R
+    Slot left = kNone;  ///< of U and R
     Slot right = 0;
-    Slot unseen = 0;      ///< lowest and highest unseen value of `right`
+    Slot unseen = 0;  ///< lowest and highest unseen value of `right`
 };
 
-/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. Positions whose window has passed are
-/// settled by the stream of the body, b steps late. For the others one recurrence does: pending = max(min(pending, f), g). It
-/// keeps the settled positions too, with a part of their window only, which is no better than what they were settled at.
+/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. Positions whose window has
+/// passed are settled by the stream of the body, b steps late. For the others one recurrence does: pending =
+/// max(min(pending, f), g). It keeps the settled positions too, with a part of their window only, which is no better
+/// than what they were settled at.
 struct Response {
-    bool of_always = true;        ///< else the dual
+    bool of_always = true;  ///< else the dual
     ir::Interval outer;
-    ir::Interval inner;           ///< bounded; from 0, or the outer one is [0, inf)
-    Slot settled = 0;             ///< the body, late by inner.high
-    Slot excuse = kNone;          ///< f, inner.low positions earlier; kNone: there is no f
-    Slot recent = kNone;          ///< f over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
-    Slot answer = 0;              ///< g
-    Slot unseen_answer = 0;       ///< lowest and highest unseen value of g
+    ir::Interval inner;   ///< bounded; from 0, or the outer one is [0, inf)
+    Slot settled = 0;     ///< the body, late by inner.high
+    Slot excuse = kNone;  ///< f, inner.low positions earlier; kNone: there is no f
+    Slot recent = kNone;  ///< f over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
+    Slot answer = 0;      ///< g
+    Slot unseen_answer = 0;  ///< lowest and highest unseen value of g
     Slot unseen_body = 0;
 
     /// Without an excuse, pending over the whole trace is the answer itself.
@@ -98,33 +99,33 @@ struct Response {
 /// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.
 struct Machine {
     struct State {
-        bool strong = false;        ///< owes an F or U
-        bool always_true = false;   ///< its register never leaves +inf and is not kept
-        Slot weak_unseen = kNone;   ///< lowest unseen value of what it owes weakly; kNone: owes nothing weakly
-        Slot strong_unseen = kNone; ///< highest unseen value of what it owes strongly
+        bool strong = false;         ///< owes an F or U
+        bool always_true = false;    ///< its register never leaves +inf and is not kept
+        Slot weak_unseen = kNone;    ///< lowest unseen value of what it owes weakly; kNone: owes nothing weakly
+        Slot strong_unseen = kNone;  ///< highest unseen value of what it owes strongly
     };
     Automaton automaton;
     std::vector<State> states;
     std::vector<std::vector<Slot>> guards;  ///< per guard of the automaton, its literals as streams
 };
 
-/// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled `horizon` steps late; at the
-/// positions since, they are evaluated anew at every step on the prefix as it ends now (etlmon/pending.hpp), and the
-/// registers, which stand where everything is settled, are carried over them.
+/// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled `horizon` steps late; at
+/// the positions since, they are evaluated anew at every step on the prefix as it ends now (etlmon/pending.hpp), and
+/// the registers, which stand where everything is settled, are carried over them.
 struct Pending {
     struct Part {
         NodeId node = kNone;
-        Slot leaf = kNone;                    ///< a formula without future, else:
+        Slot leaf = kNone;  ///< a formula without future, else:
         ir::Op op = ir::Op::conjunction;
         ir::Interval interval;
         std::vector<std::uint32_t> operands;  ///< parts
         Slot unseen = kNone;                  ///< of temporal operators: of the last operand
     };
-    std::vector<Part> parts;                  ///< operands first
+    std::vector<Part> parts;  ///< operands first
     std::uint32_t horizon = 0;
     bool is_fold = true;
-    Fold fold;                                ///< is_fold: left and right are parts
-    Machine machine;                          ///< else: its guards are in `guards`
+    Fold fold;                                       ///< is_fold: left and right are parts
+    Machine machine;                                 ///< else: its guards are in `guards`
     std::vector<std::vector<std::uint32_t>> guards;  ///< per guard of the automaton, parts
 };
 
@@ -158,15 +159,15 @@ struct Monitor {
 /// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
-    std::uint64_t constant_bytes = 0;  ///< targets, weights and transition tables
-    std::uint64_t code_bytes = 0;      ///< estimated, targets aside
-    std::uint64_t operations = 0;      ///< min, max and comparisons of the temporal part
+    std::uint64_t constant_bytes = 0;       ///< targets, weights and transition tables
+    std::uint64_t code_bytes = 0;           ///< estimated, targets aside
+    std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part
     std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
 };
 
 struct Plan {
     const check::Model* model = nullptr;
-    std::vector<Index> inputs;      ///< that some monitor depends on, in order of declaration
+    std::vector<Index> inputs;  ///< that some monitor depends on, in order of declaration
     std::vector<Index> targets;
     std::vector<Index> distances;
     std::vector<Index> predicates;
@@ -174,7 +175,7 @@ struct Plan {
     std::vector<Reading> readings;
     std::vector<Monitor> monitors;
     bool has_sliding = false;
-    bool counts_steps = false;      ///< some part needs the number of the step
+    bool counts_steps = false;  ///< some part needs the number of the step
     Cost cost;
     std::vector<Cost> monitor_costs;
 };

@@ -138,8 +138,8 @@ std::string print(const Plan& plan, const ir::Graph& graph) {
     }
     text += "monitors\n";
     for (const Monitor& monitor : plan.monitors) {
-        text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n", monitor.name, monitor.stream,
-                                              monitor.horizon)
+        text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n", monitor.name,
+                                              monitor.stream, monitor.horizon)
                                 : fmt::format("  {} = r{}\n", monitor.name, monitor.reading);
     }
     return text;

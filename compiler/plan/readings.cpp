@@ -9,15 +9,13 @@ using ir::Op;
 
 namespace {
 
-
 /// Machines up to this size are preferred to anything else.
 constexpr AutomatonLimits kSmallMachine{256, 2048};
 
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
 bool loops_freely(const Automaton& automaton, std::uint32_t state) {
-    return std::any_of(automaton.transitions.begin(), automaton.transitions.end(), [&](const Transition& t) {
-        return t.source == state && t.target == state && t.guard == 0;
-    });
+    return std::any_of(automaton.transitions.begin(), automaton.transitions.end(),
+                       [&](const Transition& t) { return t.source == state && t.target == state && t.guard == 0; });
 }
 
 }  // namespace
@@ -88,7 +86,8 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
         const Slot slot = streams_.of(excuse);
         result.excuse = streams_.shift(slot, inner.interval.low, 0, idle, kNone);
         if (inner.interval.low > 0)
-            result.recent = streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, slot, inner.interval.low);
+            result.recent =
+                streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, slot, inner.interval.low);
     }
     return result;
 }

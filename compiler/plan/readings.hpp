@@ -1,6 +1,7 @@
 // Prefix formulas as readings: the part of the plan that speaks about position 0.
-// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a latch, a fold, or the
-// automaton. Keeps true: equal readings stand once; a formula too large for the limits is reported, never approximated.
+// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a latch, a fold, or
+// the automaton. Keeps true: equal readings stand once; a formula too large for the limits is reported, never
+// approximated.
 #pragma once
 
 #include <map>
@@ -12,7 +13,8 @@ namespace etlc::plan {
 
 class ReadingBuilder {
 public:
-    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings, const AutomatonLimits& limits)
+    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
+                   const AutomatonLimits& limits)
         : graph_(graph), streams_(streams), readings_(readings), limits_(limits) {}
 
     /// A sub-formula whose automaton would exceed the limits.

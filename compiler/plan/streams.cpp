@@ -96,7 +96,11 @@ Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node
 Slot StreamBuilder::delayed(Slot slot, std::uint32_t steps) {
     const Stream stream = streams_[slot];
     if (steps == 0 || stream.op == StreamOp::constant) return slot;
-    return intern({.op = StreamOp::delay, .operands = {slot}, .length = steps, .lag = stream.lag + steps, .operand_lag = stream.lag});
+    return intern({.op = StreamOp::delay,
+                   .operands = {slot},
+                   .length = steps,
+                   .lag = stream.lag + steps,
+                   .operand_lag = stream.lag});
 }
 
 std::vector<Slot> StreamBuilder::align(const std::vector<NodeId>& nodes) {
@@ -175,7 +179,8 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
                        .operand_lag = lag,
                        .node = inner});
     else if (high > low)
-        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, lag, inner);
+        slot =
+            window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, lag, inner);
     if (low == 0) return slot;
     const Slot earlier = shift(slot, low, lag, max ? kFalse : kTrue, kNone);
     const StreamOp all = max ? StreamOp::window_min : StreamOp::window_max;
@@ -228,7 +233,8 @@ Slot StreamBuilder::unseen(NodeId id) {
         case Op::disjunction: {
             std::vector<Slot> parts;
             for (NodeId operand : node.operands) parts.push_back(unseen(operand));
-            slot = combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction, std::move(parts));
+            slot =
+                combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction, std::move(parts));
             break;
         }
         default: slot = unseen_temporal(node, id);
@@ -237,8 +243,8 @@ Slot StreamBuilder::unseen(NodeId id) {
     return slot;
 }
 
-/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H and the dual of S: the
-/// other way round. What is known of the operand stays in sight of a past operator.
+/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H and the dual of S:
+/// the other way round. What is known of the operand stays in sight of a past operator.
 Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const StreamOp narrow = max ? StreamOp::conjunction : StreamOp::disjunction;

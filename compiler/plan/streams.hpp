@@ -1,7 +1,7 @@
 // Formulas as streams: the part of the plan that runs at every step for every position.
-// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a formula without future
-// is known at once and a bounded future one as soon as its last sample is there.
-// Keeps true: equal streams stand once; operands stand before what uses them.
+// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a formula without
+// future is known at once and a bounded future one as soon as its last sample is there. Keeps true: equal streams stand
+// once; operands stand before what uses them.
 #pragma once
 
 #include <map>
@@ -40,8 +40,8 @@ private:
     Slot past_binary(const ir::Node& node, NodeId id);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
-    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag, std::uint32_t lag,
-                NodeId node);
+    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag,
+                std::uint32_t lag, NodeId node);
     Slot running(StreamOp op, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
@@ -50,7 +50,8 @@ private:
     std::vector<Stream>& streams_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t, std::uint32_t>;
+    using Identity =
+        std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };
 

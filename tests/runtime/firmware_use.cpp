@@ -18,20 +18,20 @@ const float kFull[kD * kD] = {1.0f};
 
 template <class Metric>
 etlmon::Measured all(const float* z) {
-  using namespace etlmon;
-  const Measured a = measure<Metric, Min, kK, kD>(z, kTargets), b = measure<Metric, Max, kK, kD>(z, kTargets);
-  const Measured c = measure<Metric, Mean, kK, kD>(z, kTargets), d = measure<Metric, Kth<3>, kK, kD>(z, kTargets);
-  return {smaller(add(a.delta, b.delta), greater(c.delta, root(absolute(d.delta)))), a.nearest};
+    using namespace etlmon;
+    const Measured a = measure<Metric, Min, kK, kD>(z, kTargets), b = measure<Metric, Max, kK, kD>(z, kTargets);
+    const Measured c = measure<Metric, Mean, kK, kD>(z, kTargets), d = measure<Metric, Kth<3>, kK, kD>(z, kTargets);
+    return {smaller(add(a.delta, b.delta), greater(c.delta, root(absolute(d.delta)))), a.nearest};
 }
 
 }  // namespace
 
 struct Inputs {
-  etlmon::Vector<float, kD> z;
-  etlmon::Vector<uint16_t, kD> half;
-  etlmon::Vector<int8_t, kD> small;
-  float x = etlmon::kMissing;
-  etlmon::Flag on;
+    etlmon::Vector<float, kD> z;
+    etlmon::Vector<uint16_t, kD> half;
+    etlmon::Vector<int8_t, kD> small;
+    float x = etlmon::kMissing;
+    etlmon::Flag on;
 };
 
 etlmon::Measured distances(const float* z, int which);
@@ -39,37 +39,28 @@ bool usable(const Inputs& in);
 void widen(const Inputs& in, float* to);
 
 etlmon::Measured distances(const float* z, int which) {
-  using namespace etlmon;
-  switch (which) {
-    case 0:
-      return all<L2>(z);
-    case 1:
-      return all<L2Sq>(z);
-    case 2:
-      return all<L1>(z);
-    case 3:
-      return all<Linf>(z);
-    case 4:
-      return all<Cosine>(z);
-    case 5:
-      return measure<Mahalanobis, Min, kK, kD>(z, kTargets, kFull);
-    case 6:
-      return measure<MahalanobisDiagonal, Mean, kK, kD>(z, kTargets, kDiagonal);
+    using namespace etlmon;
+    switch (which) {
+        case 0: return all<L2>(z);
+        case 1: return all<L2Sq>(z);
+        case 2: return all<L1>(z);
+        case 3: return all<Linf>(z);
+        case 4: return all<Cosine>(z);
+        case 5: return measure<Mahalanobis, Min, kK, kD>(z, kTargets, kFull);
+        case 6: return measure<MahalanobisDiagonal, Mean, kK, kD>(z, kTargets, kDiagonal);
 #if defined(WITH_ANGULAR)
-    case 7:
-      return all<Angular>(z);
+        case 7: return all<Angular>(z);
 #endif
-    default:
-      return {negate(divide(multiply(z[0], z[1]), subtract(z[0], z[1]))), 0};
-  }
+        default: return {negate(divide(multiply(z[0], z[1]), subtract(z[0], z[1]))), 0};
+    }
 }
 
 bool usable(const Inputs& in) {
-  return present(in.z) && present(in.half) && present(in.small) && etlmon::present_scalar(in.x, 0.0f, 1.0f) &&
-         present(in.on) && in.on.value();
+    return present(in.z) && present(in.half) && present(in.small) && etlmon::present_scalar(in.x, 0.0f, 1.0f) &&
+           present(in.on) && in.on.value();
 }
 
 void widen(const Inputs& in, float* to) {
-  etlmon::widen_f16(in.half.data(), to, kD);
-  etlmon::widen_i8(in.small.data(), 0.5f, to, kD);
+    etlmon::widen_f16(in.half.data(), to, kD);
+    etlmon::widen_i8(in.small.data(), 0.5f, to, kD);
 }

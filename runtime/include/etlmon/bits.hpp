@@ -42,6 +42,11 @@ constexpr uint32_t kSignBit = 0x80000000u;
 constexpr uint32_t kInfinityBits = 0x7f800000u;
 constexpr uint32_t kMissingBits = 0x7fc00000u;
 
+// Without optimisation GCC warns of reads in loops over whole vectors that a short row never enters.
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 11
+#pragma GCC diagnostic push
+#pragma GCC diagnostic ignored "-Wstringop-overread"
+#endif
 ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept {
 #if defined(__GNUC__)
   __builtin_memcpy(to, from, bytes);
@@ -49,6 +54,9 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
   memcpy(to, from, bytes);
 #endif
 }
+#if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 11
+#pragma GCC diagnostic pop
+#endif
 
 /// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler is kept from seeing
 /// where the bits come from: it must not conclude from the arithmetic what they cannot be.

@@ -35,8 +35,8 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
   }
 }
 
-/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper: any
-/// state, what it owes strongly is worth its highest unseen value.
+/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper:
+/// any state, what it owes strongly is worth its highest unseen value.
 template <class V>
 Reading machine_read(const V* now, uint32_t states, const Owed* owed, const Key* weak, const Key* strong) noexcept {
   Reading reading{kFalse, kBottom, kBottom};

@@ -1,9 +1,8 @@
 // Formulas at the last positions of a prefix, whose windows still reach past its end.
 // Takes: readings of the operands at n positions, oldest first, the last one being the present. Gives: readings of the
 // formula there, by the definitions of robustness and of the bounds, every window cut at the present.
-// Keeps true: position p tells exactly what rho and the bounds of the operator are there on this prefix; the work is at most
-// n times the window.
-// SPDX-License-Identifier: MIT
+// Keeps true: position p tells exactly what rho and the bounds of the operator are there on this prefix; the work is at
+// most n times the window. SPDX-License-Identifier: MIT
 #pragma once
 
 #include <stdint.h>
@@ -95,8 +94,9 @@ inline void pending_release(const Reading* f, const Reading* g, Reading* out, ui
   }
 }
 
-/// f U[low,high] g (f nullptr: F) from position 0, its operands settled `horizon` steps late. `n` readings of them, the last
-/// at `step`. best and held: the operator and its left side up to the last settled position; both are moved on by one.
+/// f U[low,high] g (f nullptr: F) from position 0, its operands settled `horizon` steps late. `n` readings of them, the
+/// last at `step`. best and held: the operator and its left side up to the last settled position; both are moved on by
+/// one.
 inline Reading pending_until_from_start(Value& best, Value& held, const Reading* f, const Reading* g, uint32_t n,
                                         uint32_t step, uint32_t horizon, uint32_t low, uint32_t high,
                                         Key unseen) noexcept {
@@ -141,7 +141,8 @@ inline Reading pending_release_from_start(Value& worst, Value& freed, const Read
 }
 
 /// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first one settled where
-/// `settles`; scratch: 2 * states readings; settled_guards: width + states values. Its registers are moved on by the settled row.
+/// `settles`; scratch: 2 * states readings; settled_guards: width + states values. Its registers are moved on by the
+/// settled row.
 inline Reading pending_machine(Value* registers, uint32_t states, const Reading* guards, uint32_t width, uint32_t n,
                                bool settles, const Transition* transitions, const uint32_t* ends, const Owed* owed,
                                const Key* weak, const Key* strong, Reading* scratch, Value* settled_guards) noexcept {

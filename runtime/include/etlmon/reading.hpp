@@ -1,7 +1,6 @@
 // What a prefix says about a formula at position 0, and how such answers combine.
-// Takes: the values that a monitor keeps. Gives: its verdict. Keeps true: min and max act on robustness and bounds alike,
-// since the bounds of && and || are the min and max of the operands' bounds.
-// SPDX-License-Identifier: MIT
+// Takes: the values that a monitor keeps. Gives: its verdict. Keeps true: min and max act on robustness and bounds
+// alike, since the bounds of && and || are the min and max of the operands' bounds. SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/value.hpp"
