@@ -27,6 +27,7 @@ struct Request {
     plan::Limits limits;
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
+    bool standalone = false;  ///< the header with the runtime in it
 };
 
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);

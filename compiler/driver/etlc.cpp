@@ -151,6 +151,7 @@ void add_compile_options(CLI::App& app, Call& call) {
     app.add_option("-o,--output", call.output, "where to write the result; - is standard output")->type_name("FILE");
     app.add_flag("--check", call.check_only, "diagnostics only");
     app.add_option("--emit", call.request.emit, emit_help())->check(CLI::IsMember(stages))->type_name("STAGE");
+    app.add_flag("--standalone", call.request.standalone, "paste the runtime in: one file to copy into firmware");
     app.add_option("--namespace", call.request.name_space, "of the generated code (default: the spec's name)")
         ->type_name("NAME")
         ->check(CLI::Validator(

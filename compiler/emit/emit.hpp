@@ -14,6 +14,7 @@ namespace etlc::emit {
 struct Options {
     std::string name_space;  ///< of the generated code; empty: the spec's name
     std::string version;     ///< of etlc, for the head of the file
+    bool standalone = false; ///< the runtime pasted in
 };
 
 struct Backend {

@@ -4,6 +4,7 @@
 
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
+#include "emit/standalone.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::emit {
@@ -225,7 +226,7 @@ std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options
     print_tables(out, context);
     print_class(out, context);
     out.line("}}  // namespace {}", context.name_space);
-    return out.take();
+    return options.standalone ? standalone(out.take()) : out.take();
 }
 
 }  // namespace etlc::emit

@@ -40,12 +40,11 @@ refused "no value after: THRESHOLDS" "etlc_add_monitor(robot SPEC specs/a.etl TH
 refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" "etlc_add_monitor(robot SPEC specs/b.etl)"
 refused "SPEC specs: there is no such file" "etlc_add_monitor(robot SPEC specs)"
 refused "THRESHOLDS t.json: there is no such file" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
-refused "VALUES is robustness or boolean, not bool" "etlc_add_monitor(robot SPEC specs/a.etl VALUES bool)"
 refused "NAMESPACE a-b is not a C++ namespace" "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 
-echo "etlc_add_monitor(robot SPEC specs/a.etl VALUES boolean NAMESPACE a::b STANDALONE)" >"$box/call.cmake"
+echo "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a::b STANDALONE)" >"$box/call.cmake"
 if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
     echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
 fi

@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: MIT
 // From the values of K rows to one: min, max, mean, the n-th smallest; and which row is nearest.
 // Takes: rows' values in ascending row order, each a float that is not negative (+inf where it overflowed). Gives: the
 // aggregate and the index of the nearest row, the lowest on ties. Keeps true: values are compared as the integers of
-// their bits, whose order is theirs; work per row is bounded (Kth: n moves), no heap. SPDX-License-Identifier: MIT
+// their bits, whose order is theirs; work per row is bounded (Kth: n moves), no heap.
 #pragma once
 
 #include "etlmon/bits.hpp"

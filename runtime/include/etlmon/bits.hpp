@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: MIT
 // Floats whose bits decide: what is NaN, infinite or missing, whatever -ffast-math lets a compiler assume.
 // Takes: floats from memory or fresh from arithmetic. Gives: exact answers from bits, one rounding per operation, sqrt.
 // Keeps true: no decision rests on a floating-point comparison that -ffinite-math-only may fold away. Functions that
 // may see a NaN or an infinity are inlined always or take references: clang marks float parameters of others "never
 // NaN" there. Builtins are called by name so that -ffreestanding, which makes memcpy a plain function, still gets
-// single moves. SPDX-License-Identifier: MIT
+// single moves.
 #pragma once
 
 #include <float.h>

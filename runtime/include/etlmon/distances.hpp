@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // The distances: what one element adds, and what the sum over all elements means.
 // Takes: an embedding z and a target g of D floats, all finite; a weight per element where the distance has weights.
 // Gives: per distance a struct that kernel.hpp runs over rows. Keeps true: the difference z - g comes first, always, so
@@ -7,7 +8,6 @@
 //   Point       what is computed once from z           combine(a, b)            of two lanes' sums
 //   row(sums)   a row's value >= 0, ordered as the     finish(value)            the distance
 //               distance is                            k...                     what it reads, where it is sound
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/pack.hpp"

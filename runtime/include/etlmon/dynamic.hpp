@@ -1,7 +1,8 @@
+// SPDX-License-Identifier: MIT
 // The kernel with sizes, distance and aggregation known at run time: for `etlc run`, calibration and tools on a host.
 // Takes: ids of distances.def, targets K x D row-major. Gives: what measure<Metric, Aggregation, K, D> gives, bit for
 // bit under equal flags, since both inline the same rows; the table of distances; the preparation of targets. Keeps
-// true: allocates nothing; not part of generated headers. SPDX-License-Identifier: MIT
+// true: allocates nothing; not part of generated headers.
 #pragma once
 
 #include <limits>

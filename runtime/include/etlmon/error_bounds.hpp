@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: MIT
 // How far a computed distance may be from the exact one: what calibration adds to a score, and what the tests hold
 // kernels to. Takes: a distance of distances.def, D, the exact distance. Gives: the largest |computed - exact| on any
 // compiler and CPU that adds in any order, fuses or not, and takes reciprocals and roots to 2 units in the last place.
 // Exact means: real arithmetic on the given float32 embedding, targets (before prepare()) and weights. Keeps true: no
 // bound is below the true error; D <= 2^20. In the comments u = FLT_EPSILON / 2 is one rounding. For hosts: double
-// arithmetic, not part of generated headers. SPDX-License-Identifier: MIT
+// arithmetic, not part of generated headers.
 #pragma once
 
 #include <math.h>

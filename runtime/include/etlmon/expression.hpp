@@ -1,10 +1,11 @@
+// SPDX-License-Identifier: MIT
 // Arithmetic of EXPR predicates: each operation rounded once to float32, and a NaN operand always gives NaN.
 // Takes: floats, any of them NaN (unknown) or infinite. Gives: + - * / abs sqrt min max as IEEE 754 says, in the order
 // written. Keeps true: no fusing, no reassociation, no assumption that a value is finite, whatever the flags: every
 // result passes through rounded(), which the optimiser cannot see into. So inf - inf and 0 / 0 are NaN, 1 / 0 is inf,
 // under -ffast-math too, and `etlc run` and generated code agree bit for bit; only sqrt may differ in the last place
 // under clang's -ffast-math. With -ffast-math at link time denormals are flushed to zero: that, and nothing else, still
-// changes results. SPDX-License-Identifier: MIT
+// changes results.
 #pragma once
 
 #include "etlmon/bits.hpp"

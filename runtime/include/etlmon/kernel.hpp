@@ -1,9 +1,10 @@
+// SPDX-License-Identifier: MIT
 // The distance kernel: one embedding against K targets, aggregated.
 // Takes: z of D finite floats; targets K x D row-major, prepared as distances.def says (unit rows for cosine and
 // angular); weights D x D or D where the distance has some. Gives: the aggregated distance and the nearest row. Keeps
 // true: the order of additions depends on D alone, not on K nor on what is known at compile time, so generated code and
 // `etlc run` agree bit for bit under equal flags; nothing is allocated; the time depends on the data only where a sum
-// of squares leaves [2^-80, FLT_MAX] and the scaled form (rescaled.hpp) decides. SPDX-License-Identifier: MIT
+// of squares leaves [2^-80, FLT_MAX] and the scaled form (rescaled.hpp) decides.
 #pragma once
 
 #include "etlmon/rescaled.hpp"

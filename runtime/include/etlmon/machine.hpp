@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // A weighted state machine over (max, min), as constant tables and one loop.
 // Takes: the guards' values at this step. Gives: the reading of the formula. Keeps true: next[t] is the max over the
 // transitions into t of min(now[source], guard), so that the max over the states that owe nothing is rho on the prefix;
 // the work is the same at every step: one min and one max a transition.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <stdint.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // What a window aggregates: the temporal operators as associative combinations of neighbouring segments of a stream.
 // Takes: elements of two segments, the older first. Gives: the element of their union, and that of the empty segment.
 // Keeps true: combine is associative and identity neutral. Segments may overlap (kMayOverlap): for a <= b <= c + 1 and
@@ -8,7 +9,6 @@
 // is Trigger over w elements {max(!p, q), q}, whose guard q settles all older positions at once. It needs no window
 // where the positions before are settled each by its own window: the unbounded z = max(min(z, !p), q) then differs
 // only in the terms of settled positions, and these are not below what they were settled at.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/value.hpp"

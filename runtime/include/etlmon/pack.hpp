@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 // Four floats that are added, multiplied and compared together.
 // Takes: pointers to floats of any alignment. Gives: Pack, load, magnitude, larger, rounded, lane<i>.
 // Keeps true: the same operations in the same order on every compiler; where the machine has 16-byte vectors of IEEE
 // floats (SSE2, AArch64) a Pack is one, written with the vector extension because g++ before 12 vectorises no loop at
-// -O2. SPDX-License-Identifier: MIT
+// -O2.
 #pragma once
 
 #include "etlmon/bits.hpp"

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 // Formulas at the last positions of a prefix, whose windows still reach past its end.
 // Takes: readings of the operands at n positions, oldest first, the last one being the present. Gives: readings of the
 // formula there, by the definitions of robustness and of the bounds, every window cut at the present.
 // Keeps true: position p tells exactly what rho and the bounds of the operator are there on this prefix; the work is at
-// most n times the window. SPDX-License-Identifier: MIT
+// most n times the window.
 #pragma once
 
 #include <stdint.h>

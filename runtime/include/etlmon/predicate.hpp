@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // From what was measured to robustness: the comparison of a predicate.
 // Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; the range of the robustness.
 // Gives: epsilon - delta or delta - epsilon as a value; the whole range where delta is unknown.
 // Keeps true: one float32 subtraction; a NaN is found by its bits and never becomes a verdict.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/bits.hpp"

@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny, or exactly zero.
 // Takes: what kernel.hpp takes. Gives: distances computed from differences scaled by a power of two, one row at a time.
 // Keeps true: a distance that float32 can represent does not overflow on the way, a tiny one does not vanish on the
 // way, and a vector of zeros has no direction. Kept out of line, one function for every K and D.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/aggregate.hpp"

@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // The value of one row of targets, or of two at once.
 // Takes: z, a row g and weights, D floats each (D x D weights for Mahalanobis). Gives: the sum over all elements that a
 // struct of distances.hpp describes. Keeps true: a fixed order of additions: element i goes to lane i mod 16 (i mod 4
 // on machines without vectors) in ascending order, then lanes are added in pairs; the order depends on D alone.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/distances.hpp"

@@ -1,7 +1,7 @@
+// SPDX-License-Identifier: MIT
 // Embeddings in narrow storage, widened to float32.
 // Takes: float16 as their IEEE bits, or int8 and a scale. Gives: n floats.
 // Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x integer, rounded once.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/bits.hpp"

@@ -1,8 +1,9 @@
+// SPDX-License-Identifier: MIT
 // Robustness inside a monitor: ordered integer keys, in pairs.
 // Takes: float32 robustness. Gives: values that min and max combine exactly, infinities included, under any compiler
 // flags. Keeps true: key order is float order; -0 and +0 share a key; a NaN never becomes a key (predicates turn it
 // into a range). A value type V of the temporal operators is any type with min, max (here or found by argument) and a
-// Lattice<V>. SPDX-License-Identifier: MIT
+// Lattice<V>.
 #pragma once
 
 #include <stdint.h>

@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // What a monitor answers after a step.
 // Takes: values and keys at the end of a step. Gives: floats and the status that follows from them.
 // Keeps true: the status is decided on integer keys, never on floats, so compiler flags cannot change it; a Verdict is
 // 16 bytes on every target, trivially copyable, and undecided unless made by one of the two functions below.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <stdint.h>

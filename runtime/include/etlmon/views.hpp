@@ -1,8 +1,8 @@
+// SPDX-License-Identifier: MIT
 // What a user hands to Monitor::step: views of embeddings, flags, and the test of what counts as present.
 // Takes: arrays whose size the compiler checks, bools, floats. Gives: Vector, Flag, kMissing, present(...).
 // Keeps true: a default-constructed input is missing; a sample with an element that is not finite, or a scalar outside
 // its range, counts as missing, decided by bits; a view owns nothing and must not outlive what it views.
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include "etlmon/bits.hpp"

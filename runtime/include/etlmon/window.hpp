@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: MIT
 // Sliding aggregates: the combination of the last N elements of a stream, for any monoid, in constant time a step.
 // Takes: one element a step. Gives: combine(oldest, ..., newest) over the last N; identity stands before the first.
 // Keeps true: at most window_operations(N) combinations in any step, whatever the history; state N + 2 elements.
@@ -9,7 +10,6 @@
 // block fills, one entry a step: it is complete when it is due. The oldest block is given up from its front at the pace
 // at which the newest grows, so these two share their slots, and the next entry to build mirrors the next slot to fill.
 // (Suffix and prefix tables: van Herk 1992, Gil and Werman 1993; half-blocks keep a step from building a whole table.)
-// SPDX-License-Identifier: MIT
 #pragma once
 
 #include <stdint.h>
