@@ -5,7 +5,7 @@
 #   SPEC        the .etl file
 #   THRESHOLDS  the thresholds file (default: SPEC.thresholds.json beside the spec, where it exists)
 #   NAMESPACE   of the generated code (default: the name after `spec`)
-#   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon
+#   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon. No source includes both kinds.
 # Relative paths are relative to the current source directory. The header lies in the build folder and is made anew when the spec,
 # a file that the spec loads, the thresholds or etlc itself change. Of a library, the header and the runtime are public.
 # Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for the others).

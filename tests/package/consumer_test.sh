@@ -22,6 +22,8 @@ cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
     { cat "$box/log"; fail "the consumer does not configure"; }
 compile
 expect "$("$box/build/robot")" "reached 0 limit 0.5"
+"$box/build/alone" || fail "the standalone monitor"
+if grep 'include.*etlmon' "$box/build/etlc/alone/guard.hpp"; then fail "a standalone header includes the runtime"; fi
 
 reach=$box/build/etlc/robot/reach.hpp guard=$box/build/etlc/robot/guard.hpp
 if grep -F "$box" "$reach"; then fail "the header names a folder of the machine that made it"; fi
