@@ -36,7 +36,8 @@ std::optional<std::string> emit(const source::File& file, const Request& request
     if (request.emit == "plan") return plan::print(compiled->plan, compiled->program->graph);
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
-            return backend.emit(compiled->plan, compiled->program->graph, {request.name_space, kVersion, request.standalone});
+            return backend.emit(compiled->plan, compiled->program->graph,
+                                {request.name_space, kVersion, request.standalone});
     return std::nullopt;
 }
 

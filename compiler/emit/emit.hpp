@@ -12,9 +12,9 @@
 namespace etlc::emit {
 
 struct Options {
-    std::string name_space;  ///< of the generated code; empty: the spec's name
-    std::string version;     ///< of etlc, for the head of the file
-    bool standalone = false; ///< the runtime pasted in
+    std::string name_space;   ///< of the generated code; empty: the spec's name
+    std::string version;      ///< of etlc, for the head of the file
+    bool standalone = false;  ///< the runtime pasted in
 };
 
 struct Backend {
