@@ -6,6 +6,10 @@
 #include "targets.hpp"
 
 namespace demo {
+
+const std::array<float, 3> kThresholds{dubins::Monitor::threshold_at_a(), dubins::Monitor::threshold_at_b(),
+                                       dubins::Monitor::threshold_near_c()};
+
 namespace {
 
 Claim claim(const etlmon::Verdict& verdict) {

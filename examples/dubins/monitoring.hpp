@@ -16,7 +16,7 @@ namespace demo {
 
 inline constexpr std::array<std::string_view, 3> kPredicates{"at_a", "at_b", "near_c"};
 inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid", "sequential"};
-inline constexpr std::array<float, 3> kThresholds{0.243F, 0.223F, 0.732F};  ///< the literals of dubins.etl
+extern const std::array<float, 3> kThresholds;  ///< per predicate, from the generated class
 
 struct Claim {
     bool satisfied = false;
