@@ -100,7 +100,7 @@ private:
             const plan::Stream& stream = plan_.streams[slot];
             const std::string name = stream_name(stream);
             names_.stream_local[slot] = judge_.claim(name);
-            if (plan::cost_of(plan_, stream).state_bytes > 0) names_.stream_member[slot] = member(members_, name);
+            if (plan::cost_of(stream).state_bytes > 0) names_.stream_member[slot] = member(members_, name);
         }
     }
 
@@ -126,7 +126,7 @@ private:
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;
             names_.reading_local[r] = judge_.claim(name);
-            if (plan::cost_of(plan_, plan_.readings[r]).state_bytes > 0) name_registers(r, name);
+            if (plan::cost_of(plan_.readings[r]).state_bytes > 0) name_registers(r, name);
         }
     }
 

@@ -102,7 +102,7 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {
-        const plan::Cost cost = plan::cost_of(plan, reading);
+        const plan::Cost cost = plan::cost_of(reading);
         std::string as = "fold";
         if (reading.kind == plan::Reading::Kind::latch) as = "latch";
         if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
@@ -119,7 +119,7 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
                         number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {
-        const plan::Cost cost = plan::cost_of(plan, stream);
+        const plan::Cost cost = plan::cost_of(stream);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
         rows.push_back({stream.node == plan::kNone ? "(in between)" : shortened(graph.text(stream.node)), "stream",
                         number(cost.state_bytes), number(cost.code_bytes), number(cost.operations)});

@@ -153,8 +153,8 @@ public:
     Cost cost() const {
         const check::Model& model = *plan_.model;
         Cost sum;
-        for (Slot slot : streams_) sum = sum + cost_of(plan_, plan_.streams[slot]);
-        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_, plan_.readings[index]);
+        for (Slot slot : streams_) sum = sum + cost_of(plan_.streams[slot]);
+        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_.readings[index]);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
         for (Index d : distances_) sum = sum + distance_cost(model, model.distances[d]);
         for (Index t : targets_) sum.constant_bytes += model.targets[t].values.size() * sizeof(float);
@@ -204,7 +204,7 @@ bool unrolled(const Machine& machine) {
            machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
 }
 
-Cost cost_of(const Plan&, const Stream& stream) {
+Cost cost_of(const Stream& stream) {
     const std::size_t operands = stream.operands.size();
     switch (stream.op) {
         case StreamOp::constant:
@@ -229,7 +229,7 @@ Cost cost_of(const Plan&, const Stream& stream) {
     return {};
 }
 
-Cost cost_of(const Plan&, const Reading& reading) {
+Cost cost_of(const Reading& reading) {
     switch (reading.kind) {
         case Reading::Kind::latch: return values(1, 0);
         case Reading::Kind::fold: return fold_cost(reading.fold);

@@ -13,8 +13,8 @@ inline constexpr std::size_t kMaxUnrolledStates = 32;
 inline constexpr std::size_t kMaxUnrolledTransitions = 160;
 bool unrolled(const Machine& machine);
 
-Cost cost_of(const Plan& plan, const Stream& stream);
-Cost cost_of(const Plan& plan, const Reading& reading);
+Cost cost_of(const Stream& stream);
+Cost cost_of(const Reading& reading);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
 

@@ -7,8 +7,12 @@
 #include <vector>
 
 #include "check/model.hpp"
+#include "etlmon/dynamic.hpp"
 
 namespace etlc::plan {
+
+/// The row of etlmon/distances.def.
+etlmon::MetricId metric_id(const check::Distance& distance);
 
 /// K x D float32, row-major: of length 1 for cosine and angular, else as given.
 std::vector<float> prepared_rows(const check::Model& model, const check::Distance& distance);
