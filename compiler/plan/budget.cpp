@@ -79,8 +79,8 @@ std::uint64_t pending_steps(const Pending& pending) {
         if (part.leaf == kNone)
             steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2 : part.operands.size() - 1;
     }
-    if (pending.is_fold) return steps + 3;
-    steps += 2 * pending.machine.automaton.transitions.size();
+    if (pending.is_fold) return steps + 4;
+    steps += 2 * pending.machine.states.size() + 2 * pending.machine.automaton.transitions.size();
     for (const auto& guard : pending.guards) steps += guard.size();
     return steps;
 }
@@ -101,9 +101,9 @@ Cost pending_cost(const Pending& pending) {
     return cost;
 }
 
-/// Updates and, for the readings, two comparisons of values a state.
+/// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of values.
 Cost machine_cost(const Machine& machine) {
-    const std::size_t read = 2 * machine.states.size();
+    const std::size_t read = 3 * machine.states.size();
     if (unrolled(machine)) return values(registers(machine), operations(make_register_program(machine)) + read);
     std::uint64_t combined = read + 2 * machine.automaton.transitions.size();
     for (const auto& guard : machine.guards) combined += guard.empty() ? 0 : guard.size() - 1;
