@@ -47,6 +47,7 @@ public:
     diag::Result<std::vector<Slot>> slots(const std::vector<Channel>& channels) const {
         std::vector<Slot> result;
         for (std::size_t c = 0; c < channels.size(); ++c) {
+            if (channels[c].optional && !columns_.contains(column_name(channels[c], 0))) continue;
             for (std::size_t e = 0; e < channels[c].width; ++e) {
                 const std::string name = column_name(channels[c], e);
                 const auto found = columns_.find(name);
@@ -100,7 +101,12 @@ class CsvTrace final : public Trace {
 public:
     CsvTrace(std::unique_ptr<CsvReader> rows, std::vector<Channel> channels, std::vector<Slot> slots,
              std::size_t columns)
-        : rows_(std::move(rows)), channels_(std::move(channels)), slots_(std::move(slots)), columns_(columns) {}
+        : rows_(std::move(rows)), channels_(std::move(channels)), slots_(std::move(slots)), columns_(columns) {
+        has_.resize(channels_.size());
+        for (const Slot& slot : slots_) has_[slot.channel] = true;
+    }
+
+    bool has(std::size_t channel) const override { return has_[channel]; }
 
     diag::Result<bool> next(Sample& sample) override {
         const auto more = rows_->next();
@@ -112,7 +118,7 @@ public:
                                        rows_->cells() == 1 ? "" : "s", columns_),
                            rows_->row_line(), 1};
         sample.values.resize(channels_.size());
-        sample.present.assign(channels_.size(), true);
+        sample.present = has_;
         for (std::size_t c = 0; c < channels_.size(); ++c) sample.values[c].resize(channels_[c].width);
         for (const Slot& slot : slots_)
             if (auto failure = read_cell(slot, sample)) return *failure;
@@ -144,6 +150,7 @@ private:
     std::vector<Channel> channels_;
     std::vector<Slot> slots_;
     std::size_t columns_;
+    std::vector<bool> has_;
 };
 
 }  // namespace

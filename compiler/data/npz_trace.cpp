@@ -1,5 +1,6 @@
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -22,7 +23,7 @@ using Kind = Channel::Kind;
 struct Feed {
     Channel channel;
     NpyHeader header;
-    std::unique_ptr<Rows> rows;
+    std::unique_ptr<Rows> rows;  ///< null: an optional channel that the archive lacks
 };
 
 Failure of_channel(const Failure& failure, const Channel& channel) {
@@ -48,6 +49,9 @@ std::optional<Failure> check_shape(const NpyHeader& header, const Channel& chann
 diag::Result<Feed> open_feed(const ArchivePlace& place, const Channel& channel) {
     const auto archive = Archive::open(place);
     if (!archive) return of_trace(archive.failure());
+    const auto& keys = archive->keys();
+    if (channel.optional && std::find(keys.begin(), keys.end(), channel.name) == keys.end())
+        return Feed{channel, {}, nullptr};
     auto member = archive->member(channel.name);
     if (!member) return of_trace(member.failure());
     auto header = read_npy_header(**member);
@@ -61,15 +65,21 @@ diag::Result<Feed> open_feed(const ArchivePlace& place, const Channel& channel) 
 
 class NpzTrace final : public Trace {
 public:
-    explicit NpzTrace(std::vector<Feed> feeds) : feeds_(std::move(feeds)), length_(feeds_.front().header.shape[0]) {}
+    NpzTrace(std::vector<Feed> feeds, std::uint64_t length) : feeds_(std::move(feeds)), length_(length) {}
 
     std::uint64_t length() const override { return length_; }
+    bool has(std::size_t channel) const override { return feeds_[channel].rows != nullptr; }
 
     diag::Result<bool> next(Sample& sample) override {
         if (step_ == length_) return false;
         sample.values.resize(feeds_.size());
         sample.present.assign(feeds_.size(), true);
         for (std::size_t c = 0; c < feeds_.size(); ++c) {
+            if (!has(c)) {
+                sample.present[c] = false;
+                sample.values[c].assign(feeds_[c].channel.width, std::numeric_limits<double>::quiet_NaN());
+                continue;
+            }
             const auto row = feeds_[c].rows->next();
             if (!row) return of_channel(row.failure(), feeds_[c].channel);
             if (auto failure = copy(*row, feeds_[c].channel, sample.values[c])) return *failure;
@@ -115,22 +125,26 @@ diag::Failure of_trace(Failure failure) {
 }
 
 diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place, const std::vector<Channel>& channels) {
-    if (channels.empty())
-        return Failure{Code::trace_shape,
-                       "the spec reads no input, so the arrays do not tell how many steps there are"};
     std::vector<Feed> feeds;
+    const Feed* first = nullptr;  // of those that are there
+    feeds.reserve(channels.size());
     for (const Channel& channel : channels) {
         auto feed = open_feed(place, channel);
         if (!feed) return feed.failure();
         feeds.push_back(std::move(*feed));
-        const auto& first = feeds.front();
-        const auto& last = feeds.back();
-        if (last.header.shape[0] != first.header.shape[0])
+        const Feed& last = feeds.back();
+        if (last.rows == nullptr) continue;
+        if (first == nullptr) first = &last;
+        if (last.header.shape[0] != first->header.shape[0])
             return Failure{Code::trace_shape, fmt::format("arrays differ in length: {} has {} steps, {} has {}",
-                                                          in_quotes(first.channel.name), first.header.shape[0],
+                                                          in_quotes(first->channel.name), first->header.shape[0],
                                                           in_quotes(channel.name), last.header.shape[0])};
     }
-    return std::unique_ptr<Trace>(std::make_unique<NpzTrace>(std::move(feeds)));
+    if (first == nullptr)
+        return Failure{Code::trace_shape,
+                       "the spec reads no input, so the arrays do not tell how many steps there are"};
+    const std::uint64_t length = first->header.shape[0];
+    return std::unique_ptr<Trace>(std::make_unique<NpzTrace>(std::move(feeds), length));
 }
 
 }  // namespace etlc::data

@@ -20,6 +20,7 @@ struct Channel {
     std::string name;
     Kind kind = Kind::scalar;
     std::uint32_t width = 1;
+    bool optional = false;  ///< where the file lacks it, it is missing at every step, and `Trace::has` says so
 };
 
 /// One step of all channels. Values keep the file's precision; narrowing them is the reader's user's business.
@@ -35,11 +36,14 @@ public:
     virtual diag::Result<bool> next(Sample& sample) = 0;
     /// Number of steps where the file tells it beforehand, else 0: for progress.
     virtual std::uint64_t length() const { return 0; }
+    /// Whether the file has this channel; false for optional ones only.
+    virtual bool has(std::size_t channel) const = 0;
 };
 
-/// Opens a trace. Every channel must be there; extra columns and arrays are ignored, but not elements of a vector
-/// beyond its width. Shapes in .npz: T or T x 1 for scalars and bools, T x D for vectors (T too where D is 1).
-/// Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file` (data/file.hpp) adds it.
+/// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
+/// elements of a vector beyond its width. Shapes in .npz: T or T x 1 for scalars and bools, T x D for vectors (T too
+/// where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`
+/// (data/file.hpp) adds it.
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);
 
 }  // namespace etlc::data

@@ -36,6 +36,11 @@ public:
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
     std::uint32_t missing_steps() const { return missing_steps_; }
 
+    /// What the predicates of the last step were computed from: an input's values after `hold`, null where it is
+    /// missing, and a distance with its nearest row, by index in the model.
+    const float* input(Index input) const { return inputs_[input]; }
+    etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+
 private:
     struct Held {
         std::vector<float> values;  ///< empty: nothing to hold

@@ -22,6 +22,27 @@ AutomatonLimits automaton_limits(const Limits& limits) {
     return result;
 }
 
+void collect_distances(const check::Expr& e, std::set<Index>& distances) {
+    if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
+    for (const check::Expr& argument : e.arguments) collect_distances(argument, distances);
+}
+
+/// What is read and measured for these predicates and these inputs.
+void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
+    const check::Model& model = *plan.model;
+    std::set<Index> distances;
+    for (Index p : predicates) {
+        inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
+        collect_distances(model.predicates[p].expression, distances);
+    }
+    std::set<Index> targets;
+    for (Index d : distances) targets.insert(model.distances[d].target);
+    plan.inputs.assign(inputs.begin(), inputs.end());
+    plan.predicates.assign(predicates.begin(), predicates.end());
+    plan.distances.assign(distances.begin(), distances.end());
+    plan.targets.assign(targets.begin(), targets.end());
+}
+
 class Planning {
 public:
     Planning(ir::Program& program, const Limits& limits)
@@ -114,29 +135,13 @@ private:
     }
 
     void collect_inputs() {
-        const check::Model& model = *plan_.model;
-        std::set<Index> inputs;
+        std::set<Index> flags;
         std::set<Index> predicates;
         for (const Stream& stream : plan_.streams) {
-            if (stream.op == StreamOp::flag) inputs.insert(stream.index);
+            if (stream.op == StreamOp::flag) flags.insert(stream.index);
             if (stream.op == StreamOp::predicate) predicates.insert(stream.index);
         }
-        std::set<Index> distances;
-        for (Index p : predicates) {
-            inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
-            collect_distances(model.predicates[p].expression, distances);
-        }
-        std::set<Index> targets;
-        for (Index d : distances) targets.insert(model.distances[d].target);
-        plan_.inputs.assign(inputs.begin(), inputs.end());
-        plan_.predicates.assign(predicates.begin(), predicates.end());
-        plan_.distances.assign(distances.begin(), distances.end());
-        plan_.targets.assign(targets.begin(), targets.end());
-    }
-
-    static void collect_distances(const check::Expr& e, std::set<Index>& distances) {
-        if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
-        for (const check::Expr& argument : e.arguments) collect_distances(argument, distances);
+        need(plan_, std::move(flags), predicates);
     }
 
     ir::Program& program_;
@@ -179,6 +184,13 @@ std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink&
     check_budget(result, limits, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
+}
+
+Plan measuring(const check::Model& model, const std::vector<Index>& predicates) {
+    Plan plan;
+    plan.model = &model;
+    need(plan, {}, {predicates.begin(), predicates.end()});
+    return plan;
 }
 
 }  // namespace etlc::plan

@@ -189,6 +189,9 @@ struct Limits {
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
 std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink);
 
+/// A plan without monitors: the evaluator then only measures these predicates, as it does for monitors that use them.
+Plan measuring(const check::Model& model, const std::vector<Index>& predicates);
+
 /// The plan as text: `--emit plan`.
 std::string print(const Plan& plan, const ir::Graph& graph);
 

@@ -65,6 +65,23 @@ struct Sound {
     std::vector<std::string> steps;
 };
 
+TEST(CsvTrace, AnOptionalColumnMayBeAbsent) {
+    const std::vector<Channel> channels{{"truth.at_a", Channel::Kind::boolean, 1, true},
+                                        {"grip", Channel::Kind::scalar, 1},
+                                        {"v", Channel::Kind::vector, 2, true}};
+    const std::string lacking = "grip\n1\n2\n";
+    EXPECT_EQ(read(lacking, channels).steps, (std::vector<std::string>{"-|1|-", "-|2|-"}));
+    EXPECT_EQ(read("grip,truth.at_a\n1,0\n2,\n", channels).steps, (std::vector<std::string>{"0|1|-", "-|2|-"}));
+    auto trace = open_csv_trace(from_memory(lacking), channels);
+    ASSERT_TRUE(trace);
+    EXPECT_FALSE((*trace)->has(0));
+    EXPECT_TRUE((*trace)->has(1));
+    // Half a vector is not an absent one.
+    const auto half = open_csv_trace(from_memory("grip,v[0]\n"), channels);
+    ASSERT_FALSE(half);
+    EXPECT_EQ(half.failure().code, Code::no_such_channel);
+}
+
 TEST(Csv, Sound) {
     const std::string bom = "\xef\xbb\xbf";
     const std::string head = "z[0],z[1],grip,held\n";

@@ -43,6 +43,27 @@ TEST(NpzTrace, StepsOfEveryKind) {
     }
 }
 
+TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
+    auto trace = open_trace(
+        kFolder + "trace_deflated.npz",
+        {{"truth.at_a", Kind::boolean, 1, true}, {"gripper", Kind::scalar, 1}, {"held", Kind::boolean, 1, true}});
+    ASSERT_TRUE(trace) << trace.failure().message;
+    EXPECT_FALSE((*trace)->has(0));
+    EXPECT_TRUE((*trace)->has(1));
+    EXPECT_TRUE((*trace)->has(2));
+    EXPECT_EQ((*trace)->length(), 7U);
+    Sample sample;
+    for (int t = 0; t < 7; ++t) {
+        ASSERT_TRUE(*(*trace)->next(sample));
+        EXPECT_EQ(sample.present, (std::vector<bool>{false, true, true}));
+        EXPECT_TRUE(std::isnan(sample.values[0][0]));
+        EXPECT_EQ(sample.values[2][0], t % 2);
+    }
+    const auto nothing = open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
+    ASSERT_FALSE(nothing);  // how many steps it has, nobody knows
+    EXPECT_EQ(nothing.failure().code, Code::trace_shape);
+}
+
 TEST(NpzTrace, NotFiniteIsNaN) {
     auto trace = open_trace(kFolder + "trace_deflated.npz", {{"gap", Kind::scalar, 1}});
     ASSERT_TRUE(trace);
