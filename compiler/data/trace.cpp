@@ -4,6 +4,10 @@
 
 namespace etlc::data {
 
+bool is_trace(const std::string& path) {
+    return path.ends_with(".npz") || path.ends_with(".csv");
+}
+
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels) {
     if (path.ends_with(".npz")) return open_npz_trace({path, {}, false}, channels);
     if (!path.ends_with(".csv"))

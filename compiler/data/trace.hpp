@@ -40,6 +40,9 @@ public:
     virtual bool has(std::size_t channel) const = 0;
 };
 
+/// Whether the ending of a path is that of a trace.
+bool is_trace(const std::string& path);
+
 /// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
 /// elements of a vector beyond its width. Shapes in .npz: T or T x 1 for scalars and bools, T x D for vectors (T too
 /// where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`

@@ -1,0 +1,112 @@
+#include "data/episodes.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <bit>
+#include <filesystem>
+#include <limits>
+#include <set>
+#include <system_error>
+
+#include "data/file.hpp"
+#include "data/hash.hpp"
+
+namespace etlc::data {
+namespace {
+
+namespace fs = std::filesystem;
+using diag::Code;
+
+constexpr std::string_view kPatternCharacters = "*?[";
+constexpr std::string_view kExpected = "expected files that end in .npz or .csv";
+
+bool is_directory(const std::string& path) {
+    std::error_code error;
+    return fs::is_directory(path, error);
+}
+
+/// The traces in a folder, not in those below it.
+diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
+    std::vector<std::string> files;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        const std::string path = it->path().string();
+        if (is_trace(path) && !is_directory(path)) files.push_back(path);
+    }
+    if (error) return diag::Failure{Code::unreadable_trace, fmt::format("cannot be read: {}", error.message())};
+    if (files.empty()) return diag::Failure{Code::unreadable_trace, fmt::format("holds no episodes, {}", kExpected)};
+    return files;
+}
+
+/// What matches; folders among it stand for the traces in them.
+diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
+    glob_t found{};
+    const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
+    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    if (status == GLOB_NOMATCH) return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
+    if (status != 0) return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
+    std::vector<std::string> files;
+    for (const std::string& path : paths) {
+        if (!is_directory(path)) {
+            files.push_back(path);
+            continue;
+        }
+        const auto inside = in_folder(path);
+        if (inside) files.insert(files.end(), inside->begin(), inside->end());
+    }
+    if (files.empty())
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("only folders match, without episodes, {}", kExpected)};
+    return files;
+}
+
+/// A path that exists is what it says, whatever characters are in it.
+diag::Result<std::vector<std::string>> expand(const std::string& argument) {
+    if (is_directory(argument)) return in_folder(argument);
+    const auto why = why_unreadable(argument);
+    if (!why) return std::vector<std::string>{argument};
+    if (argument.find_first_of(kPatternCharacters) != std::string::npos) return matching(argument);
+    return diag::Failure{Code::unreadable_trace, *why};
+}
+
+}  // namespace
+
+std::vector<std::string> find_episodes(const std::vector<std::string>& arguments, diag::Sink& sink) {
+    std::vector<std::string> episodes;
+    std::set<std::string> seen;
+    for (const std::string& argument : arguments) {
+        auto files = expand(argument);
+        if (!files) {
+            sink.report(in_file(files.failure(), argument));
+            continue;
+        }
+        std::sort(files->begin(), files->end());
+        for (std::string& file : *files)
+            if (seen.insert(fs::path(file).lexically_normal().string()).second) episodes.push_back(std::move(file));
+    }
+    return episodes;
+}
+
+void EpisodeHash::add(const Sample& sample) {
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    bytes_.clear();
+    for (const std::size_t c : channels_) {
+        for (const double value : sample.values[c]) {
+            // One pattern of bits for all that is missing.
+            const auto narrow = static_cast<float>(value);
+            const auto bits = std::bit_cast<std::uint32_t>(sample.present[c] && value == value ? narrow : kNaN);
+            for (unsigned shift = 0; shift < 32; shift += 8) bytes_.push_back(static_cast<char>(bits >> shift & 0xffU));
+        }
+    }
+    hash_ = xxh64(bytes_, hash_);
+    ++steps_;
+}
+
+std::string EpisodeHash::text() const {
+    return fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
+}
+
+}  // namespace etlc::data
