@@ -35,6 +35,13 @@ bool is_register(StreamOp op) {
 
 }  // namespace
 
+std::string open_condition(ir::Interval interval) {
+    std::string text;
+    if (interval.low > 0) text = fmt::format("step_ >= {}", interval.low);
+    if (interval.bounded()) text += fmt::format("{}step_ <= {}", text.empty() ? "" : " && ", interval.high);
+    return text;
+}
+
 std::string float_literal(float x) {
     if (std::isinf(x)) return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
     std::string text = fmt::format("{}", x);

@@ -31,6 +31,8 @@ struct Context {
     std::string place(source::Span span) const;
 };
 
+/// "step_ >= 2 && step_ <= 5", empty where the window is always open.
+std::string open_condition(ir::Interval interval);
 /// A float32 literal that reads back to the same bits: "0.31f".
 std::string float_literal(float x);
 std::string key_literal(plan::Key key);

@@ -27,6 +27,12 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
     });
 }
 
+/// A response over several steps.
+bool waits(const plan::Reading& reading) {
+    const plan::Response& response = reading.response;
+    return reading.kind == plan::Reading::Kind::response && response.keeps_pending() && response.patience() > 1;
+}
+
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     std::set<std::string> headers{"predicate", "reading", "verdict", "version", "views"};
@@ -40,7 +46,8 @@ std::set<std::string> runtime_headers(const Context& context) {
     }
     if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert("delay");
     if (any_stream(plan, {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since, StreamOp::window_trigger,
-                          StreamOp::window_until, StreamOp::window_release}))
+                          StreamOp::window_until, StreamOp::window_release}) ||
+        std::any_of(plan.readings.begin(), plan.readings.end(), waits))
         headers.insert("window");
     if (!context.names.table_locals.empty()) headers.insert("machine");
     if (!context.names.pending.empty()) headers.insert("pending");

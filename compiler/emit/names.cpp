@@ -106,12 +106,22 @@ private:
 
     std::string stream_name(const plan::Stream& stream) const {
         if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
-        if (stream.op == plan::StreamOp::delay) {
-            const plan::Stream& operand = plan_.streams[stream.operands[0]];
-            return without_trailing_underscore(stream_name(operand)) + "_delayed";
-        }
         if (stream.op == plan::StreamOp::predicate) return names_.predicate_atom.at(stream.index);
-        return "value";
+        const std::string suffix = suffix_of(stream.op);
+        if (suffix.empty()) return "value";
+        return without_trailing_underscore(stream_name(plan_.streams[stream.operands[0]])) + suffix;
+    }
+
+    /// How a stream that no formula names differs from its operand.
+    static std::string suffix_of(plan::StreamOp op) {
+        switch (op) {
+            case plan::StreamOp::within: return "_within";
+            case plan::StreamOp::delay: return "_delayed";
+            case plan::StreamOp::shift: return "_before";
+            case plan::StreamOp::window_max:
+            case plan::StreamOp::window_min: return "_recently";
+            default: return "";
+        }
     }
 
     void name_readings() {
@@ -154,6 +164,8 @@ private:
                 names_.reading_member[r] = member(members_, name + "_settled");
                 names_.guard_member[r] = member(members_, name + "_pending");
                 names_.recent_local[r] = judge_.claim(name + "_now");
+                names_.waiting_member[r] = member(members_, name + "_waiting");
+                names_.waiting_local[r] = judge_.claim(name + "_passed");
             }
             if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
             const bool has_table = reading.kind == plan::Reading::Kind::machine ||

@@ -42,7 +42,9 @@ struct Names {
     std::map<std::uint32_t, std::string> reading_member;
     std::map<std::uint32_t, std::string>
         guard_member;  ///< of folds with two sides and of responses: their second value
-    std::map<std::uint32_t, std::string> recent_local;                  ///< of responses that wait before their window
+    std::map<std::uint32_t, std::string> recent_local;    ///< of responses that wait before their window
+    std::map<std::uint32_t, std::string> waiting_member;  ///< of responses: the window over what is pending
+    std::map<std::uint32_t, std::string> waiting_local;   ///< and what it says
     std::map<std::uint32_t, std::vector<std::string>> register_member;  ///< of unrolled machines, per state
     std::map<std::uint32_t, std::vector<std::string>> register_next;    ///< their values of this step, as locals
     struct TableLocals {

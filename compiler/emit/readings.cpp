@@ -11,6 +11,7 @@ namespace {
 
 using plan::Fold;
 using plan::kNone;
+using plan::kUnbounded;
 using plan::Machine;
 using plan::Reading;
 using plan::Slot;
@@ -47,14 +48,6 @@ void print_latch(Printer& out, const Context& context, std::uint32_t r) {
     out.line("{} = etlmon::settled({});", local(context, r), kept);
 }
 
-/// "step_ >= 2 && step_ <= 5", empty where the window is always open.
-std::string open_condition(ir::Interval interval) {
-    std::string text;
-    if (interval.low > 0) text = fmt::format("step_ >= {}", interval.low);
-    if (interval.bounded()) text += fmt::format("{}step_ <= {}", text.empty() ? "" : " && ", interval.high);
-    return text;
-}
-
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const Fold& fold = context.plan.readings[r].fold;
     const std::string& best = context.names.reading_member.at(r);
@@ -86,12 +79,6 @@ std::string conditional(const std::string& condition, const std::string& stateme
     return condition.empty() ? statement : fmt::format("if ({}) {}", condition, statement);
 }
 
-/// Whether the outer window holds the position `lag` steps ago; empty where it always does.
-std::string open_at(ir::Interval outer, std::uint32_t lag) {
-    ir::Interval shifted{outer.low + lag, outer.bounded() ? outer.high + lag : outer.high};
-    return open_condition(shifted);
-}
-
 void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Response& response = context.plan.readings[r].response;
     const std::string& settled = context.names.reading_member.at(r);
@@ -103,17 +90,21 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
         return target + " = " + value + ";";
     };
 
-    print_wrapped(out, conditional(open_at(response.outer, response.inner.high),
-                                   assign(settled, call(worst, {settled, context.value(response.settled)}))));
     std::string now = answer;
+    std::string passed = response.settled == kNone ? "" : context.value(response.settled);
     if (response.keeps_pending()) {
         const std::string& pending = context.names.guard_member.at(r);
-        const std::string excuse = response.excuse == kNone ? (response.of_always ? "etlmon::kFalse" : "etlmon::kTrue")
-                                                            : context.value(response.excuse);
-        print_wrapped(out, conditional(open_at(response.outer, 0), assign(pending, call(worst, {pending, excuse}))));
-        out.line(assign(pending, call(best, {pending, answer})));
+        print_wrapped(out,
+                      assign(pending, call(best, {call(worst, {pending, context.value(response.excuse)}), answer})));
         now = pending;
+        passed = pending;
+        if (response.patience() > 1) {
+            passed = context.names.waiting_local.at(r);
+            out.line("const Value {} = {}.push({});", passed, context.names.waiting_member.at(r), pending);
+        }
     }
+    print_wrapped(out, conditional(open_condition({response.inner.high, kUnbounded}),
+                                   assign(settled, call(worst, {settled, passed}))));
     if (response.hopeless_now()) now = response.of_always ? "etlmon::kFalse" : "etlmon::kTrue";
     if (response.recent != kNone) {
         out.line("const Value {} = {};", context.names.recent_local.at(r),
@@ -359,9 +350,16 @@ std::vector<Member> reading_members(const Context& context) {
         const char* second = starts_true ? "etlmon::kFalse" : "etlmon::kTrue";
         result.push_back({"Value", name, text + (response ? ": where the answer's time is over" : ""),
                           fmt::format("{} = {};", name, first)});
-        if (response && reading.response.keeps_pending())
+        if (response && reading.response.keeps_pending()) {
             result.push_back({"Value", context.names.guard_member.at(r), "where it is not",
                               fmt::format("{} = {};", context.names.guard_member.at(r), first)});
+            const std::uint32_t patience = reading.response.patience();
+            const std::string& waiting = context.names.waiting_member.at(r);
+            if (patience > 1)
+                result.push_back(
+                    {fmt::format("etlmon::Window<etlmon::{}<Value>, {}>", starts_true ? "Greatest" : "Least", patience),
+                     waiting, "whether some window passed without an answer", waiting + ".reset();"});
+        }
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
             result.push_back({"Value", context.names.guard_member.at(r), "what its left side lets through",
                               fmt::format("{} = {};", context.names.guard_member.at(r), second)});

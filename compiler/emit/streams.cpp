@@ -61,6 +61,9 @@ std::string statement(const Context& context, Slot slot) {
             for (std::size_t i = 0; i < stream.operands.size(); ++i) operands.push_back(at(i));
             return fmt::format("{}{};", local, call(stream.op == StreamOp::conjunction ? "min" : "max", operands));
         }
+        case StreamOp::within:
+            return fmt::format("{}{} ? {} : {};", local, open_condition(stream.interval), at(0),
+                               value_literal(stream.value));
         case StreamOp::delay: return fmt::format("{}{}.push({});", local, kept(), at(0));
         case StreamOp::shift:
             return fmt::format("{}{}.push({});", local, kept(),

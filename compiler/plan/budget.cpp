@@ -65,9 +65,9 @@ Cost fold_cost(const Fold& fold) {
 
 Cost response_cost(const Response& response) {
     Cost cost = values(response.keeps_pending() ? 2 : 1, 4 + (response.recent != kNone ? 1 : 0));
-    cost.operations += 4 + 3;  // what is settled, whether the outer window is open; the bounds
+    cost.operations += 2 + 3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
     cost.code_bytes += 2 * kCodePerFold;
-    return cost;
+    return response.keeps_pending() ? cost + window_cost(response.patience(), false) : cost;
 }
 
 /// Operations on values or readings at one position, in units of the temporal loops of etlmon/pending.hpp.
@@ -213,6 +213,7 @@ Cost cost_of(const Stream& stream) {
         case StreamOp::negation: return {.code_bytes = kCodePerValueOperation};
         case StreamOp::conjunction:
         case StreamOp::disjunction: return values(0, operands - 1);
+        case StreamOp::within: return {.code_bytes = kCodePerValueOperation, .operations = 2};
         case StreamOp::delay:
         case StreamOp::shift: return ring_cost(stream.length);
         case StreamOp::running_max:

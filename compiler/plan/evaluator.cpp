@@ -191,6 +191,8 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
             for (Slot slot : stream.operands) value = max(value, streams_[slot]);
             return value;
         }
+        case StreamOp::within:
+            return stream.interval.low <= steps_ && steps_ <= stream.interval.high ? at(0) : stream.value;
         case StreamOp::delay: return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
         case StreamOp::shift:
             return etlmon::delay_push(state.values.data(), state.cursor, stream.length,
@@ -238,7 +240,14 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
                 ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
         case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
-        case Reading::Kind::response: state.registers.assign(2, reading.response.of_always ? kTrue : kFalse); break;
+        case Reading::Kind::response: {
+            const Response& response = reading.response;
+            state.registers.assign(2, response.of_always ? kTrue : kFalse);
+            state.waiting.cursor = 0;
+            state.waiting.values.assign(etlmon::window_elements(response.patience()),
+                                        response.of_always ? kFalse : kTrue);
+            break;
+        }
         case Reading::Kind::machine:
             state.registers.assign(reading.machine.states.size(), kFalse);
             state.next = state.registers;
@@ -304,15 +313,19 @@ etlmon::Reading Evaluator::advance_response(const Response& response, ReadingSta
     const auto best = [&](Value a, Value b) { return always ? max(a, b) : min(a, b); };
     const Value idle = always ? kTrue : kFalse;
     const Value hopeless = always ? kFalse : kTrue;
-    const auto open = [&](std::uint32_t step) {
-        return response.outer.low <= step && (!response.outer.bounded() || step <= response.outer.high);
-    };
     Value& settled = state.registers[0];
     Value& pending = state.registers[1];
-    const std::uint32_t lag = response.inner.high;
-    if (steps_ >= lag && open(steps_ - lag)) settled = worst(settled, streams_[response.settled]);
     const Value excuse = response.excuse == kNone ? hopeless : streams_[response.excuse];
-    pending = best(worst(pending, open(steps_) ? excuse : idle), streams_[response.answer]);
+    pending = best(worst(pending, excuse), streams_[response.answer]);
+    Value passed = idle;  // what the windows that close at this step came to
+    if (response.settled != kNone) {
+        passed = streams_[response.settled];
+    } else {
+        auto& [values, pairs, cursor] = state.waiting;
+        passed = always ? push<etlmon::Greatest<Value>>(values, cursor, response.patience(), pending)
+                        : push<etlmon::Least<Value>>(values, cursor, response.patience(), pending);
+    }
+    if (steps_ >= response.inner.high) settled = worst(settled, passed);
     Value now = response.hopeless_now() ? hopeless : pending;
     if (response.recent != kNone) now = worst(now, streams_[response.recent]);
 

@@ -79,7 +79,9 @@ public:
     Plan finish() {
         drop_idle_streams();
         collect_inputs();
-        plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts);
+        plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
+                             std::any_of(plan_.streams.begin(), plan_.streams.end(),
+                                         [](const Stream& stream) { return stream.op == StreamOp::within; });
         add_costs(plan_);
         return std::move(plan_);
     }

@@ -34,6 +34,7 @@ enum class StreamOp : std::uint8_t {
     negation,     ///< of a predicate or flag
     conjunction,  ///< min of the operands
     disjunction,  ///< max of the operands
+    within,       ///< the operand at the positions of `interval`, elsewhere `value`
     delay,        ///< the operand `length` steps ago: later by `length`, so that operands of different lag meet
     shift,        ///< the operand `length` positions earlier; `value` where there is none
     running_max,  ///< over all positions so far
@@ -53,7 +54,8 @@ struct Stream {
     std::vector<Slot> operands;
     Index index = 0;                ///< predicate or flag
     std::uint32_t length = 0;       ///< of delays, shifts and windows
-    Value value{};                  ///< constant; shift: where there is no earlier position
+    ir::Interval interval;          ///< within: of positions
+    Value value{};                  ///< constant; shift: where there is no earlier position; within: elsewhere
     std::uint32_t lag = 0;          ///< after step i the stream tells about position i - lag
     std::uint32_t operand_lag = 0;  ///< and its operands about position i - operand_lag; a constant is of any lag
     NodeId node = kNone;            ///< the formula it is, for comments; kNone for the values in between
@@ -75,23 +77,27 @@ struct Fold {
     Slot unseen = 0;  ///< lowest and highest unseen value of `right`
 };
 
-/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. Positions whose window has
-/// passed are settled by the stream of the body, b steps late. For the others one recurrence does: pending =
-/// max(min(pending, f), g). It keeps the settled positions too, with a part of their window only, which is no better
-/// than what they were settled at.
+/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. What the positions whose window
+/// is still open say is one recurrence, pending = max(min(pending, f), g). And they are settled by the same value: the
+/// window of some position passed without an answer exactly where pending stayed low for b - a + 1 steps on end, so
+/// settled = min(settled, the max of the last b - a + 1 pendings). (Both sides are made of min and max, so it is enough
+/// to compare them where f and g are only true or false: a run of false pendings begins with a position that asks and
+/// lasts until an answer.) Without f and from every position, pending is g itself and the body's own stream settles.
 struct Response {
     bool of_always = true;  ///< else the dual
     ir::Interval outer;
-    ir::Interval inner;   ///< bounded; from 0, or the outer one is [0, inf)
-    Slot settled = 0;     ///< the body, late by inner.high
-    Slot excuse = kNone;  ///< f, inner.low positions earlier; kNone: there is no f
-    Slot recent = kNone;  ///< f over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
-    Slot answer = 0;      ///< g
+    ir::Interval inner;    ///< bounded
+    Slot settled = kNone;  ///< the body, late by inner.high; kNone where pending is kept
+    Slot excuse = kNone;   ///< f within the outer window, inner.low positions earlier; kNone: none, anywhere
+    Slot recent = kNone;   ///< so over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
+    Slot answer = 0;       ///< g
     Slot unseen_answer = 0;  ///< lowest and highest unseen value of g
     Slot unseen_body = 0;
 
-    /// Without an excuse, pending over the whole trace is the answer itself.
-    bool keeps_pending() const { return excuse != kNone || outer != ir::Interval{}; }
+    /// Without an excuse, pending is the answer itself.
+    bool keeps_pending() const { return excuse != kNone; }
+    /// Steps that a position waits for its answer.
+    std::uint32_t patience() const { return inner.high - inner.low + 1; }
     /// A window that begins later has not begun at the last positions: without an excuse nothing speaks for them.
     bool hopeless_now() const { return excuse == kNone && inner.low > 0; }
 };

@@ -25,6 +25,7 @@ const char* name(StreamOp op) {
         case StreamOp::negation: return "not";
         case StreamOp::conjunction: return "min";
         case StreamOp::disjunction: return "max";
+        case StreamOp::within: return "within";
         case StreamOp::delay: return "delay";
         case StreamOp::shift: return "shift";
         case StreamOp::running_max: return "running max";
@@ -56,6 +57,9 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     if (s.op == StreamOp::flag) text += " " + model.inputs[s.index].name;
     text += slots(s.operands);
     if (s.length != 0) text += fmt::format(" over {}", s.length);
+    if (s.op == StreamOp::within)
+        text += fmt::format(" positions {} to {}, else {}", s.interval.low,
+                            s.interval.bounded() ? fmt::format("{}", s.interval.high) : "the end", value_text(s.value));
     if (s.op == StreamOp::shift) text += " from " + value_text(s.value);
     if (s.lag != 0) text += fmt::format(", {} steps late", s.lag);
     if (s.node != kNone) text += fmt::format("  // {}", graph.text(s.node));
@@ -111,7 +115,8 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
             return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
         case Reading::Kind::pending: return pending_text(reading.pending, graph);
         case Reading::Kind::response:
-            text = fmt::format("response, settled s{}", reading.response.settled);
+            text = "response";
+            if (reading.response.settled != kNone) text += fmt::format(", settled s{}", reading.response.settled);
             if (reading.response.excuse != kNone) text += fmt::format(", excuse s{}", reading.response.excuse);
             if (reading.response.recent != kNone) text += fmt::format(", recent s{}", reading.response.recent);
             return text + fmt::format(", answer s{}, unseen s{} s{}\n", reading.response.answer,

@@ -71,24 +71,26 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     const Node inner = graph_[future[0]];
     const bool seeks_answer = inner.op == (of_always ? Op::eventually : Op::always);
     const bool answer_is_present = seeks_answer && !graph_[inner.operands[0]].has_future;
-    const bool fits = inner.interval.low == 0 || node.interval == ir::Interval{};
-    if (!answer_is_present || !inner.interval.bounded() || !fits) return std::nullopt;
+    if (!answer_is_present || !inner.interval.bounded()) return std::nullopt;
 
     Response result{.of_always = of_always, .outer = node.interval, .inner = inner.interval};
-    result.settled = streams_.of(body);
     result.answer = streams_.of(inner.operands[0]);
     result.unseen_answer = streams_.unseen(inner.operands[0]);
     result.unseen_body = streams_.unseen(body);
-    const etlmon::Value idle = of_always ? etlmon::kTrue : etlmon::kFalse;  // where there is no position
-    if (!present.empty()) {
-        const NodeId excuse =
-            graph_.combine(of_always ? Op::disjunction : Op::conjunction, std::move(present), node.span);
-        const Slot slot = streams_.of(excuse);
-        result.excuse = streams_.shift(slot, inner.interval.low, 0, idle, kNone);
+    const etlmon::Value idle = of_always ? etlmon::kTrue : etlmon::kFalse;  // where nothing is asked
+    const etlmon::Value urgent = of_always ? etlmon::kFalse : etlmon::kTrue;
+    if (!present.empty() || node.interval != ir::Interval{}) {
+        const Slot stated =
+            present.empty()
+                ? streams_.constant(urgent)
+                : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction, present, node.span));
+        const Slot excuse = streams_.within(stated, node.interval, idle);
+        result.excuse = streams_.shift(excuse, inner.interval.low, 0, idle, kNone);
         if (inner.interval.low > 0)
             result.recent =
-                streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, slot, inner.interval.low);
+                streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, excuse, inner.interval.low);
     }
+    if (!result.keeps_pending()) result.settled = streams_.of(body);
     return result;
 }
 

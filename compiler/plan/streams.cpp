@@ -27,8 +27,9 @@ bool equal(Value a, Value b) {
 }  // namespace
 
 Slot StreamBuilder::intern(Stream stream) {
-    Identity identity{stream.op,        stream.operands,   stream.index, stream.length,
-                      stream.value.low, stream.value.high, stream.lag,   stream.operand_lag};
+    Identity identity{stream.op,           stream.operands,     stream.index, stream.length,
+                      stream.value.low,    stream.value.high,   stream.lag,   stream.operand_lag,
+                      stream.interval.low, stream.interval.high};
     const auto [entry, added] = interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added)
         streams_.push_back(std::move(stream));
@@ -143,6 +144,11 @@ Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_
                    .lag = lag,
                    .operand_lag = operand_lag,
                    .node = node});
+}
+
+Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere) {
+    if (interval == ir::Interval{}) return slot;
+    return intern({.op = StreamOp::within, .operands = {slot}, .interval = interval, .value = elsewhere});
 }
 
 Slot StreamBuilder::recent(StreamOp op, Slot slot, std::uint32_t length) {

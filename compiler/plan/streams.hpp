@@ -26,14 +26,16 @@ public:
     /// The same stream, later by `steps`.
     Slot delayed(Slot slot, std::uint32_t steps);
 
+    Slot constant(Value value);
     /// The stream `steps` positions earlier, `before` where there is none.
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
+    /// A stream without lag at the positions of the interval, `elsewhere` at others.
+    Slot within(Slot slot, ir::Interval interval, Value elsewhere);
     /// Over the last `length` positions of a stream without lag.
     Slot recent(StreamOp op, Slot slot, std::uint32_t length);
 
 private:
     Slot intern(Stream stream);
-    Slot constant(Value value);
     Slot literal(const ir::Node& node, NodeId id);
     Slot aligned_combination(const ir::Node& node, NodeId id);
     Slot past_unary(const ir::Node& node, NodeId id);
@@ -50,8 +52,8 @@ private:
     std::vector<Stream>& streams_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity =
-        std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t, std::uint32_t>;
+    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t,
+                                std::uint32_t, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };
 
