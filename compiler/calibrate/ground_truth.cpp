@@ -1,0 +1,31 @@
+#include "calibrate/ground_truth.hpp"
+
+namespace etlc::calibrate {
+
+GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled) {
+    GroundTruth result{model, std::vector<Index>(model.predicates.size(), check::kNone)};
+    for (const Index predicate : labelled) {
+        check::Input label;
+        label.name = "truth." + model.predicates[predicate].name;  // no name of the spec has a dot
+        label.type = check::InputType::boolean;
+        label.span = model.predicates[predicate].span;
+        result.inputs[predicate] = static_cast<Index>(result.model.inputs.size());
+        result.model.inputs.push_back(std::move(label));
+    }
+    for (check::Formula& formula : result.model.formulas) {
+        if (formula.kind != check::Formula::Kind::predicate) continue;
+        const Index label = result.inputs[formula.index];
+        if (label == check::kNone) continue;
+        formula.kind = check::Formula::Kind::boolean_input;
+        formula.index = label;
+    }
+    result.model.truths.clear();
+    return result;
+}
+
+plan::Sample sample_of(Label label) {
+    if (label == Label::unknown) return {};
+    return {true, {label == Label::yes ? 1.0F : 0.0F}};
+}
+
+}  // namespace etlc::calibrate
