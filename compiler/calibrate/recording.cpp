@@ -3,11 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <bit>
-#include <cmath>
 #include <set>
 
-#include "data/hash.hpp"
 #include "data/quote.hpp"
 
 namespace etlc::calibrate {
@@ -65,8 +62,9 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
 
 Failure no_label(const check::Model& model, Index predicate) {
     const std::string& name = model.predicates[predicate].name;
-    return {Code::no_label, fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it",
-                                        name, data::in_quotes(array_name(model, predicate)))};
+    return {Code::no_such_channel,
+            fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it", name,
+                        data::in_quotes(array_name(model, predicate)))};
 }
 
 }  // namespace
@@ -94,7 +92,11 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     for (const Index input : wanted.inputs) required[input] = true;
 
     // What only truths read may be absent where arrays stand in for them.
-    Recording result(wanted);
+    std::vector<std::size_t> identity;
+    for (const Index input : wanted.identity)
+        identity.push_back(
+            static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) - inputs.begin()));
+    Recording result(model, std::move(identity));
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
     result.trace_ = std::move(*trace);
@@ -133,7 +135,7 @@ diag::Result<bool> Recording::next() {
     if (!more || !*more) return more;
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
-    if (!identity_.empty()) add_to_hash();
+    hash_.add(sample_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
         std::swap(recorded, sample_.values[c]);
@@ -162,30 +164,6 @@ Label Recording::label(Index predicate) const {
     const double value = sample_.values[source.channel][0];
     if (!sample_.present[source.channel] || value != value) return Label::unknown;
     return value != 0 ? Label::yes : Label::no;
-}
-
-/// XXH64 of this frame seeded with the hash of those before: input after input a byte that says whether the sample is
-/// there and finite, then, if it is, the IEEE bits of its values, little endian.
-void Recording::add_to_hash() {
-    bytes_.clear();
-    for (const Index input : identity_) {
-        const plan::Sample& sample = samples_[input];
-        const bool there = sample.present && std::all_of(sample.values.begin(), sample.values.end(),
-                                                         [](float value) { return std::isfinite(value); });
-        bytes_.push_back(there ? '\1' : '\0');
-        if (!there) continue;
-        for (const float value : sample.values) {
-            const auto bits = std::bit_cast<std::uint32_t>(value);
-            const char little_endian[] = {static_cast<char>(bits & 0xffU), static_cast<char>((bits >> 8U) & 0xffU),
-                                          static_cast<char>((bits >> 16U) & 0xffU), static_cast<char>(bits >> 24U)};
-            bytes_.append(little_endian, sizeof little_endian);
-        }
-    }
-    hash_ = data::xxh64(bytes_, hash_);
-}
-
-std::string Recording::hash() const {
-    return fmt::format("{:016x}", hash_);
 }
 
 }  // namespace etlc::calibrate

@@ -11,6 +11,7 @@
 
 #include "calibrate/truth.hpp"
 #include "check/model.hpp"
+#include "data/episodes.hpp"
 #include "data/trace.hpp"
 #include "plan/inputs.hpp"
 
@@ -32,8 +33,8 @@ using Opener = std::function<diag::Result<std::unique_ptr<data::Trace>>(const st
 
 class Recording {
 public:
-    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an array. They do not name
-    /// the episode.
+    /// Failures: what `open` fails with; no_such_channel where a predicate has neither a truth nor an array. They do
+    /// not name the episode.
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     /// The next frame; false at the end of the episode.
@@ -49,8 +50,8 @@ public:
     std::uint64_t frames() const { return frames_; }
     /// Number of frames where the file tells it beforehand, else 0.
     std::uint64_t length() const { return trace_->length(); }
-    /// 64 bits as 16 hex digits over the frames so far: the same on every machine and for every file format.
-    std::string hash() const;
+    /// Of the frames so far, over the inputs of `identity`.
+    std::string hash() const { return hash_.text(); }
 
 private:
     struct Source {
@@ -59,13 +60,13 @@ private:
         Index formula = check::kNone;
     };
 
-    explicit Recording(const Wanted& wanted) : model_(wanted.model), identity_(wanted.identity) {}
+    Recording(const check::Model& model, std::vector<std::size_t> identity)
+        : model_(&model), hash_(std::move(identity)) {}
 
     diag::Result<bool> narrow();
-    void add_to_hash();
 
     const check::Model* model_;
-    std::vector<Index> identity_;
+    data::EpisodeHash hash_;
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;  ///< per channel of an input, that input
     std::vector<bool> narrowed_;         ///< per such channel: its samples are wanted
@@ -74,8 +75,6 @@ private:
     data::Sample sample_;
     std::vector<plan::Sample> samples_;
     Frame frame_;
-    std::string bytes_;
-    std::uint64_t hash_ = 0;
     std::uint64_t frames_ = 0;
 };
 

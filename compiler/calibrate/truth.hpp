@@ -36,10 +36,10 @@ public:
 private:
     /// Of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that decide. A frame is counted from 1.
     struct Memory {
-        std::deque<Label> delayed;         ///< g of the last a frames
-        std::uint64_t last_yes = 0;        ///< frame, at least a ago, at which g was yes
-        std::uint64_t last_possible = 0;   ///< yes or unknown
-        std::uint64_t f_not_yes = 0;       ///< frame at which f was no or unknown
+        std::deque<Label> delayed;        ///< g of the last a frames
+        std::uint64_t last_yes = 0;       ///< frame, at least a ago, at which g was yes
+        std::uint64_t last_possible = 0;  ///< yes or unknown
+        std::uint64_t f_not_yes = 0;      ///< frame at which f was no or unknown
         std::uint64_t f_no = 0;
     };
 

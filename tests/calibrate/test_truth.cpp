@@ -1,0 +1,153 @@
+// Truths, frame by frame, against the reference; and the ground-truth monitor.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "calibrate/exact_distance.hpp"
+#include "calibrate/ground_truth.hpp"
+#include "calibrate/truth.hpp"
+#include "loading.hpp"
+#include "random.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using calibrate::Label;
+
+/// A formula of past operators over a, b and two comparisons.
+std::string past_formula(Random& random, int depth) {
+    if (depth == 0) return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)"});
+    const auto operand = [&] { return "(" + past_formula(random, random.between(0, depth - 1)) + ")"; };
+    const auto interval = [&] {
+        const int low = random.between(0, 3);
+        return random.word(
+            {"", fmt::format("[{}, {}]", low, low + random.between(0, 3)), fmt::format("[{}, inf]", low)});
+    };
+    switch (random.between(0, 8)) {
+        case 0: return operand() + " && " + operand();
+        case 1: return operand() + " || " + operand();
+        case 2: return operand() + " -> " + operand();
+        case 3: return operand() + " <-> " + operand();
+        case 4: return "! " + operand();
+        case 5: return "O" + interval() + " " + operand();
+        case 6: return "H" + interval() + " " + operand();
+        case 7: return "Y " + operand();
+        default: return operand() + " S" + interval() + " " + operand();
+    }
+}
+
+calibrate::Frame random_frame(Random& random) {
+    calibrate::Frame frame;
+    for (int i = 0; i < 2; ++i)
+        frame.push_back(random.chance(0.15) ? std::vector<double>{} : std::vector<double>{random.between(0, 1) + 0.0});
+    for (int i = 0; i < 2; ++i)
+        frame.push_back(random.chance(0.15) ? std::vector<double>{} : std::vector<double>{random.grid(-1, 1, 0.25)});
+    return frame;
+}
+
+Label label_of(reference::Status status) {
+    if (status == reference::Status::satisfied) return Label::yes;
+    return status == reference::Status::violated ? Label::no : Label::unknown;
+}
+
+TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
+    Random random(20261120);
+    for (int spec = 0; spec < 400; ++spec) {
+        const std::string text = fmt::format(
+            "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1; target goal = [[0.5, "
+            "0.5]];\n"
+            "sliding monitor m = {};",
+            past_formula(random, 4));
+        const auto model = load(text);
+        ASSERT_TRUE(model) << text;
+        const check::Index formula = model->monitors[0].formula;
+        calibrate::TruthEvaluator truth(*model, {formula});
+        reference::Trace trace;
+        for (int t = 0; t < 16; ++t) trace.push_back(random_frame(random));
+        const reference::Run run = reference::evaluate(*model, trace);
+        for (int episode = 0; episode < 2; ++episode) {  // a reset forgets all
+            truth.reset();
+            for (std::size_t t = 0; t < trace.size(); ++t) {
+                truth.step(trace[t]);
+                ASSERT_EQ(truth[formula], label_of(run.verdicts[t][0].status)) << text << " at " << t;
+            }
+        }
+    }
+}
+
+Label single(const std::string& comparison, double x) {
+    const auto model =
+        load(fmt::format("spec t; input x : f32; input z : i8[2] scale 0.25; target g = [[0, 0.25]];\n"
+                         "sliding monitor m = {};",
+                         comparison));
+    calibrate::TruthEvaluator truth(*model, {model->monitors[0].formula});
+    truth.step({{x}, {0, 2}});
+    return truth[model->monitors[0].formula];
+}
+
+TEST(Truth, ComparesDoublesExactly) {
+    // 0.1 and its nearest float32 are different numbers; so are 0.25 and the double below it.
+    EXPECT_EQ(single("x <= 0.1", 0.1), Label::yes);
+    EXPECT_EQ(single("x < 0.1", 0.1), Label::no);
+    EXPECT_EQ(single("x >= 0.1", 0.1), Label::yes);
+    EXPECT_EQ(single("x > 0.1", 0.1), Label::no);
+    EXPECT_EQ(single("x < 0.1", static_cast<double>(0.1F)), Label::no);
+    EXPECT_EQ(single("x < 0.25", std::nextafter(0.25, 0.0)), Label::yes);
+    EXPECT_EQ(single("0 / x > 1", 0), Label::unknown);
+    EXPECT_EQ(single("l1(z, g) <= 0.25", 0), Label::yes);  // the integers 0 and 2 are 0 and 0.5
+    EXPECT_EQ(single("l1(z, g) < 0.25", 0), Label::no);
+    EXPECT_EQ(single("x > 1", 1e39), Label::unknown);  // no float32: the monitor takes it for missing
+}
+
+TEST(Truth, DistancesInDouble) {
+    const std::vector<std::string> metrics{
+        "l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis([[2, 1], [1, 3]])", "mahalanobis([2, 3])"};
+    const std::vector<std::string> aggregations{"min", "max", "mean", "kth(2)"};
+    Random random(5);
+    for (const std::string& metric : metrics) {
+        for (const std::string& aggregation : aggregations) {
+            const auto model = load(fmt::format(
+                "spec t; input z : f32[2]; target g = [[1, 0], [0.5, 0.5], [-1, 2]];\nmonitor m = {} {}(z, g) <= 1;",
+                aggregation, metric));
+            ASSERT_TRUE(model);
+            for (int i = 0; i < 20; ++i) {
+                const std::vector<double> z{random.grid(-2, 2, 0.125), random.grid(-2, 2, 0.125)};
+                const auto run = reference::evaluate(*model, {{z}});
+                const auto delta = calibrate::exact_distance(*model, model->distances[0], z);
+                const double expected = run.telemetry[0][0].delta;
+                ASSERT_EQ(delta.has_value(), expected == expected) << metric;
+                if (!delta) continue;
+                ASSERT_NEAR(*delta, expected, 1e-14 * (1 + expected)) << metric << " " << aggregation;
+            }
+        }
+    }
+}
+
+TEST(GroundTruth, ReplacesLabelledPredicatesOnly) {
+    const auto model = load(
+        "spec t; input x, y, px : f32;\n"
+        "predicate p = x <= 1; predicate q = y <= 1; truth p = px <= 0;\n"
+        "monitor m = F (p && q); monitor n = G !p;");
+    ASSERT_TRUE(model);
+    const calibrate::GroundTruth truth = calibrate::ground_truth(*model, {0});
+    ASSERT_EQ(truth.model.inputs.size(), 4U);
+    EXPECT_EQ(truth.inputs[0], 3U);
+    EXPECT_EQ(truth.inputs[1], check::kNone);
+    EXPECT_EQ(check::print(truth.model, truth.model.monitors[0].formula), "F (truth.p && q)");
+    EXPECT_EQ(check::print(truth.model, truth.model.monitors[1].formula), "G !truth.p");
+    // x and y say p && q, the label says otherwise, then agrees, then is missing.
+    const auto step = [](std::vector<double> label) { return reference::Step{{0.0}, {0.0}, {0.0}, std::move(label)}; };
+    const reference::Run run = reference::evaluate(truth.model, {step({0}), step({1}), step({})});
+    EXPECT_EQ(run.verdicts[0][0].status, reference::Status::violated);
+    EXPECT_EQ(run.verdicts[1][0].status, reference::Status::satisfied);
+    EXPECT_EQ(run.verdicts[0][1].status, reference::Status::satisfied);
+    EXPECT_EQ(run.verdicts[1][1].status, reference::Status::violated);
+    EXPECT_EQ(calibrate::sample_of(Label::yes).values, std::vector<float>{1});
+    EXPECT_EQ(calibrate::sample_of(Label::no).values, std::vector<float>{0});
+    EXPECT_FALSE(calibrate::sample_of(Label::unknown).present);
+}
+
+}  // namespace
+}  // namespace etlc::tests
