@@ -100,9 +100,10 @@ RandomFormula::Piece RandomFormula::named(Piece piece) {
 RandomFormula::Piece RandomFormula::grow(int depth, Allowed allowed) {
     if (depth <= 0 || random_.chance(0.08)) return leaf();
     const double die = random_.uniform();
-    Piece piece = allowed.future && die < 0.5  ? future(depth, allowed)
-                  : allowed.past && die < 0.65 ? past(depth, allowed)
-                                               : connective(depth, allowed);
+    const double past_or_future = shape_.future + 0.3 * (1 - shape_.future);
+    Piece piece = allowed.future && die < shape_.future  ? future(depth, allowed)
+                  : allowed.past && die < past_or_future ? past(depth, allowed)
+                                                         : connective(depth, allowed);
     return random_.chance(0.07) ? named(std::move(piece)) : piece;
 }
 

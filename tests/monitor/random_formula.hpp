@@ -17,6 +17,7 @@ struct FormulaShape {
     bool bounded = true;            ///< future operators with an upper bound
     bool unbounded = true;          ///< future operators without one
     bool past_over_future = false;  ///< else past operators see only the past and the present
+    double future = 0.5;            ///< share of future operators where any may stand
 };
 
 class RandomFormula {

@@ -146,6 +146,7 @@ FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
     result.bounded = shape.formulas != Formulas::unbounded_nesting;
     result.unbounded = !sliding;
     result.past_over_future = sliding;
+    result.future = shape.future;
     return result;
 }
 

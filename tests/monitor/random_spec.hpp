@@ -19,8 +19,9 @@ struct SpecShape {
     };
     Formulas formulas = Formulas::unnested;
     int monitors = 8;
-    int depth = 2;   ///< nesting of operators
-    int window = 4;  ///< largest upper bound of an interval
+    int depth = 2;        ///< nesting of operators
+    int window = 4;       ///< largest upper bound of an interval
+    double future = 0.5;  ///< share of future operators
     /// Only expressions and distances that float32 computes without rounding on samples that are multiples of 1/4.
     bool exact = true;
 };

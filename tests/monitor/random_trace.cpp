@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -46,6 +47,21 @@ std::vector<double> invalid_sample(Random& random, const check::Input& input) {
     return sample;
 }
 
+/// Multiples of 1/4 that float32 still adds and squares without rounding.
+std::vector<double> extreme_sample(Random& random, const check::Input& input) {
+    constexpr double kFar = 64;
+    std::vector<double> sample = valid_sample(random, input, true);
+    if (input.type == InputType::boolean) return sample;
+    const double end = input.is_embedding() ? 4 : kFar;
+    for (double& value : sample) {
+        value = random.chance(0.5) ? end : -end;
+        if (input.type != InputType::scalar) continue;
+        value = std::min(value, static_cast<double>(input.range.high));
+        value = std::max(value, static_cast<double>(input.range.low));
+    }
+    return sample;
+}
+
 std::vector<std::string> columns(const check::Input& input) {
     if (!input.is_embedding()) return {input.name};
     std::vector<std::string> result;
@@ -79,6 +95,8 @@ reference::Trace random_trace(const check::Model& model, std::uint64_t seed, con
                 step.emplace_back();
             else if (random.chance(shape.invalid))
                 step.push_back(invalid_sample(random, input));
+            else if (shape.extreme > 0 && random.chance(shape.extreme))
+                step.push_back(extreme_sample(random, input));
             else
                 step.push_back(valid_sample(random, input, shape.grid));
         }

@@ -16,6 +16,7 @@ struct TraceShape {
     std::size_t steps = 12;
     double missing = 0;  ///< probability that a sample is not there
     double invalid = 0;  ///< probability of NaN, an infinity, a value out of range or a zero vector instead
+    double extreme = 0;  ///< probability of a sample at an end of its range, or far out where it has none
     /// Multiples of 1/4 in [-4, 4], so that ties and exact zeros occur; else any float32 there.
     bool grid = true;
 };

@@ -1,0 +1,76 @@
+// campaign [--pairs N] [--planned N] [--compiled N] [--seed S]: exit status 1 where something disagrees with the
+// reference, or more formulas are refused than may be.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdio>
+
+#include "campaign.hpp"
+#include "loading.hpp"
+#include "random_trace.hpp"
+
+namespace {
+
+using namespace etlc::tests;
+
+/// Greatest share of prefix monitors with windows to 40 that may be refused, by depth.
+constexpr std::array<double, kDepths> kMayBeRefused{0.005, 0.005, 0.005, 0.05, 0.05};
+/// A share is judged from so many formulas on.
+constexpr int kEnoughForShare = 1000;
+
+void show(const Finding& finding) {
+    fmt::print("\n{}\n---- spec\n{}---- trace\n", finding.mismatch, finding.spec);
+    if (const auto model = load(finding.spec)) fmt::print("{}", to_csv(*model, finding.trace));
+}
+
+/// Whether the share that is refused is as small as it must be.
+bool show_refused(const char* what, const std::array<Tally::Cell, kDepths>& row,
+                  const std::array<double, kDepths>& may_be) {
+    bool good = true;
+    for (std::size_t depth = 1; depth <= kDepths; ++depth) {
+        const Tally::Cell& cell = row[depth - 1];
+        const bool too_many = cell.formulas >= kEnoughForShare && cell.share() > may_be[depth - 1];
+        good = good && !too_many;
+        if (cell.formulas > 0)
+            fmt::print("{:28} depth {}: {:6} formulas, {:4} refused for their size, {:5.2f} %{}\n", what, depth,
+                       cell.formulas, cell.refused, 100 * cell.share(), too_many ? ": too many" : "");
+    }
+    return good;
+}
+
+int report(const Tally& tally) {
+    for (const Finding& finding : tally.findings) show(finding);
+    bool good = show_refused("prefix, windows to 40", tally.long_windows, kMayBeRefused);
+    good &= show_refused("the same, mostly future", tally.mostly_future, kMayBeRefused);
+    good &= show_refused("prefix, windows to 6", tally.short_windows, kMayBeRefused);
+    good &= show_refused("sliding", tally.sliding, kMayBeRefused);
+    fmt::print("{} pairs of a formula and a trace evaluated, {} formulas compiled: {} mismatches\n", tally.pairs,
+               tally.compiled, tally.findings.size());
+    good = good && tally.findings.empty();
+    // A spec that does not load or a class that does not compile is a failure of GoogleTest's, outside of any test.
+    good = good && !testing::UnitTest::GetInstance()->ad_hoc_test_result().Failed();
+    return good ? 0 : 1;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    testing::InitGoogleTest(&argc, argv);
+    CLI::App app{"Holds random formulas on random traces to the reference"};
+    Effort effort;
+    app.add_option("--pairs", effort.pairs, "formula/trace pairs for the evaluator")->capture_default_str();
+    app.add_option("--planned", effort.planned, "formulas that are only planned")->capture_default_str();
+    app.add_option("--compiled", effort.compiled, "formulas in compiled classes")->capture_default_str();
+    app.add_option("--longest", effort.longest, "steps of the longest trace")->capture_default_str();
+    app.add_option("--seed", effort.seed, "another campaign")->capture_default_str();
+    // Ways to evaluate a formula go here: each is another Effort, tried and tallied as these.
+    app.add_flag("--show-refused", effort.show_refused, "print each formula that is refused");
+    CLI11_PARSE(app, argc, argv);
+    Tally tally;
+    try_pairs(effort, tally);
+    try_plans(effort, tally);
+    try_compiled(effort, tally);
+    return report(tally);
+}
