@@ -4,6 +4,7 @@ include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
+install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)  # where etlc looks for it, from bin/
 install(TARGETS etlmon EXPORT etlmonTargets)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.def")

@@ -12,6 +12,7 @@
 
 #include "data/file.hpp"
 #include "data/hash.hpp"
+#include "data/hdf5.hpp"
 
 namespace etlc::data {
 namespace {
@@ -20,7 +21,7 @@ namespace fs = std::filesystem;
 using diag::Code;
 
 constexpr std::string_view kPatternCharacters = "*?[";
-constexpr std::string_view kExpected = "expected files that end in .npz or .csv";
+constexpr std::string_view kExpected = "expected files that end in .npz, .csv or .h5";
 
 bool is_directory(const std::string& path) {
     std::error_code error;
@@ -74,7 +75,8 @@ diag::Result<std::vector<std::string>> expand(const std::string& argument) {
 
 }  // namespace
 
-std::vector<std::string> find_episodes(const std::vector<std::string>& arguments, diag::Sink& sink) {
+std::vector<std::string> find_episodes(const std::vector<std::string>& arguments, const std::string& groups,
+                                       diag::Sink& sink) {
     std::vector<std::string> episodes;
     std::set<std::string> seen;
     for (const std::string& argument : arguments) {
@@ -84,8 +86,17 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
             continue;
         }
         std::sort(files->begin(), files->end());
-        for (std::string& file : *files)
-            if (seen.insert(fs::path(file).lexically_normal().string()).second) episodes.push_back(std::move(file));
+        for (const std::string& file : *files) {
+            if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
+            if (groups.empty() || !is_hdf5(file)) {
+                episodes.push_back(file);
+                continue;
+            }
+            const auto found = list_hdf5(file, groups);
+            if (!found) sink.report(in_file(found.failure(), file));
+            if (found)
+                for (const std::string& group : *found) episodes.push_back(file + ":" + group);
+        }
     }
     return episodes;
 }

@@ -1,17 +1,36 @@
 #include "data/trace.hpp"
 
+#include <filesystem>
+#include <system_error>
+
+#include "data/hdf5.hpp"
 #include "data/trace_formats.hpp"
 
 namespace etlc::data {
+namespace {
+
+/// Where in "runs.h5:data/demo_0" the colon stands, unless that is the name of a file.
+std::size_t group_mark(const std::string& path) {
+    std::error_code error;
+    if (std::filesystem::exists(path, error)) return std::string::npos;
+    for (std::size_t at = path.find(':'); at != std::string::npos; at = path.find(':', at + 1))
+        if (is_hdf5(path.substr(0, at))) return at;
+    return std::string::npos;
+}
+
+}  // namespace
 
 bool is_trace(const std::string& path) {
-    return path.ends_with(".npz") || path.ends_with(".csv");
+    return path.ends_with(".npz") || path.ends_with(".csv") || is_hdf5(path);
 }
 
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels) {
     if (path.ends_with(".npz")) return open_npz_trace({path, {}, false}, channels);
+    const std::size_t mark = group_mark(path);
+    if (mark != std::string::npos) return open_hdf5_trace(path.substr(0, mark), path.substr(mark + 1), channels);
+    if (is_hdf5(path)) return open_hdf5_trace(path, "", channels);
     if (!path.ends_with(".csv"))
-        return diag::Failure{diag::Code::unknown_trace_format, "unknown kind of trace, expected .csv or .npz"};
+        return diag::Failure{diag::Code::unknown_trace_format, "unknown kind of trace, expected .csv, .npz or .h5"};
     auto source = open_file(path);
     if (!source) return of_trace(source.failure());
     return open_csv_trace(std::move(*source), channels);

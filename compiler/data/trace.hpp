@@ -1,7 +1,8 @@
 // Recorded traces and episodes, read a step at a time.
-// Takes: the columns wanted and a file (.npz or .csv). Gives: one sample a step, missing ones marked.
+// Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group of it). Gives: one sample a step, missing ones marked.
 // Keeps true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a buffer is held,
-// a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp).
+// a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a
+// process of its own, data/hdf5.hpp).
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@
 namespace etlc::data {
 
 /// One column group of a trace: a scalar (`width` 1, written `name`), an embedding (`name[0]`, `name[1]`, ... in CSV,
-/// an array T x width in NPZ) or a bool (0/1, or a bool array).
+/// an array T x width in NPZ and HDF5) or a bool (0/1, or a bool array).
 struct Channel {
     enum class Kind : std::uint8_t { scalar, boolean, vector };
     std::string name;
@@ -44,7 +45,7 @@ public:
 bool is_trace(const std::string& path);
 
 /// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
-/// elements of a vector beyond its width. Shapes in .npz: T or T x 1 for scalars and bools, T x D for vectors (T too
+/// elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for scalars and bools, T x D for vectors (T too
 /// where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`
 /// (data/file.hpp) adds it.
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);

@@ -35,7 +35,7 @@ protected:
     /// The episodes, relative to the folder.
     std::vector<std::string> find(std::vector<std::string> arguments, diag::Sink& sink) const {
         for (std::string& argument : arguments) argument = (folder_ / argument).string();
-        std::vector<std::string> found = find_episodes(arguments, sink);
+        std::vector<std::string> found = find_episodes(arguments, "", sink);
         for (std::string& path : found) path = fs::path(path).lexically_relative(folder_).string();
         return found;
     }
@@ -83,9 +83,9 @@ TEST_F(Episodes, AreMissedWhereAnArgumentHasNone) {
     }
     EXPECT_EQ(messages, (std::set<std::string>{
                             "no_such: no such file",
-                            "empty: holds no episodes, expected files that end in .npz or .csv",
+                            "empty: holds no episodes, expected files that end in .npz, .csv or .h5",
                             "*.h: no file matches this pattern",
-                            "em*: only folders match, without episodes, expected files that end in .npz or .csv",
+                            "em*: only folders match, without episodes, expected files that end in .npz, .csv or .h5",
                         }));
 }
 
