@@ -46,8 +46,8 @@ std::unique_ptr<Child> Child::start(const std::string& program, const std::vecto
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<std::string> settings = environment();
     pid_t process = 0;
-    const int status = ::posix_spawn(&process, program.c_str(), &actions, nullptr, pointers(words).data(),
-                                     pointers(settings).data());
+    const int status =
+        ::posix_spawn(&process, program.c_str(), &actions, nullptr, pointers(words).data(), pointers(settings).data());
     ::posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
     if (status == 0) return std::unique_ptr<Child>(new Child(process, ends[0], max_silence_seconds));

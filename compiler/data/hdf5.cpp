@@ -215,9 +215,9 @@ diag::Result<std::vector<std::string>> list_hdf5(const std::string& path, const 
         if (*tag != Tag::name || names.size() == hdf5::kMaxNames) return Records::nonsense();
         const std::string& name = (*records)->bytes();
         if (in_quotes(name) != "'" + name + "'")
-            return Failure{Code::malformed_trace_array,
-                           fmt::format("has a group with a name that cannot be printed or is too long: {}",
-                                       in_quotes(name))};
+            return Failure{
+                Code::malformed_trace_array,
+                fmt::format("has a group with a name that cannot be printed or is too long: {}", in_quotes(name))};
         names.push_back(name);
     }
     if (names.empty())

@@ -117,7 +117,8 @@ hid_t open_member(hid_t group, const std::string& name) {
     if (H5Lexists(group, name.c_str(), H5P_DEFAULT) <= 0) return -1;
     if (H5Lget_info(group, name.c_str(), &info, H5P_DEFAULT) < 0) return -1;
     // A soft link may lead to an external one.
-    if (info.type != H5L_TYPE_HARD) fail(Cause::channel, "'" + name + "' is a soft or external link, which is not followed");
+    if (info.type != H5L_TYPE_HARD)
+        fail(Cause::channel, "'" + name + "' is a soft or external link, which is not followed");
     return H5Oopen(group, name.c_str(), H5P_DEFAULT);
 }
 
@@ -163,7 +164,8 @@ void list(hid_t group, const std::string& prefix, const std::vector<std::string>
         if (::fnmatch(pattern[at].c_str(), name.c_str(), 0) != 0) continue;
         const hid_t member = open_member(group, name);
         if (member < 0) fail(Cause::file, "has a group that cannot be opened");
-        if (H5Iget_type(member) == H5I_GROUP) list(member, prefix.empty() ? name : prefix + "/" + name, pattern, at + 1);
+        if (H5Iget_type(member) == H5I_GROUP)
+            list(member, prefix.empty() ? name : prefix + "/" + name, pattern, at + 1);
         H5Oclose(member);
     }
 }
@@ -197,8 +199,7 @@ void find_type(Channel& channel) {
 void find_shape(Channel& channel) {
     const hid_t space = H5Dget_space(channel.dataset);
     const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank < 0 || rank > H5S_MAX_RANK)
-        fail(Cause::array, "dataset " + channel.quoted() + " has a damaged shape");
+    if (rank < 0 || rank > H5S_MAX_RANK) fail(Cause::array, "dataset " + channel.quoted() + " has a damaged shape");
     channel.shape.resize(static_cast<std::size_t>(rank));
     if (rank > 0) H5Sget_simple_extent_dims(space, channel.shape.data(), nullptr);
 }
@@ -247,12 +248,14 @@ void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to
     void* const buffer = channel.bools ? static_cast<void*>(bools.data()) : values.data();
     if (H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, size, nullptr) < 0 ||
         H5Dread(channel.dataset, channel.memory_type, memory_space, file_space, H5P_DEFAULT, buffer) < 0)
-        fail(Cause::array, "dataset " + channel.quoted() + " cannot be read: it is damaged, or packed in an unknown way");
+        fail(Cause::array,
+             "dataset " + channel.quoted() + " cannot be read: it is damaged, or packed in an unknown way");
     H5Sclose(memory_space);
     H5Sclose(file_space);
     std::copy(bools.begin(), bools.end(), values.begin());
     for (hsize_t row = 0; row < count; ++row)
-        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * channel.width), channel.width, to + row * stride);
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * channel.width), channel.width,
+                    to + row * stride);
 }
 
 void send_rows(const std::vector<Channel>& channels, hsize_t steps, std::size_t width) {

@@ -20,6 +20,12 @@ std::size_t group_mark(const std::string& path) {
 
 }  // namespace
 
+std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
+    for (Channel& channel : channels)
+        if (const auto found = names.find(channel.name); found != names.end()) channel.name = found->second;
+    return channels;
+}
+
 bool is_trace(const std::string& path) {
     return path.ends_with(".npz") || path.ends_with(".csv") || is_hdf5(path);
 }

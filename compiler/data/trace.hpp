@@ -1,11 +1,12 @@
 // Recorded traces and episodes, read a step at a time.
-// Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group of it). Gives: one sample a step, missing ones marked.
-// Keeps true: memory does not grow with the number of steps (.csv is streamed; of an .npz member only a buffer is held,
-// a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a
-// process of its own, data/hdf5.hpp).
+// Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group of it). Gives: one
+// sample a step, missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed; of
+// an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in
+// $TMPDIR or /tmp; .h5 is read by a process of its own, data/hdf5.hpp).
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
@@ -41,12 +42,16 @@ public:
     virtual bool has(std::size_t channel) const = 0;
 };
 
+/// Names in the file, by the names of the channels, where they differ: `--map z=obs/z`.
+using NamesInFile = std::map<std::string, std::string>;
+std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
+
 /// Whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);
 
 /// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
-/// elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for scalars and bools, T x D for vectors (T too
-/// where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`
+/// elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for scalars and bools, T x D for vectors
+/// (T too where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`
 /// (data/file.hpp) adds it.
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);
 

@@ -9,6 +9,7 @@
 #include "data/file.hpp"
 #include "diag/render.hpp"
 #include "driver/compile.hpp"
+#include "driver/names.hpp"
 #include "driver/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
@@ -211,12 +212,21 @@ int run_command(int argc, char** argv) {
     CLI::App app("Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.",
                  "etlc run");
     add_common_options(app, call);
-    app.add_option("--trace", call.run.trace, "the trace: .csv or .npz")->type_name("FILE")->required();
+    app.add_option("--trace", call.run.trace,
+                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
+        ->type_name("FILE")
+        ->required();
+    std::vector<std::string> names;
+    app.add_option("--map", names, "what an input is called in the trace: --map z=obs/z")->type_name("NAME=OTHER");
     app.add_option("-o,--output", call.run.output, "where to write the verdicts, as CSV; - is standard output")
         ->type_name("FILE")
         ->capture_default_str();
     app.add_flag("--finish", call.run.finish, "after the trace, also report the last positions of sliding monitors");
     if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    std::string mistake;
+    const auto parsed = driver::parse_names(names, mistake);
+    if (!parsed) return complain(app, mistake);
+    call.run.names = *parsed;
     return run_trace(call);
 }
 

@@ -7,6 +7,7 @@
 
 #include "data/file.hpp"
 #include "data/trace.hpp"
+#include "driver/names.hpp"
 #include "plan/evaluator.hpp"
 
 namespace etlc::driver {
@@ -37,6 +38,7 @@ public:
         : plan_(compiled.plan), request_(request), sink_(sink), evaluator_(compiled.plan) {}
 
     bool execute() {
+        if (!check_names(*plan_.model, request_.names, sink_)) return false;
         auto output = data::AtomicFile::create(request_.output == "-" ? "/dev/stdout" : request_.output,
                                                diag::Code::unwritable_output);
         if (!output) return fail(output.failure(), request_.output);
@@ -56,7 +58,7 @@ private:
     bool step_through_trace() {
         std::vector<data::Channel> channels;
         for (check::Index i : plan_.inputs) channels.push_back(channel_of(plan_.model->inputs[i]));
-        auto trace = data::open_trace(request_.trace, channels);
+        auto trace = data::open_trace(request_.trace, data::renamed(channels, request_.names));
         if (!trace) return fail(trace.failure(), request_.trace);
         data::Sample sample;
         std::vector<plan::Sample> samples(plan_.model->inputs.size());

@@ -5,6 +5,7 @@
 
 #include <string>
 
+#include "data/trace.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile.hpp"
 
@@ -12,6 +13,7 @@ namespace etlc::driver {
 
 struct RunRequest {
     std::string trace;
+    data::NamesInFile names;
     std::string output = "-";
     bool finish = false;    ///< also the positions that sliding monitors report after the end of the trace
     bool progress = false;  ///< on stderr

@@ -38,11 +38,16 @@ protected:
 };
 
 TEST_F(Hdf5Trace, StepsOfEveryKind) {
-    const std::vector<Channel> channels{
-        {"z", Kind::vector, 3},        {"z_half", Kind::vector, 3},        {"z_big_endian", Kind::vector, 3},
-        {"z_packed", Kind::vector, 3}, {"gripper", Kind::scalar, 1},       {"column", Kind::scalar, 1},
-        {"held", Kind::boolean, 1},    {"truth.none", Kind::boolean, 1, true}, {"held_int", Kind::boolean, 1},
-        {"gripper", Kind::vector, 1}};
+    const std::vector<Channel> channels{{"z", Kind::vector, 3},
+                                        {"z_half", Kind::vector, 3},
+                                        {"z_big_endian", Kind::vector, 3},
+                                        {"z_packed", Kind::vector, 3},
+                                        {"gripper", Kind::scalar, 1},
+                                        {"column", Kind::scalar, 1},
+                                        {"held", Kind::boolean, 1},
+                                        {"truth.none", Kind::boolean, 1, true},
+                                        {"held_int", Kind::boolean, 1},
+                                        {"gripper", Kind::vector, 1}};
     auto trace = open_trace(kFile, channels);
     ASSERT_TRUE(trace) << trace.failure().message;
     EXPECT_EQ((*trace)->length(), 7U);
@@ -86,13 +91,14 @@ TEST_F(Hdf5Trace, OfAGroup) {
     }
     EXPECT_EQ(failure(kFile + ":data/demo_3", channels).message,
               "no group 'data/demo_3'; there are 'column', 'cube', 'data', 'elsewhere', 'external', 'gripper', 'held', "
-              "'held_int' and 13 more");
+              "'held_int' and 12 more");
 }
 
 TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
     diag::Sink sink;
-    const std::vector<std::string> found = find_episodes({kFile}, "data/demo_?*[0-9]", sink);
-    EXPECT_EQ(found, (std::vector<std::string>{kFile + ":data/demo_1", kFile + ":data/demo_10", kFile + ":data/demo_2"}));
+    const std::vector<std::string> found = find_episodes({kFile}, "data/demo_*[0-9]", sink);
+    EXPECT_EQ(found,
+              (std::vector<std::string>{kFile + ":data/demo_1", kFile + ":data/demo_10", kFile + ":data/demo_2"}));
     EXPECT_EQ(find_episodes({kFile}, "", sink), std::vector<std::string>{kFile});
     EXPECT_FALSE(sink.has_errors());
     EXPECT_TRUE(find_episodes({kFile}, "nothing/*", sink).empty());
@@ -106,7 +112,7 @@ TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
 TEST_F(Hdf5Trace, NamesWhatIsNotThere) {
     EXPECT_EQ(message({{"zz", Kind::vector, 3}}),
               "no dataset 'zz'; there are 'column', 'cube', 'data', 'elsewhere', 'external', 'gripper', 'held', "
-              "'held_int' and 13 more");
+              "'held_int' and 12 more");
     EXPECT_EQ(failure(kFile, {{"zz", Kind::vector, 3}}).code, Code::no_such_channel);
     EXPECT_EQ(message({{"data", Kind::vector, 3}}), "'data' is no dataset");
     EXPECT_EQ(message({{"z/below", Kind::vector, 3}}).substr(0, 20), "no dataset 'z/below'");
