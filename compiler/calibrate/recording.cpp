@@ -62,9 +62,8 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
 
 Failure no_label(const check::Model& model, Index predicate) {
     const std::string& name = model.predicates[predicate].name;
-    return {Code::no_such_channel,
-            fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it", name,
-                        data::in_quotes(array_name(model, predicate)))};
+    return {Code::no_label, fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it",
+                                        name, data::in_quotes(array_name(model, predicate)))};
 }
 
 }  // namespace

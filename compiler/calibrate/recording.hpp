@@ -33,7 +33,7 @@ using Opener = std::function<diag::Result<std::unique_ptr<data::Trace>>(const st
 
 class Recording {
 public:
-    /// Failures: what `open` fails with; no_such_channel where a predicate has neither a truth nor an array. They do
+    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an array. They do
     /// not name the episode.
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 

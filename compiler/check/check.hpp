@@ -20,6 +20,9 @@ struct Options {
     bool allow_uncalibrated = false;
 };
 
+/// Where the thresholds of a spec are looked for: SPEC.thresholds.json beside SPEC.etl.
+std::string default_thresholds_path(const std::string& spec_path);
+
 std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options, diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -107,9 +107,11 @@ struct Threshold {
     ThresholdOrigin origin = ThresholdOrigin::literal;
     std::string
         text;  ///< literal: its decimal text; calibrated: "calibrated(conformal, alpha = 0.10)" as canonical text
-    std::string alpha;   ///< decimal text, where the method has one
-    double value64 = 0;  ///< the literal's text rounded to double: only truth formulas use it
-    float value = 0;     ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
+    std::string alpha;    ///< decimal text, where the method has one
+    double value64 = 0;   ///< the literal's text rounded to double: only truth formulas use it
+    float value = 0;      ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
+    std::uint64_t n = 0;  ///< calibrated: how many scores it was chosen among
+    std::uint64_t k = 0;  ///< and its rank among them; 0 for f1
     Span span;
 };
 

@@ -16,14 +16,6 @@ namespace {
 
 using diag::Code;
 
-/// SPEC.thresholds.json beside SPEC.etl.
-std::string default_path(const std::string& spec_path) {
-    std::filesystem::path path(spec_path);
-    if (path.extension() == ".etl") path.replace_extension();
-    path += ".thresholds.json";
-    return path.string();
-}
-
 std::vector<Index> calibrated_predicates(Context& c) {
     std::vector<Index> found;
     for (Index i = 0; i < c.model.predicates.size(); ++i) {
@@ -37,7 +29,7 @@ std::vector<Index> calibrated_predicates(Context& c) {
 /// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
 std::optional<thresholds::File> read_thresholds(Context& c, const Predicate& first) {
     const bool is_default = c.options.thresholds_path.empty();
-    const std::string path = is_default ? default_path(c.file.path()) : c.options.thresholds_path;
+    const std::string path = is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
     if (is_default && !std::filesystem::exists(path)) {
         c.report(Code::thresholds_missing, first.threshold.span,
                  fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", first.name, path))
@@ -145,9 +137,18 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
     }
     predicate.threshold.value = found->second.epsilon;
     predicate.threshold.value64 = static_cast<double>(found->second.epsilon);
+    predicate.threshold.n = found->second.n;
+    predicate.threshold.k = found->second.k;
 }
 
 }  // namespace
+
+std::string default_thresholds_path(const std::string& spec_path) {
+    std::filesystem::path path(spec_path);
+    if (path.extension() == ".etl") path.replace_extension();
+    path += ".thresholds.json";
+    return path.string();
+}
 
 void check_thresholds(Context& c) {
     const std::vector<Index> calibrated = calibrated_predicates(c);

@@ -8,6 +8,7 @@
 
 #include "data/file.hpp"
 #include "diag/render.hpp"
+#include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
 #include "driver/names.hpp"
 #include "driver/run.hpp"
@@ -31,6 +32,7 @@ struct Call {
     bool check_only = false;
     driver::Request request;
     driver::RunRequest run;
+    driver::CalibrateRequest calibrate;
 };
 
 bool warnings_are_errors(const Call& call) {
@@ -107,8 +109,29 @@ int run_trace(const Call& call) {
     return conclude(call, file, sink);
 }
 
-void add_common_options(CLI::App& app, Call& call) {
+int calibrate_spec(const Call& call) {
+    diag::Sink sink;
+    source::File file;
+    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
+    driver::CalibrateRequest request = call.calibrate;
+    request.warnings_are_errors = warnings_are_errors(call);
+    request.progress = isatty(STDERR_FILENO) != 0;
+    driver::calibrate(file, request, sink);
+    return conclude(call, file, sink);
+}
+
+void add_spec_options(CLI::App& app, Call& call) {
     app.add_option("spec", call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
+    app.add_option("-W", call.warnings, "-Werror: warnings are errors")
+        ->type_name("error")
+        ->check(CLI::IsMember({"error"}));
+    app.add_option("--diagnostics", call.diagnostics, "how to print them")
+        ->check(CLI::IsMember({"text", "json"}))
+        ->capture_default_str();
+}
+
+void add_common_options(CLI::App& app, Call& call) {
+    add_spec_options(app, call);
     app.add_option("--thresholds", call.request.check.thresholds_path,
                    "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
@@ -116,12 +139,6 @@ void add_common_options(CLI::App& app, Call& call) {
     app.add_option("--max-code", call.request.limits.code_bytes, "most bytes of code, estimated, targets aside")
         ->capture_default_str();
     app.add_option("--max-work", call.request.limits.operations, "most operations of the temporal part a step")
-        ->capture_default_str();
-    app.add_option("-W", call.warnings, "-Werror: warnings are errors")
-        ->type_name("error")
-        ->check(CLI::IsMember({"error"}));
-    app.add_option("--diagnostics", call.diagnostics, "how to print them")
-        ->check(CLI::IsMember({"text", "json"}))
         ->capture_default_str();
 }
 
@@ -196,7 +213,7 @@ int compile_command(int argc, char** argv) {
     Call call;
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
-        "Other commands: etlc run SPEC.etl --trace FILE",
+        "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...",
         "etlc");
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
@@ -230,9 +247,39 @@ int run_command(int argc, char** argv) {
     return run_trace(call);
 }
 
+int calibrate_command(int argc, char** argv) {
+    Call call;
+    CLI::App app("Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file.",
+                 "etlc calibrate");
+    add_spec_options(app, call);
+    std::vector<std::string> names;
+    app.add_option("--data", call.calibrate.calibration.data,
+                   "demonstrations: .npz, .csv and .h5 files, folders, patterns")
+        ->type_name("FILE...")
+        ->required();
+    app.add_option("--episodes", call.calibrate.calibration.groups, "groups of .h5 files that are episodes: 'data/*'")
+        ->type_name("PATTERN");
+    app.add_option("--map", names, "what an input is called in the files: --map z=obs/z")->type_name("NAME=OTHER");
+    app.add_option(
+           "-o,--output", call.calibrate.output,
+           "where to write the thresholds (default: SPEC.thresholds.json beside the spec); - is standard output")
+        ->type_name("FILE");
+    app.add_option("-j,--jobs", call.calibrate.calibration.jobs, "threads (default: as many as the machine has)")
+        ->type_name("N")
+        ->check(CLI::Range(1U, 1024U));
+    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    std::string mistake;
+    const auto parsed = driver::parse_names(names, mistake);
+    if (!parsed) return complain(app, mistake);
+    call.calibrate.calibration.names = *parsed;
+    return calibrate_spec(call);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-    const bool run = argc > 1 && std::string_view(argv[1]) == "run";
-    return run ? run_command(argc - 1, argv + 1) : compile_command(argc, argv);
+    const std::string_view command = argc > 1 ? argv[1] : "";
+    if (command == "run") return run_command(argc - 1, argv + 1);
+    if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
+    return compile_command(argc, argv);
 }

@@ -1,6 +1,7 @@
 // The head of the generated file: what it holds and what that costs; the same figures as --emit report.
 #include <algorithm>
 
+#include "check/guarantees.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 
@@ -57,8 +58,13 @@ std::string origin(const check::Threshold& threshold) {
     switch (threshold.origin) {
         case check::ThresholdOrigin::literal: return "written in the spec; no guarantee";
         case check::ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
-        case check::ThresholdOrigin::conformal: return "conformal, alpha = " + threshold.alpha;
-        case check::ThresholdOrigin::class_conditional: return "class-conditional, alpha = " + threshold.alpha;
+        case check::ThresholdOrigin::conformal:
+            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}", threshold.alpha,
+                               threshold.k, threshold.n, check::coverage_quantile(threshold.n, threshold.k, 0.05),
+                               check::coverage_quantile(threshold.n, threshold.k, 0.95));
+        case check::ThresholdOrigin::class_conditional:
+            return fmt::format("class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
+                               threshold.alpha, threshold.k, threshold.n);
     }
     return "";
 }
@@ -73,10 +79,44 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     return rows;
 }
 
+bool is_calibrated(const plan::Plan& plan) {
+    return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
+        return plan.model->predicates[p].threshold.origin != check::ThresholdOrigin::literal;
+    });
+}
+
+/// What the thresholds guarantee, a row a monitor, and a row a conjunct where nothing is said of the whole.
+std::vector<Row> guarantee_rows(const plan::Plan& plan) {
+    std::vector<Row> rows{{"monitor", "guarantee"}};
+    for (const plan::Monitor& monitor : plan.monitors)
+        for (const check::Claim& claim : check::claims(*plan.model, plan.model->monitors[monitor.index])) {
+            const bool whole = claim.part.empty();
+            rows.push_back({whole ? monitor.name : "",
+                            (whole ? "" : "of its part " + shortened(claim.part) + ": ") + check::text(claim)});
+        }
+    return rows;
+}
+
+void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
+    const std::string blank = prefix.substr(0, prefix.find_last_not_of(' ') + 1);
+    out.line(blank);
+    print_table(out, prefix, guarantee_rows(plan), 2);
+    out.line(blank);
+    const std::string margin = prefix.starts_with("//") ? "// " : prefix;
+    out.line(margin +
+             "Probabilities are over the demonstrations and the new episode together, exchangeable, per episode as "
+             "recorded. coverage: of");
+    out.line(margin +
+             "a new episode, given these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - k), more where "
+             "scores tie. Where a");
+    out.line(margin + "sample is missing, what is said of successes does not hold.");
+}
+
 void print_tables(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     print_table(out, prefix, monitor_rows(plan), 2);
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
+    if (is_calibrated(plan)) print_guarantees(out, prefix, plan);
 }
 
 }  // namespace

@@ -1,0 +1,236 @@
+#include "calibrate/calibrate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <map>
+#include <mutex>
+#include <thread>
+
+#include "calibrate/rank.hpp"
+#include "check/provenance.hpp"
+#include "data/episodes.hpp"
+#include "data/file.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using check::ThresholdOrigin;
+using diag::Code;
+
+constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
+
+std::string counted(std::uint64_t n, const std::string& noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+/// One episode twice would count twice.
+void refuse_duplicates(const std::vector<Demonstration>& demonstrations, diag::Sink& sink) {
+    std::map<std::string, std::string> first;
+    std::size_t reported = 0;
+    for (const Demonstration& demonstration : demonstrations) {
+        const auto [at, is_new] = first.try_emplace(demonstration.hash, demonstration.path);
+        if (is_new || ++reported > kMostReported) continue;
+        sink.report(data::in_file({Code::duplicate_episode, fmt::format("is the same episode as {}", at->second)},
+                                  demonstration.path))
+            .note("demonstrations have to be independent recordings: one that counts twice voids the guarantee");
+    }
+}
+
+/// A target taken from a demonstration is at distance 0 of it, which no later episode will be.
+void refuse_leaks(const check::Model& model, const std::vector<Demonstration>& demonstrations, diag::Sink& sink) {
+    std::size_t reported = 0;
+    for (const Demonstration& demonstration : demonstrations) {
+        if (!demonstration.leak || ++reported > kMostReported) continue;
+        const Leak& leak = *demonstration.leak;
+        sink.report(data::in_file(
+                        {Code::target_in_data,
+                         fmt::format("step {} is row {} of target '{}', from which '{}' measures", leak.frame, leak.row,
+                                     model.targets[leak.target].name, model.predicates[leak.predicate].name)},
+                        demonstration.path))
+            .note("targets have to come from other recordings: at a distance of 0 this one voids the guarantee");
+    }
+}
+
+class Refusing {
+public:
+    Refusing(const check::Model& model, const std::vector<Demonstration>& demonstrations, diag::Sink& sink)
+        : model_(model), demonstrations_(demonstrations), sink_(sink) {}
+
+    void report(Index predicate, std::size_t of, Refusal refusal) {
+        const check::Predicate& p = model_.predicates[predicate];
+        totals(of);
+        switch (refusal) {
+            case Refusal::no_positives: no_positives(p); break;
+            case Refusal::too_few: too_few(p); break;
+            case Refusal::not_finite:
+                sink_.report(
+                    Code::no_threshold, p.threshold.span,
+                    fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no threshold lies beyond it",
+                                p.name, p.threshold.alpha));
+                break;
+            case Refusal::no_f1:
+                sink_.report(Code::no_threshold, p.threshold.span,
+                             fmt::format("no observed value as threshold of '{}' finds a positive frame; it has {}",
+                                         p.name, counted(positives_, "positive frame")));
+                break;
+        }
+    }
+
+private:
+    void totals(std::size_t of) {
+        positives_ = unmeasured_ = with_score_ = pooled_ = 0;
+        for (const Demonstration& demonstration : demonstrations_) {
+            const Scores& scores = demonstration.scores[of];
+            positives_ += scores.positives;
+            unmeasured_ += scores.unmeasured;
+            with_score_ += scores.has_score ? 1 : 0;
+            pooled_ += scores.reaches.size();
+        }
+    }
+
+    void no_positives(const check::Predicate& p) {
+        const std::string all = counted(demonstrations_.size(), "demonstration");
+        auto& error = sink_.report(
+            Code::no_positive_frame, p.threshold.span,
+            positives_ == 0
+                ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn its threshold from", p.name,
+                              all)
+                : fmt::format("the distance of '{}' is unknown at all {} where it is true, in {}", p.name,
+                              counted(positives_, "frame"), all));
+        for (const check::Truth& truth : model_.truths)
+            if (&model_.predicates[truth.predicate] == &p) error.note(truth.span, "its truth is here");
+    }
+
+    void too_few(const check::Predicate& p) {
+        const bool pooled = p.threshold.origin == ThresholdOrigin::class_conditional;
+        const std::uint64_t needed = scores_needed(p.threshold.alpha);
+        const std::string what = pooled ? "positive frame" : "demonstration";
+        auto& error = sink_.report(
+            Code::too_few_scores, p.threshold.span,
+            fmt::format("alpha = {} needs at least {}{}; there {} {}", p.threshold.alpha, counted(needed, what),
+                        pooled ? "" : fmt::format(" in which '{}' is true at some frame", p.name),
+                        (pooled ? pooled_ : with_score_) == 1 ? "is" : "are", pooled ? pooled_ : with_score_));
+        if (!pooled && with_score_ < demonstrations_.size())
+            error.note(fmt::format(
+                "of {}, {} without such a frame {} left out", counted(demonstrations_.size(), "demonstration"),
+                demonstrations_.size() - with_score_, demonstrations_.size() - with_score_ == 1 ? "is" : "are"));
+    }
+
+    const check::Model& model_;
+    const std::vector<Demonstration>& demonstrations_;
+    diag::Sink& sink_;
+    std::uint64_t positives_ = 0;
+    std::uint64_t unmeasured_ = 0;
+    std::uint64_t with_score_ = 0;
+    std::uint64_t pooled_ = 0;
+};
+
+std::string_view method_name(ThresholdOrigin origin) {
+    switch (origin) {
+        case ThresholdOrigin::f1: return "f1";
+        case ThresholdOrigin::conformal: return "conformal";
+        case ThresholdOrigin::class_conditional: return "class_conditional";
+        case ThresholdOrigin::literal: break;
+    }
+    return "";
+}
+
+thresholds::Entry entry_of(const check::Model& model, Index predicate, const std::vector<Demonstration>& demonstrations,
+                           std::size_t of, const Fitted& fitted) {
+    check::Provenance provenance = check::provenance(model, predicate);
+    const bool arrays_only = std::all_of(demonstrations.begin(), demonstrations.end(),
+                                         [&](const Demonstration& d) { return d.scores[of].from_array; });
+    thresholds::Entry entry;
+    entry.method = method_name(model.predicates[predicate].threshold.origin);
+    entry.alpha = model.predicates[predicate].threshold.alpha;
+    entry.epsilon = fitted.epsilon;
+    entry.n = fitted.n;
+    entry.k = fitted.k;
+    entry.scores = fitted.scores;
+    entry.predicate = std::move(provenance.predicate);
+    entry.truth = arrays_only ? "array" : std::move(provenance.truth);
+    entry.targets = std::move(provenance.targets);
+    if (!arrays_only) entry.targets.merge(provenance.truth_targets);
+    return entry;
+}
+
+}  // namespace
+
+std::optional<std::vector<Demonstration>> score_all(const check::Model& model, const std::vector<Index>& predicates,
+                                                    const std::vector<std::string>& paths, const Request& request,
+                                                    diag::Sink& sink) {
+    std::vector<std::optional<diag::Result<Demonstration>>> results(paths.size());
+    std::atomic<std::size_t> next = 0;
+    std::size_t done = 0;
+    std::mutex reporting;
+    const auto work = [&] {
+        Scorer scorer(model, predicates, request.names);
+        for (std::size_t i = next++; i < paths.size(); i = next++) {
+            results[i].emplace(scorer.score(paths[i]));
+            const std::lock_guard lock(reporting);
+            ++done;
+            if (request.progress) request.progress(done, paths.size());
+        }
+    };
+    const std::size_t cores = std::max(1U, request.jobs > 0 ? request.jobs : std::thread::hardware_concurrency());
+    std::vector<std::thread> others;
+    for (std::size_t i = 1; i < std::min(cores, paths.size()); ++i) others.emplace_back(work);
+    work();
+    for (std::thread& other : others) other.join();
+    std::vector<Demonstration> demonstrations;
+    std::size_t failed = 0;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (*results[i])
+            demonstrations.push_back(std::move(**results[i]));
+        else if (++failed <= kMostReported)
+            sink.report(data::in_file(results[i]->failure(), paths[i]));
+    }
+    if (failed > 0) return std::nullopt;
+    return demonstrations;
+}
+
+std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink) {
+    const std::vector<Index> predicates = calibrated_predicates(model);
+    if (predicates.empty()) {
+        sink.report(Code::nothing_to_calibrate, model.monitors.front().span, "no threshold of this spec is calibrated")
+            .note("a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, alpha = 0.1);");
+        return std::nullopt;
+    }
+    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
+    if (sink.has_errors()) return std::nullopt;
+    const auto demonstrations = score_all(model, predicates, paths, request, sink);
+    if (!demonstrations) return std::nullopt;
+    refuse_duplicates(*demonstrations, sink);
+    refuse_leaks(model, *demonstrations, sink);
+    if (sink.has_errors()) return std::nullopt;
+
+    Calibration result;
+    result.file.spec = model.name;
+    result.file.etlc = request.version;
+    check::Model calibrated = model;
+    std::vector<Fitted> all;
+    Refusing refusing(model, *demonstrations, sink);
+    for (std::size_t i = 0; i < predicates.size(); ++i) {
+        const check::Predicate& predicate = model.predicates[predicates[i]];
+        const Fit fitted = fit(predicate, *demonstrations, i);
+        if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
+            refusing.report(predicates[i], i, *refusal);
+            continue;
+        }
+        all.push_back(std::get<Fitted>(fitted));
+        check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
+        threshold.value = all.back().epsilon;
+        threshold.n = all.back().n;
+        threshold.k = all.back().k;
+        result.file.predicates[predicate.name] = entry_of(model, predicates[i], *demonstrations, i, all.back());
+    }
+    if (sink.has_errors()) return std::nullopt;
+    for (const Demonstration& demonstration : *demonstrations) result.file.episodes.push_back(demonstration.hash);
+    result.report = report(calibrated, predicates, *demonstrations, all);
+    return result;
+}
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,47 @@
+// `etlc calibrate`: thresholds from labelled demonstrations.
+// Takes: a spec that may lack thresholds, and the episodes. Gives: the thresholds file and what a person should know
+// about it. Keeps true: the result is the same whatever the number of threads; one episode a thread is open at a time;
+// what voids the guarantee (too few demonstrations, one that is given twice, one that is its own target) is refused.
+#pragma once
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/fit.hpp"
+#include "calibrate/scores.hpp"
+#include "check/model.hpp"
+#include "diag/diag.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::calibrate {
+
+struct Request {
+    std::vector<std::string> data;  ///< files, folders and patterns
+    std::string groups;             ///< of .h5 files, those that are episodes; empty: the file is one
+    data::NamesInFile names;
+    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
+    std::string version;  ///< of etlc
+    /// Called now and then, by any thread, never by two at once.
+    std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+struct Calibration {
+    thresholds::File file;
+    std::string report;
+};
+
+/// Nothing where the sink now says why.
+std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink);
+
+/// Scores all episodes, on several threads, in the order of `paths`; nothing where some cannot be read.
+std::optional<std::vector<Demonstration>> score_all(const check::Model& model, const std::vector<Index>& predicates,
+                                                    const std::vector<std::string>& paths, const Request& request,
+                                                    diag::Sink& sink);
+
+/// What the thresholds are, what they were taken from, and what they guarantee. `model` has them already.
+std::string report(const check::Model& model, const std::vector<Index>& predicates,
+                   const std::vector<Demonstration>& demonstrations, const std::vector<Fitted>& fitted);
+
+}  // namespace etlc::calibrate

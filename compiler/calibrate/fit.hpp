@@ -1,0 +1,41 @@
+// From scores to thresholds.
+// Takes: the scores of a predicate in every demonstration. Gives: epsilon, or why there is none. Keeps true:
+// Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et al.), mirrored for >= and >; the
+// rank is never clamped: too few demonstrations are an error.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "calibrate/scores.hpp"
+
+namespace etlc::calibrate {
+
+struct Fitted {
+    float epsilon = 0;
+    std::uint64_t n = 0;         ///< scores: demonstrations (conformal) or frames
+    std::uint64_t k = 0;         ///< rank taken; 0 for f1
+    std::vector<double> scores;  ///< conformal: as measured, ascending; empty for the pooled methods
+    double f1 = 0;               ///< f1: what epsilon reaches on the frames that it was chosen on
+};
+
+/// Why no threshold can be had, in the order in which it is looked for.
+enum class Refusal : std::uint8_t {
+    no_positives,  ///< no frame with a known distance is positive
+    too_few,       ///< the rank is beyond the scores
+    not_finite,    ///< the score at the rank is infinite, or no float32 lies beyond it
+    no_f1,         ///< no observed distance as threshold finds a positive frame
+};
+
+using Fit = std::variant<Fitted, Refusal>;
+
+/// `of`: which of the demonstrations' scores are this predicate's.
+Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of);
+
+/// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1; of equals the
+/// least. Scores are those of all labelled frames.
+Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict);
+
+}  // namespace etlc::calibrate

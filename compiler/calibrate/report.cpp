@@ -1,0 +1,119 @@
+// What `etlc calibrate` says when it is done.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "calibrate/calibrate.hpp"
+#include "check/guarantees.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using check::Claim;
+using check::ThresholdOrigin;
+
+std::string counted(std::uint64_t n, const std::string& noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+/// The counts of one predicate over all demonstrations.
+struct Totals {
+    std::uint64_t positives = 0;
+    std::uint64_t negatives = 0;
+    std::uint64_t unlabelled = 0;
+    std::uint64_t unmeasured = 0;
+    std::uint64_t without_score = 0;
+    std::uint64_t from_array = 0;
+
+    Totals(const std::vector<Demonstration>& demonstrations, std::size_t of) {
+        for (const Demonstration& demonstration : demonstrations) {
+            const Scores& scores = demonstration.scores[of];
+            positives += scores.positives;
+            negatives += scores.negatives;
+            unlabelled += scores.unlabelled;
+            unmeasured += scores.unmeasured;
+            without_score += scores.has_score ? 0 : 1;
+            from_array += scores.from_array ? 1 : 0;
+        }
+    }
+};
+
+std::string how(const check::Predicate& predicate, const Fitted& fitted) {
+    const check::Threshold& threshold = predicate.threshold;
+    const char* from = predicate.upper_bound() ? "smallest" : "greatest";
+    switch (threshold.origin) {
+        case ThresholdOrigin::f1:
+            return fmt::format("f1: {:.4f} on the {} it was chosen on; no guarantee", fitted.f1,
+                               counted(fitted.n, "labelled frame"));
+        case ThresholdOrigin::conformal:
+            return fmt::format(
+                "conformal, alpha = {}: beyond score {} of {}, from the {}, one of each demonstration\n"
+                "    a new demonstration is covered with probability >= 1 - {}; given these {}, with {:.3f} to {:.3f} "
+                "(5 % and 95 % quantile of Beta({}, {}), without ties)",
+                threshold.alpha, fitted.k, fitted.n, from, threshold.alpha, fitted.n,
+                check::coverage_quantile(fitted.n, fitted.k, 0.05), check::coverage_quantile(fitted.n, fitted.k, 0.95),
+                fitted.k, fitted.n + 1 - fitted.k);
+        case ThresholdOrigin::class_conditional:
+            return fmt::format(
+                "class_conditional, alpha = {}: beyond score {} of {}, from the {}, one of each positive frame\n"
+                "    a positive frame is covered with probability >= 1 - {} where frames are exchangeable, which those "
+                "of one recording seldom are; no guarantee for episodes",
+                threshold.alpha, fitted.k, fitted.n, from, threshold.alpha);
+        case ThresholdOrigin::literal: break;
+    }
+    return "";
+}
+
+std::string predicate_report(const check::Model& model, Index index, const std::vector<Demonstration>& demonstrations,
+                             std::size_t of, const Fitted& fitted) {
+    const check::Predicate& predicate = model.predicates[index];
+    const Totals totals(demonstrations, of);
+    std::string text = fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
+                                   predicate.name, predicate.text, predicate.threshold.value, how(predicate, fitted),
+                                   totals.positives, totals.negatives);
+    if (totals.unlabelled > 0) text += fmt::format(", {} unknown and left out", totals.unlabelled);
+    text += '\n';
+    if (totals.from_array > 0)
+        text += fmt::format("    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
+                            totals.from_array, counted(demonstrations.size(), "demonstration"), predicate.name);
+    if (predicate.threshold.origin == ThresholdOrigin::conformal && totals.without_score > 0)
+        text +=
+            fmt::format("    {} without a positive frame left out\n", counted(totals.without_score, "demonstration"));
+    if (totals.unmeasured > 0)
+        text += fmt::format("    {} of unknown distance skipped\n", counted(totals.unmeasured, "labelled frame"));
+    return text;
+}
+
+std::string monitor_report(const check::Model& model) {
+    std::size_t widest = 0;
+    for (const check::Monitor& monitor : model.monitors) widest = std::max(widest, monitor.name.size());
+    std::string text = "\nguarantees\n";
+    for (const check::Monitor& monitor : model.monitors) {
+        for (const Claim& claim : check::claims(model, monitor)) {
+            if (claim.part.empty())
+                text += fmt::format("    {:<{}}  {}\n", monitor.name, widest, check::text(claim));
+            else
+                text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part, check::text(claim));
+        }
+    }
+    return text +
+           "    Probabilities are over the demonstrations and the new episode together, which have to be exchangeable, "
+           "per episode as recorded.\n"
+           "    Where a sample is missing, what is said of successes does not hold.\n";
+}
+
+}  // namespace
+
+std::string report(const check::Model& model, const std::vector<Index>& predicates,
+                   const std::vector<Demonstration>& demonstrations, const std::vector<Fitted>& fitted) {
+    std::uint64_t frames = 0;
+    for (const Demonstration& demonstration : demonstrations) frames += demonstration.frames;
+    std::string text =
+        fmt::format("{}, {}\n", counted(demonstrations.size(), "demonstration"), counted(frames, "frame"));
+    for (std::size_t i = 0; i < predicates.size(); ++i)
+        text += predicate_report(model, predicates[i], demonstrations, i, fitted[i]);
+    return text + monitor_report(model);
+}
+
+}  // namespace etlc::calibrate

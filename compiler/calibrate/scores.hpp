@@ -1,0 +1,78 @@
+// Nonconformity scores: what the calibrated predicates measured in one demonstration.
+// Takes: a demonstration. Gives: per calibrated predicate its score and the counts that the report needs. Keeps true:
+// distances come from the kernels that the monitor uses; memory is that of one frame, but for the pooled methods, which
+// keep a number for every frame that they pool.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "calibrate/recording.hpp"
+#include "plan/evaluator.hpp"
+
+namespace etlc::calibrate {
+
+/// One predicate in one demonstration. Scores are negated for >= and >, so that a smaller one always is a better one.
+struct Scores {
+    struct Labelled {
+        float score = 0;
+        bool positive = false;
+    };
+    std::uint64_t positives = 0;   ///< frames at which its truth holds
+    std::uint64_t negatives = 0;   ///< at which it does not
+    std::uint64_t unlabelled = 0;  ///< at which a missing sample leaves that open
+    std::uint64_t unmeasured = 0;  ///< positive or negative frames whose distance is unknown
+    bool from_array = false;       ///< labels are those of an array of the episode
+
+    bool has_score = false;          ///< some positive frame was measured
+    float worst = 0;                 ///< the greatest score of a positive frame, as measured
+    double worst_reach = 0;          ///< and the greatest that any build may have measured
+    std::vector<double> reaches;     ///< class_conditional: those of all positive frames
+    std::vector<Labelled> labelled;  ///< f1: all measured frames
+};
+
+/// A frame whose sample is a row of a target set.
+struct Leak {
+    Index predicate = 0;
+    Index target = 0;
+    std::uint32_t row = 0;
+    std::uint64_t frame = 0;
+};
+
+struct Demonstration {
+    std::string path;
+    std::string hash;
+    std::uint64_t frames = 0;
+    std::vector<Scores> scores;  ///< per calibrated predicate
+    std::optional<Leak> leak;    ///< the first one
+};
+
+/// Predicates of the model whose threshold is calibrated, in order.
+std::vector<Index> calibrated_predicates(const check::Model& model);
+
+/// Scores one demonstration after the other. Not shared between threads.
+class Scorer {
+public:
+    Scorer(const check::Model& model, std::vector<Index> predicates, data::NamesInFile names);
+    Scorer(const Scorer&) = delete;
+    Scorer& operator=(const Scorer&) = delete;
+
+    /// Failures do not name the path.
+    diag::Result<Demonstration> score(const std::string& path);
+
+private:
+    void add(Index predicate, Label label, Scores& scores) const;
+    std::optional<Leak> leak(std::uint64_t frame) const;
+    bool is_row(const check::Distance& distance, std::uint32_t row) const;
+
+    const check::Model& model_;
+    std::vector<Index> predicates_;
+    plan::Plan plan_;
+    plan::Evaluator evaluator_;
+    Wanted wanted_;
+    data::NamesInFile names_;
+};
+
+}  // namespace etlc::calibrate

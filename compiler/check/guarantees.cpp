@@ -1,0 +1,200 @@
+#include "check/guarantees.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "check/decimal.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using Kind = Formula::Kind;
+
+struct Literal {
+    Index formula = 0;
+    bool negated = false;
+};
+
+struct Polarity {
+    bool positive = false;
+    bool negative = false;
+};
+
+/// Operands with the polarity that they have in the negation normal form; both where an operand has both.
+std::vector<Literal> operands_of(const Model& model, Literal literal) {
+    const Formula& formula = model.formulas[literal.formula];
+    std::vector<Literal> result;
+    for (std::size_t i = 0; i < formula.operands.size(); ++i) {
+        const bool flips = formula.kind == Kind::negation || (formula.kind == Kind::implication && i == 0);
+        result.push_back({formula.operands[i], literal.negated != flips});
+        if (formula.kind == Kind::equivalence) result.push_back({formula.operands[i], literal.negated == flips});
+    }
+    return result;
+}
+
+std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
+    std::vector<Polarity> visited(model.formulas.size());
+    std::map<Index, Polarity> found;
+    std::vector<Literal> pending{root};
+    while (!pending.empty()) {
+        const Literal at = pending.back();
+        pending.pop_back();
+        bool& seen = at.negated ? visited[at.formula].negative : visited[at.formula].positive;
+        if (seen) continue;
+        seen = true;
+        const Formula& formula = model.formulas[at.formula];
+        if (formula.kind == Kind::predicate) {
+            Polarity& polarity = found[formula.index];
+            (at.negated ? polarity.negative : polarity.positive) = true;
+        }
+        const std::vector<Literal> operands = operands_of(model, at);
+        pending.insert(pending.end(), operands.begin(), operands.end());
+    }
+    return found;
+}
+
+/// The operands of the conjunction that the formula is, or the formula.
+void collect_conjuncts(const Model& model, Literal literal, std::vector<Literal>& conjuncts) {
+    const Kind kind = model.formulas[literal.formula].kind;
+    const bool splits = kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
+                        ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
+    if (!splits) {
+        conjuncts.push_back(literal);
+        return;
+    }
+    for (const Literal operand : operands_of(model, literal)) collect_conjuncts(model, operand, conjuncts);
+}
+
+/// Exact sum of decimals in (0, 1): their digits after the point, added from the right.
+std::string sum(const std::vector<std::string>& alphas) {
+    std::vector<std::string> digits;
+    std::size_t length = 0;
+    for (const std::string& alpha : alphas) {
+        const Decimal decimal = Decimal::parse(alpha);
+        digits.push_back(std::string(static_cast<std::size_t>(-decimal.exponent), '0') + decimal.digits);
+        length = std::max(length, digits.back().size());
+    }
+    std::string fraction(length, '0');
+    std::uint64_t carry = 0;
+    for (std::size_t i = length; i-- > 0;) {
+        for (const std::string& one : digits) carry += i < one.size() ? static_cast<std::uint64_t>(one[i] - '0') : 0;
+        fraction[i] = static_cast<char>('0' + carry % 10);
+        carry /= 10;
+    }
+    return Decimal::parse(fmt::format("{}.{}", carry, fraction)).text();
+}
+
+std::string_view uncovered(const Model& model, Index predicate) {
+    switch (model.predicates[predicate].threshold.origin) {
+        case ThresholdOrigin::f1: return "is calibrated for F1";
+        case ThresholdOrigin::class_conditional: return "covers frames, not episodes";
+        case ThresholdOrigin::conformal: return "";
+        case ThresholdOrigin::literal: break;
+    }
+    return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
+}
+
+std::string name_of(const Model& model, Index predicate) {
+    const Predicate& p = model.predicates[predicate];
+    return p.name.empty() ? p.text + p.threshold.text : p.name;
+}
+
+Claim claim(const Model& model, Literal part) {
+    Claim result;
+    Polarity all;
+    std::vector<std::string> alphas;
+    std::string positive;
+    std::string negative;
+    for (const auto& [predicate, polarity] : predicates_in(model, part)) {
+        const std::string_view why = uncovered(model, predicate);
+        if (!why.empty() && result.why.empty()) result.why = fmt::format("'{}' {}", name_of(model, predicate), why);
+        if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) continue;
+        alphas.push_back(model.predicates[predicate].threshold.alpha);
+        if (polarity.positive) positive = name_of(model, predicate);
+        if (polarity.negative) negative = name_of(model, predicate);
+        all.positive |= polarity.positive;
+        all.negative |= polarity.negative;
+    }
+    if (!result.why.empty()) return result;
+    result.bound = sum(alphas);
+    if (all.positive && all.negative) {
+        result.why = positive == negative ? fmt::format("'{}' stands in it both plain and negated", positive)
+                                          : fmt::format("'{}' stands in it plain, '{}' negated", positive, negative);
+    } else if (alphas.empty()) {
+        result.kind = Claim::Kind::exact;
+    } else if (Decimal::parse(result.bound) >= Decimal::parse("1")) {
+        result.why = fmt::format("the alphas of its predicates add up to {}", result.bound);
+    } else {
+        result.kind = all.positive ? Claim::Kind::missed_success : Claim::Kind::missed_alarm;
+    }
+    return result;
+}
+
+bool reads_embedding(const Model& model, const Predicate& predicate) {
+    return std::any_of(predicate.inputs.begin(), predicate.inputs.end(),
+                       [&](Index input) { return model.inputs[input].is_embedding(); });
+}
+
+/// P(Binomial(n, x) >= k), which is P(Beta(k, n + 1 - k) <= x).
+double binomial_tail(std::uint64_t n, std::uint64_t k, double x) {
+    const auto count = static_cast<double>(n);
+    double tail = 0;
+    for (std::uint64_t i = k; i <= n; ++i) {
+        const auto successes = static_cast<double>(i);
+        tail += std::exp(std::lgamma(count + 1) - std::lgamma(successes + 1) - std::lgamma(count - successes + 1) +
+                         successes * std::log(x) + (count - successes) * std::log1p(-x));
+    }
+    return tail;
+}
+
+}  // namespace
+
+bool is_own_truth(const Model& model, Index predicate) {
+    const bool labelled = std::any_of(model.truths.begin(), model.truths.end(),
+                                      [&](const Truth& truth) { return truth.predicate == predicate; });
+    const Predicate& p = model.predicates[predicate];
+    return p.threshold.origin == ThresholdOrigin::literal && !labelled && !reads_embedding(model, p);
+}
+
+std::vector<Claim> claims(const Model& model, const Monitor& monitor) {
+    std::vector<Claim> result{claim(model, {monitor.formula, false})};
+    if (result.front().kind != Claim::Kind::nothing) return result;
+    std::vector<Literal> conjuncts;
+    collect_conjuncts(model, {monitor.formula, false}, conjuncts);
+    if (conjuncts.size() < 2) return result;
+    for (const Literal conjunct : conjuncts) {
+        Claim part = claim(model, conjunct);
+        part.part = print(model, conjunct.formula);
+        if (conjunct.negated) part.part = fmt::format("!({})", part.part);
+        result.push_back(std::move(part));
+    }
+    return result;
+}
+
+std::string text(const Claim& claim) {
+    switch (claim.kind) {
+        case Claim::Kind::exact: return "exact: nothing in it is calibrated, and its predicates are their own truth";
+        case Claim::Kind::missed_success:
+            return fmt::format("P(some verdict of a new episode misses a success) <= {}", claim.bound);
+        case Claim::Kind::missed_alarm:
+            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}", claim.bound);
+        case Claim::Kind::nothing: break;
+    }
+    return "nothing: " + claim.why;
+}
+
+double coverage_quantile(std::uint64_t n, std::uint64_t k, double q) {
+    double low = 0;
+    double high = 1;
+    for (int i = 0; i < 60; ++i) {
+        const double middle = (low + high) / 2;
+        (binomial_tail(n, k, middle) < q ? low : high) = middle;
+    }
+    return (low + high) / 2;
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,43 @@
+// What calibrated thresholds guarantee about a monitor's verdicts.
+// Takes: the model. Gives: per monitor a claim, for the whole or for each conjunct. Keeps true: robustness is monotonic
+// in every literal of the negation normal form, so where all calibrated predicates are positive and none misses its
+// truth, no verdict misses a success of the ground-truth monitor; where all are negative, none misses an alarm. A union
+// bound adds the alphas. Nothing is claimed about a predicate that no conformal calibration covers and that is not its
+// own truth.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "check/model.hpp"
+
+namespace etlc::check {
+
+struct Claim {
+    enum class Kind : std::uint8_t {
+        nothing,
+        exact,           ///< no threshold is calibrated, and every predicate is its own truth
+        missed_success,  ///< P(some verdict of a new episode misses a success) <= bound
+        missed_alarm,    ///< P(some verdict of a new episode misses an alarm) <= bound
+    };
+    Kind kind = Kind::nothing;
+    std::string part;   ///< the conjunct as canonical text; empty: the whole formula
+    std::string bound;  ///< exact decimal sum of the alphas
+    std::string why;    ///< nothing: what is in the way
+};
+
+/// The claim about the whole; where that is nothing because polarities mix, the claims about its conjuncts follow.
+std::vector<Claim> claims(const Model& model, const Monitor& monitor);
+
+/// In words: "P(some verdict of a new episode misses a success) <= 0.1", "nothing: 'p' is f1-calibrated".
+std::string text(const Claim& claim);
+
+/// A predicate on scalars and numbers alone that has no `truth`: what it says is what is meant.
+bool is_own_truth(const Model& model, Index predicate);
+
+/// Quantiles of Beta(k, n + 1 - k), the distribution of the coverage that n scores without ties give at rank k
+/// (Vovk, "Conditional validity of inductive conformal predictors", 2012). k in [1, n], q in (0, 1).
+double coverage_quantile(std::uint64_t n, std::uint64_t k, double q);
+
+}  // namespace etlc::check

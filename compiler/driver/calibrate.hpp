@@ -1,0 +1,24 @@
+// `etlc calibrate`: spec and demonstrations in, thresholds file out.
+// Takes: the spec's text. Gives: the file, and a report on standard output, or on standard error where the file goes to
+// standard output. Keeps true: the file appears whole or not at all.
+#pragma once
+
+#include <string>
+
+#include "calibrate/calibrate.hpp"
+#include "diag/diag.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+struct CalibrateRequest {
+    calibrate::Request calibration;  ///< its version and progress are set here
+    std::string output;              ///< empty: beside the spec
+    bool warnings_are_errors = false;
+    bool progress = false;  ///< on stderr
+};
+
+/// False where the sink now says why not.
+bool calibrate(const source::File& file, const CalibrateRequest& request, diag::Sink& sink);
+
+}  // namespace etlc::driver

@@ -1,0 +1,15 @@
+# No demonstration shows what is to be found; or none measures it where it is true.
+cat > hand.etl <<'END'
+spec hand;
+input grip, force : f32;
+predicate held = grip >= calibrated(conformal, alpha = 0.5);
+truth held = force > 1;
+monitor holds = F held;
+END
+printf 'grip,force\n1,0\n2,1\n' > never.csv
+printf 'grip,force\n1,0\n,2\nnan,3\n' > unmeasured.csv
+"$ETLC" calibrate hand.etl --data never.csv
+echo "exit status $?"
+"$ETLC" calibrate hand.etl --data never.csv unmeasured.csv
+echo "exit status $?"
+ls

@@ -1,0 +1,15 @@
+# A score at the rank that is infinite; positive frames that no < of an observed distance finds.
+cat > hand.etl <<'END'
+spec hand;
+input grip, force : f32;
+predicate held   = 1 / grip <= calibrated(conformal, alpha = 0.5);
+predicate loose  = grip < calibrated(f1);
+truth held  = force > 1;
+truth loose = force > 1;
+monitor holds = F held;
+monitor slips = F loose;
+END
+printf 'grip,force\n0,2\n' > hand.csv
+"$ETLC" calibrate hand.etl --data hand.csv
+echo "exit status $?"
+ls
