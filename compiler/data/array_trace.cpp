@@ -2,8 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <bit>
 #include <cmath>
 #include <limits>
+#include <span>
 
 #include "data/npy.hpp"
 #include "data/npy_header.hpp"
@@ -16,6 +18,15 @@ namespace {
 using diag::Code;
 using diag::Failure;
 using Kind = Channel::Kind;
+
+/// Without branches: a billion elements pass here.
+bool all_finite(const std::vector<double>& values) {
+    constexpr std::uint64_t kExponent = 0x7ff0000000000000;
+    std::uint64_t found = 0;
+    for (const double value : values)
+        found |= std::uint64_t{(std::bit_cast<std::uint64_t>(value) & kExponent) == kExponent};
+    return found == 0;
+}
 
 class ArrayTrace final : public Trace {
 public:
@@ -45,7 +56,8 @@ public:
 private:
     std::optional<Failure> copy(const double* row, const Channel& channel, std::vector<double>& values) const {
         values.assign(row, row + channel.width);
-        for (double& value : values) {
+        const bool sound = channel.kind != Kind::boolean && all_finite(values);
+        for (double& value : sound ? std::span<double>() : std::span(values)) {
             if (!std::isfinite(value)) {
                 value = std::numeric_limits<double>::quiet_NaN();
             } else if (channel.kind == Kind::boolean && value != 0 && value != 1) {

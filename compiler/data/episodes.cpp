@@ -6,7 +6,6 @@
 #include <algorithm>
 #include <bit>
 #include <filesystem>
-#include <limits>
 #include <set>
 #include <system_error>
 
@@ -102,17 +101,21 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
 }
 
 void EpisodeHash::add(const Sample& sample) {
-    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-    bytes_.clear();
+    constexpr std::uint32_t kNaN = 0x7fc00000;  // one pattern of bits for all that is missing
+    std::size_t n = 0;
+    for (const std::size_t c : channels_) n += sample.values[c].size();
+    bits_.resize(n);
+    auto to = bits_.begin();
     for (const std::size_t c : channels_) {
-        for (const double value : sample.values[c]) {
-            // One pattern of bits for all that is missing.
-            const auto narrow = static_cast<float>(value);
-            const auto bits = std::bit_cast<std::uint32_t>(sample.present[c] && value == value ? narrow : kNaN);
-            for (unsigned shift = 0; shift < 32; shift += 8) bytes_.push_back(static_cast<char>(bits >> shift & 0xffU));
-        }
+        const bool present = sample.present[c];
+        to = std::transform(sample.values[c].begin(), sample.values[c].end(), to, [&](double value) {
+            return present && value == value ? std::bit_cast<std::uint32_t>(static_cast<float>(value)) : kNaN;
+        });
     }
-    hash_ = xxh64(bytes_, hash_);
+    if constexpr (std::endian::native == std::endian::big)
+        for (std::uint32_t& bits : bits_) bits = __builtin_bswap32(bits);
+    const std::string_view bytes(reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size());
+    hash_ = xxh64(bytes, hash_);
     ++steps_;
 }
 

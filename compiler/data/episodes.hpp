@@ -35,7 +35,7 @@ public:
 
 private:
     std::vector<std::size_t> channels_;
-    std::string bytes_;  ///< of one step
+    std::vector<std::uint32_t> bits_;  ///< of one step
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };

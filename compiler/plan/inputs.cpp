@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 namespace etlc::plan {
@@ -26,6 +27,13 @@ std::optional<Sample> narrow(const check::Input& input, bool present, const std:
     Sample sample;
     if (!present) return sample;
     sample.present = true;
+    if (input.type != check::InputType::f16 && input.type != check::InputType::i8) {
+        sample.values.resize(numbers.size());
+        std::transform(numbers.begin(), numbers.end(), sample.values.begin(),
+                       [](double number) { return static_cast<float>(number); });
+        return sample;
+    }
+    sample.values.reserve(numbers.size());
     for (std::size_t i = 0; i < numbers.size(); ++i) {
         double number = numbers[i];
         if (input.type == check::InputType::f16) number = to_f16(number);

@@ -256,7 +256,7 @@ TEST(Csv, OpenedByItsEnding) {
     const auto unknown = open_trace(other.path(), kChannels);
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.failure().code, Code::unknown_trace_format);
-    EXPECT_EQ(unknown.failure().message, "unknown kind of trace, expected .csv or .npz");
+    EXPECT_EQ(unknown.failure().message, "unknown kind of trace, expected .csv, .npz or .h5");
     for (const char* ending : {".csv", ".npz"}) {
         const auto missing = open_trace(std::string("no_such") + ending, kChannels);
         ASSERT_FALSE(missing);

@@ -1,0 +1,200 @@
+// What calibration promises, kept by compiled monitors: -O0 and -O3 -march=native -ffast-math measure within the
+// interval that calibration reckons with, and a covered demonstration is covered there too, ties and < included.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+
+#include "calibrate/bounds.hpp"
+#include "calibrate/rank.hpp"
+#include "generated_program.hpp"
+#include "loading.hpp"
+#include "plan/evaluator.hpp"
+#include "random.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using calibrate::Index;
+using calibrate::Interval;
+
+constexpr int kDimension = 24;
+constexpr int kDraws = 2000;
+constexpr int kDemonstrations = 9;  // the fewest for alpha = 0.1: the greatest score is taken
+constexpr int kFrames = 2;
+
+std::string matrix(Random& random, int rows, int columns) {
+    std::string text = "[";
+    for (int r = 0; r < rows; ++r) {
+        text += r == 0 ? "[" : ", [";
+        for (int c = 0; c < columns; ++c) text += fmt::format("{}{}", c == 0 ? "" : ", ", random.grid(-1, 1, 0.125));
+        text += "]";
+    }
+    return text + "]";
+}
+
+std::string spec_text() {
+    Random random(6);
+    std::string weights;
+    for (int i = 0; i < kDimension; ++i) weights += fmt::format("{}{}", i == 0 ? "" : ", ", random.grid(0.25, 4, 0.25));
+    const std::vector<std::string> predicates = {
+        "min l2(z, g) <= 1",
+        "min cosine(z, g) < 1",
+        "mean l1(z, g) >= 1",
+        "kth(2) linf(z, g) < 1",
+        "max angular(z, g) > 1",
+        "min l2sq(z, g) <= 1",
+        fmt::format("mean mahalanobis([{}])(z, g) <= 1", weights),
+        "min mahalanobis([[2, 1.5, 0], [1.5, 2, 0.5], [0, 0.5, 1]])(v, h) <= 1",
+        "kth(2) mahalanobis([[100, 99, 0], [99, 100, 0], [0, 0, 1]])(v, h) > 1",
+        "mean cosine(z, g) >= 1",
+        "min cosine(z, g) - 0.5 * min l2(z, g) / (1 + s * s) <= 1",
+        "sqrt(abs(s) + min l1(z, g)) > 1",
+        "max(s * 3.1, min l2(v, h)) < 1",
+        "s + 0.1 >= 1",
+    };
+    std::string text = fmt::format("spec deployed; input z : f32[{}]; input v : f32[3]; input s : f32;\n", kDimension);
+    text += fmt::format("target g = {}; target h = {};\n", matrix(random, 5, kDimension), matrix(random, 3, 3));
+    for (std::size_t i = 0; i < predicates.size(); ++i)
+        text += fmt::format("predicate p{0} = {1}; monitor m{0} = F p{0};\n", i, predicates[i]);
+    return text;
+}
+
+/// Ordinary points; points on a grid, whose distances tie; points at a target or a rounding away from it.
+reference::Step random_step(Random& random, const check::Model& model) {
+    reference::Step step;
+    const int kind = random.between(0, 3);
+    for (std::size_t i = 0; i < 2; ++i) {
+        const check::Target& target = model.targets[i];
+        const int row = random.between(0, static_cast<int>(target.rows) - 1);
+        std::vector<double> point;
+        for (std::uint32_t d = 0; d < target.dimension; ++d) {
+            const auto g = static_cast<double>(target.values[static_cast<std::uint32_t>(row) * target.dimension + d]);
+            if (kind == 0) point.push_back(g + (random.chance(0.2) ? random.grid(-1, 1, 0.5) : 0));
+            if (kind == 1)
+                point.push_back(static_cast<double>(static_cast<float>(g + 1e-7 * (random.uniform() - 0.5))));
+            if (kind >= 2) point.push_back(static_cast<double>(static_cast<float>(2 * random.uniform() - 1)));
+        }
+        step.push_back(std::move(point));
+    }
+    step.push_back({kind == 0 ? random.grid(-1, 1, 0.25) : static_cast<double>(static_cast<float>(random.uniform()))});
+    return step;
+}
+
+struct Deployed : testing::Test {
+    check::Model model = *load(spec_text());
+    reference::Trace trace;
+    std::vector<std::vector<Interval>> intervals;  ///< [frame][predicate]
+    std::vector<std::vector<float>> measured;      ///< by etlc
+    std::map<std::string, std::vector<std::vector<float>>> built;
+
+    void measure() {
+        Random random(99);
+        for (int i = 0; i < kDraws * (kDemonstrations + 1) * kFrames; ++i) trace.push_back(random_step(random, model));
+        std::vector<Index> predicates(model.predicates.size());
+        for (Index i = 0; i < predicates.size(); ++i) predicates[i] = i;
+        const plan::Plan plan = plan::measuring(model, predicates);
+        plan::Evaluator evaluator(plan);
+        for (const reference::Step& step : trace) {
+            std::vector<plan::Sample> samples;
+            for (const auto& values : step) samples.push_back({true, {values.begin(), values.end()}});
+            evaluator.step(samples);
+            intervals.emplace_back();
+            measured.emplace_back();
+            for (const Index p : predicates) {
+                intervals.back().push_back(calibrate::interval_of(model, p, evaluator).value_or(Interval{0, 0}));
+                measured.back().push_back(evaluator.distance(p));
+            }
+        }
+    }
+
+    void build(const std::string& flags) {
+        GeneratedProgram program(fmt::format("deployed{}", built.size()));
+        ASSERT_TRUE(program.add(model));
+        ASSERT_TRUE(program.compile({"g++", flags, false}));
+        std::vector<Request> requests;
+        constexpr std::size_t kSteps = 500;  // the harness takes no traces of any length
+        for (std::size_t at = 0; at < trace.size(); at += kSteps) {
+            const auto first = trace.begin() + static_cast<std::ptrdiff_t>(at);
+            const auto last = trace.begin() + static_cast<std::ptrdiff_t>(std::min(at + kSteps, trace.size()));
+            requests.push_back({0, {first, last}, {}});
+        }
+        auto& deltas = built[flags];
+        for (const Answer& answer : program.run(requests).answers)
+            for (const auto& frame : answer[0].telemetry) {
+                deltas.emplace_back();
+                for (const auto& predicate : frame) deltas.back().push_back(static_cast<float>(predicate.delta));
+            }
+        ASSERT_EQ(deltas.size(), trace.size());
+    }
+};
+
+/// Of this predicate and the demonstration: the score with all that another build may measure.
+double reach(const Deployed& of, Index predicate, std::size_t first_frame) {
+    double worst = -INFINITY;
+    for (std::size_t f = first_frame; f < first_frame + kFrames; ++f) {
+        const Interval& interval = of.intervals[f][predicate];
+        worst = std::max(worst, of.model.predicates[predicate].upper_bound() ? interval.high : -interval.low);
+    }
+    return worst;
+}
+
+TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
+    measure();
+    build("-O0");
+    build("-O3 -march=native -ffast-math");
+    std::size_t differing = 0;
+    std::map<std::pair<std::string, Index>, int> covered;
+    for (const auto& [flags, deltas] : built)
+        for (std::size_t f = 0; f < trace.size(); ++f)
+            for (Index p = 0; p < model.predicates.size(); ++p) {
+                const auto delta = static_cast<double>(deltas[f][p]);
+                differing += deltas[f][p] != measured[f][p] ? 1 : 0;
+                if (std::isnan(measured[f][p])) continue;
+                ASSERT_GE(delta, intervals[f][p].low) << flags << " " << model.predicates[p].text;
+                ASSERT_LE(delta, intervals[f][p].high) << flags << " " << model.predicates[p].text;
+            }
+    EXPECT_GT(differing, 1000U);  // else other builds measure what etlc measures, and nothing was tested
+
+    for (int draw = 0; draw < kDraws; ++draw) {
+        const std::size_t begin = static_cast<std::size_t>(draw) * (kDemonstrations + 1) * kFrames;
+        for (Index p = 0; p < model.predicates.size(); ++p) {
+            std::vector<double> reaches;
+            for (int d = 0; d < kDemonstrations; ++d)
+                reaches.push_back(reach(*this, p, begin + static_cast<std::size_t>(d) * kFrames));
+            std::sort(reaches.begin(), reaches.end());
+            const double kth = reaches[calibrate::rank("0.1", kDemonstrations) - 1];
+            const bool upper = model.predicates[p].upper_bound();
+            const float epsilon = upper ? calibrate::strictly_above(kth) : -calibrate::strictly_above(kth);
+            const std::size_t test = begin + std::size_t{kDemonstrations} * kFrames;
+            const bool by_score = reach(*this, p, test) <= kth;
+            for (const auto& [flags, deltas] : built) {
+                bool all = true;
+                for (std::size_t f = test; f < test + kFrames; ++f)
+                    all = all && (upper ? epsilon - deltas[f][p] : deltas[f][p] - epsilon) > 0;
+                ASSERT_TRUE(all || !by_score) << flags << " " << model.predicates[p].text;
+                covered[{flags, p}] += all ? 1 : 0;
+            }
+        }
+    }
+    // Three standard errors of a binomial share.
+    const double least = 0.9 - 3 * std::sqrt(0.1 * 0.9 / kDraws);
+    for (const auto& [which, count] : covered)
+        EXPECT_GE(static_cast<double>(count) / kDraws, least)
+            << which.first << " " << model.predicates[which.second].text;
+}
+
+TEST(StrictlyAbove, LeavesANormalDifference) {
+    for (const float x : {-3.5F, -1e-20F, 0.0F, 1e-44F, 1.2e-38F, 1e-30F, 0.25F, 1e30F}) {
+        const float epsilon = calibrate::strictly_above(static_cast<double>(x));
+        EXPECT_GT(epsilon, x);
+        EXPECT_GE(epsilon - x, 1.17549435e-38F);
+        EXPECT_LE(std::nextafter(epsilon, -INFINITY), std::max(x, x + 1.17549435e-38F));  // the first such
+    }
+    EXPECT_TRUE(std::isinf(calibrate::strictly_above(3.4028234663852886e38)));
+}
+
+}  // namespace
+}  // namespace etlc::tests

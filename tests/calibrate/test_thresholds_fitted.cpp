@@ -1,0 +1,225 @@
+// Thresholds against brute force: every method and comparison, ties, n from 1 to 200.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#include "calibrate/calibrate.hpp"
+#include "check/check.hpp"
+#include "npy_bytes.hpp"
+#include "parse/parse.hpp"
+#include "random.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using calibrate::Demonstration;
+using calibrate::Fitted;
+using calibrate::Refusal;
+using calibrate::Scores;
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+struct Frame {
+    float delta = 0;
+    bool positive = false;
+};
+using Episode = std::vector<Frame>;
+
+check::Model model_of(const std::string& comparison, const std::string& threshold) {
+    const std::string text = fmt::format(
+        "spec t; input x, y : f32; predicate p = x {} {}; truth p = y > 0; monitor m = F p;", comparison, threshold);
+    diag::Sink sink;
+    const source::File file("t.etl", text);
+    check::Options options;
+    options.allow_uncalibrated = true;
+    return *check::check(parse::parse(file, sink), file, options, sink);
+}
+
+/// What scoring these episodes gives, scalars being exact; by the definitions of docs/calibration.md.
+std::vector<Demonstration> demonstrations(const std::vector<Episode>& episodes, bool upper) {
+    std::vector<Demonstration> result;
+    for (const Episode& episode : episodes) {
+        Scores scores;
+        for (const Frame& frame : episode) {
+            const float score = upper ? frame.delta : -frame.delta;
+            scores.labelled.push_back({score, frame.positive});
+            if (!frame.positive) continue;
+            scores.reaches.push_back(static_cast<double>(score));
+            scores.worst = scores.has_score ? std::max(scores.worst, score) : score;
+            scores.worst_reach = static_cast<double>(scores.worst);
+            scores.has_score = true;
+        }
+        result.emplace_back();
+        result.back().scores.push_back(std::move(scores));
+    }
+    return result;
+}
+
+bool holds(const std::string& comparison, float delta, float epsilon) {
+    if (comparison == "<=") return delta <= epsilon;
+    if (comparison == "<") return delta < epsilon;
+    if (comparison == ">=") return delta >= epsilon;
+    return delta > epsilon;
+}
+
+std::vector<Episode> random_episodes(Random& random, int n) {
+    std::vector<Episode> episodes(static_cast<std::size_t>(n));
+    const double grain = random.chance(0.5) ? 0.25 : 0.001;  // many ties, or few
+    for (Episode& episode : episodes)
+        for (int t = random.between(1, 6); t-- > 0;)
+            episode.push_back({static_cast<float>(random.grid(-2, 2, grain)), random.chance(0.5)});
+    return episodes;
+}
+
+/// The least covering number of `sorted` (worst first): every threshold on the right side of it covers k of them.
+TEST(Fitted, RanksAsBruteForceDoes) {
+    Random random(41);
+    for (const std::string comparison : {"<=", "<", ">=", ">"}) {
+        const bool upper = comparison[0] == '<';
+        for (const std::string method : {"conformal", "class_conditional"}) {
+            for (int n = 1; n <= 200; ++n) {
+                const int percent = random.between(1, 99);
+                const auto model =
+                    model_of(comparison, fmt::format("calibrated({}, alpha = 0.{:02})", method, percent));
+                const auto episodes = random_episodes(random, n);
+                std::vector<float> scores;
+                for (const Episode& episode : episodes) {
+                    std::vector<float> deltas;
+                    for (const Frame& frame : episode)
+                        if (frame.positive) deltas.push_back(frame.delta);
+                    if (deltas.empty()) continue;
+                    if (method == "class_conditional")
+                        scores.insert(scores.end(), deltas.begin(), deltas.end());
+                    else
+                        scores.push_back(upper ? *std::max_element(deltas.begin(), deltas.end())
+                                               : *std::min_element(deltas.begin(), deltas.end()));
+                }
+                const auto count = scores.size();
+                const std::size_t k = ((100 - static_cast<std::size_t>(percent)) * (count + 1) + 99) / 100;
+                const auto fit = calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+                if (count == 0 || k > count) {
+                    ASSERT_EQ(std::get<Refusal>(fit), count == 0 ? Refusal::no_positives : Refusal::too_few);
+                    continue;
+                }
+                const auto& fitted = std::get<Fitted>(fit);
+                ASSERT_EQ(fitted.n, count);
+                ASSERT_EQ(fitted.k, k);
+                // The least float32 (mirrored: the greatest) strictly beyond at least k of the scores, tried one by
+                // one.
+                float expected = upper ? kInfinity : -kInfinity;
+                for (const float score : scores) {
+                    float candidate = std::nextafter(score, upper ? kInfinity : -kInfinity);
+                    if (std::abs(score) < FLT_MIN)
+                        candidate = std::nextafter(upper ? FLT_MIN : -FLT_MIN, upper ? kInfinity : -kInfinity);
+                    const auto beyond = std::count_if(scores.begin(), scores.end(),
+                                                      [&](float s) { return upper ? s < candidate : s > candidate; });
+                    if (static_cast<std::size_t>(beyond) < k) continue;
+                    expected = upper ? std::min(expected, candidate) : std::max(expected, candidate);
+                }
+                ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << method << " " << n;
+                if (method == "conformal") {
+                    ASSERT_EQ(fitted.scores.size(), count);
+                    ASSERT_TRUE(std::is_sorted(fitted.scores.begin(), fitted.scores.end()));
+                }
+            }
+        }
+    }
+}
+
+TEST(Fitted, F1AsBruteForceDoes) {
+    Random random(42);
+    for (const std::string comparison : {"<=", "<", ">=", ">"}) {
+        const bool upper = comparison[0] == '<';
+        const auto model = model_of(comparison, "calibrated(f1)");
+        for (int n = 1; n <= 200; ++n) {
+            const auto episodes = random_episodes(random, n);
+            double best = 0;
+            float expected = 0;
+            std::size_t frames = 0;
+            bool any_positive = false;
+            for (const Episode& candidates : episodes) {
+                for (const Frame& candidate : candidates) {
+                    const float epsilon = candidate.delta;
+                    double true_positives = 0, found = 0, positives = 0;
+                    frames = 0;
+                    for (const Episode& episode : episodes)
+                        for (const Frame& frame : episode) {
+                            ++frames;
+                            const bool claimed = holds(comparison, frame.delta, epsilon);
+                            true_positives += claimed && frame.positive ? 1 : 0;
+                            found += claimed ? 1 : 0;
+                            positives += frame.positive ? 1 : 0;
+                            any_positive = any_positive || frame.positive;
+                        }
+                    const double f1 = 2 * true_positives / (found + positives + (found + positives == 0 ? 1 : 0));
+                    const bool stricter = upper ? epsilon < expected : epsilon > expected;
+                    if (f1 > best || (f1 == best && f1 > 0 && stricter)) {
+                        best = f1;
+                        expected = epsilon;
+                    }
+                }
+            }
+            const auto fit = calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+            if (best == 0) {
+                ASSERT_EQ(std::get<Refusal>(fit), any_positive ? Refusal::no_f1 : Refusal::no_positives);
+                continue;
+            }
+            const auto& fitted = std::get<Fitted>(fit);
+            ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << n;
+            ASSERT_DOUBLE_EQ(fitted.f1, best);
+            ASSERT_EQ(fitted.n, frames);
+        }
+    }
+}
+
+TEST(Fitted, InfiniteScoresAreRefused) {
+    const auto model = model_of("<=", "calibrated(conformal, alpha = 0.5)");
+    const auto fit = [&](float last) {
+        return calibrate::fit(model.predicates[0], demonstrations({{{1, true}}, {{last, true}}}, true), 0);
+    };
+    EXPECT_EQ(std::get<Refusal>(fit(kInfinity)), Refusal::not_finite);
+    EXPECT_EQ(std::get<Refusal>(fit(FLT_MAX)), Refusal::not_finite);  // no float32 beyond it
+    EXPECT_EQ(std::get<Fitted>(fit(1)).k, 2U);
+    EXPECT_EQ(std::get<Fitted>(fit(-kInfinity)).epsilon, std::nextafter(1.0F, 2.0F));
+}
+
+/// The whole way from files: the thresholds file is the same whatever the number of threads.
+TEST(Calibrate, ThreadsDoNotChangeTheResult) {
+    Random random(43);
+    std::vector<std::unique_ptr<TemporaryPath>> files;
+    calibrate::Request request;
+    request.version = "test";
+    for (int episode = 0; episode < 30; ++episode) {
+        std::string text = "x,y\n";
+        for (int t = 0; t < 20; ++t) text += fmt::format("{},{}\n", random.uniform(), random.between(0, 1));
+        files.push_back(std::make_unique<TemporaryPath>(fmt::format("episode{}.csv", episode), text));
+        request.data.push_back(files.back()->path());
+    }
+    for (const std::string method : {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1"}) {
+        const auto model = model_of("<", fmt::format("calibrated({})", method));
+        std::string first;
+        for (const unsigned jobs : {1U, 2U, 5U, 64U}) {
+            request.jobs = jobs;
+            std::size_t reports = 0;
+            request.progress = [&](std::size_t done, std::size_t total) {
+                ++reports;
+                EXPECT_EQ(done, reports);
+                EXPECT_EQ(total, 30U);
+            };
+            diag::Sink sink;
+            const auto result = calibrate::calibrate(model, request, sink);
+            ASSERT_TRUE(result);
+            const std::string written = thresholds::write(result->file) + result->report;
+            if (first.empty()) first = written;
+            EXPECT_EQ(written, first) << jobs;
+            EXPECT_EQ(reports, 30U);
+        }
+    }
+}
+
+}  // namespace
+}  // namespace etlc::tests
