@@ -89,8 +89,8 @@ std::string kernel_call(const Context& context, Index d, const std::string& z) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
     const auto weights = context.names.weight_array.find(d);
-    return fmt::format("etlmon::measure<etlmon::{}, {}, {}, {}>({}, targets::{}{})", plan::metric_name(distance),
-                       aggregation(distance), target.rows, target.dimension, z, context.names.target_array.at(d),
+    return fmt::format("etlmon::measure<etlmon::{}, {}, {}, {}, targets::{}>({}{})", plan::metric_name(distance),
+                       aggregation(distance), target.rows, target.dimension, context.names.target_array.at(d), z,
                        weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
 }
 

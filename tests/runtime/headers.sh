@@ -19,11 +19,11 @@ for compiler in "$@"; do
     case " $hosted " in *" $name "*) continue ;; esac
     "$compiler" $harsh -O1 -ffreestanding -I "$include" -c "$work/alone.cpp" -o "$work/alone.o" ||
       fail "$compiler: $name does not stand alone where there is no library"
-    foreign=$(grep '^ *# *include' "$header" | grep -v -E '"etlmon/[a-z_]+\.hpp"|<(stdint|stddef|float|string|math)\.h>') || true
+    foreign=$(grep '^ *# *include' "$header" | grep -v -E '"etlmon/[a-z_]+\.(hpp|inc)"|<(stdint|stddef|float|string|math)\.h>') || true
     [ -z "$foreign" ] || fail "$name includes $foreign"
   done
 
-  for flags in '-O0' '-Os' '-O2' '-O2 -ffreestanding' '-O3 -ffast-math' '-O2 -DETLMON_NO_PACKS' '-O2 -DWITH_ANGULAR'; do
+  for flags in '-O0' '-Os' '-O2' '-O2 -ffreestanding' '-O3 -ffast-math' '-O2 -DETLMON_NO_PACKS' '-O2 -DETLMON_NO_DISPATCH' '-O2 -DWITH_ANGULAR'; do
     "$compiler" $harsh $flags -I "$include" -c "$source/tests/runtime/firmware_use.cpp" -o "$work/use.o" ||
       { fail "$compiler $flags: does not compile"; continue; }
     allowed='sqrtf|memcpy|memset'

@@ -8,7 +8,7 @@ add_library(exact_distances STATIC exact.cpp)
 target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eigen)
 target_compile_options(exact_distances PRIVATE -O2)
 
-etlc_test(test_kernels SOURCES ${kernel_sources} LIBRARIES exact_distances)
+etlc_test(test_kernels SOURCES ${kernel_sources} test_kernel_versions.cpp LIBRARIES exact_distances)
 set_target_properties(test_kernels PROPERTIES CXX_STANDARD 17)
 target_compile_options(test_kernels PRIVATE ${kernel_warnings})
 
@@ -16,7 +16,7 @@ if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
   return()  # the variants would repeat what the release builds run
 endif()
 
-# etlc_kernel_variant(NAME option...): the same tests under these options, as one test.
+# etlc_kernel_variant(NAME option...): the tests in kernel_sources under these options, as one test.
 function(etlc_kernel_variant name)
   add_executable(${name} ${kernel_sources})
   set_target_properties(${name} PROPERTIES CXX_STANDARD 17)
@@ -25,13 +25,16 @@ function(etlc_kernel_variant name)
   target_link_libraries(${name} PRIVATE exact_distances GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
-etlc_kernel_variant(test_kernels_fast_math -O3 -ffast-math)
+etlc_kernel_variant(test_kernels_fast_math -O2 -ffast-math -DETLMON_NO_DISPATCH)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   return()
 endif()
 etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
+set(all_kernel_sources ${kernel_sources})
+set(kernel_sources test_kernel_versions.cpp test_expression.cpp test_views.cpp)
 etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
+set(kernel_sources ${all_kernel_sources})
 
 # The other compiler at its boldest; and every header alone under both.
 find_program(ETLC_CLANG clang++)
@@ -45,7 +48,7 @@ else()
   set(objects)
   foreach(source ${kernel_sources})
     add_custom_command(OUTPUT clang_${source}.o
-      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O3 -ffast-math ${kernel_warnings}
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math -DETLMON_NO_DISPATCH ${kernel_warnings}
               -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
       DEPENDS ${source} ${kernel_headers} ${CMAKE_CURRENT_SOURCE_DIR}/exact.hpp ${CMAKE_CURRENT_SOURCE_DIR}/kernel_cases.hpp
       VERBATIM)

@@ -60,36 +60,36 @@ TEST(KernelTwins, EveryDistanceAndAggregation) {
 #undef DISTANCE
 }
 
-template <std::uint32_t D>
-void expect_twins_at() {
-    const exact::Aggregate least{};
-    expect_twins<etlmon::L2, etlmon::Min, 1, D>(MetricId::l2, least);
-    expect_twins<etlmon::L2, etlmon::Min, 5, D>(MetricId::l2, least);
-    expect_twins<etlmon::L2, etlmon::Min, 64, D>(MetricId::l2, least);
-    expect_twins<etlmon::Cosine, etlmon::Min, 2, D>(MetricId::cosine, least);
-    expect_twins<etlmon::Cosine, etlmon::Min, 17, D>(MetricId::cosine, least);
+template <std::uint32_t K, std::uint32_t D>
+void expect_nearest_twins() {
+    expect_twins<etlmon::L2, etlmon::Min, K, D>(MetricId::l2, {});
 }
 
-TEST(KernelTwins, EverySize) {
-    expect_twins_at<1>();
-    expect_twins_at<2>();
-    expect_twins_at<3>();
-    expect_twins_at<7>();
-    expect_twins_at<32>();
-    expect_twins_at<33>();
-    expect_twins_at<384>();
-    expect_twins_at<1000>();
+TEST(KernelTwins, EveryOrderOfAdditions) {
+    expect_nearest_twins<1, 1>();
+    expect_nearest_twins<64, 2>();
+    expect_nearest_twins<5, 7>();
+    expect_nearest_twins<2, 32>();
+    expect_nearest_twins<64, 33>();
+    expect_nearest_twins<1, 384>();
+    expect_nearest_twins<17, 384>();
+    expect_nearest_twins<8, 1000>();
+    expect_twins<etlmon::Cosine, etlmon::Min, 2, 7>(MetricId::cosine, {});
+    expect_twins<etlmon::Cosine, etlmon::Min, 17, 33>(MetricId::cosine, {});
 }
 
 #if !defined(__FAST_MATH__)
-TEST(KernelTwins, ARowsValueDoesNotDependOnTheOthers) {
+TEST(KernelTwins, ARowsValueDoesNotDependOnWhichTileItIsIn) {
     for (const MetricId metric : metrics()) {
         const exact::Case all = make(metric, 5, 33, Kind::ordinary, 12);
         std::vector<std::uint32_t> alone;
         for (std::uint32_t row = 0; row < 5; ++row) {
             exact::Case one = all;
-            one.rows = 1;
-            one.targets.assign(all.targets.begin() + row * 33, all.targets.begin() + (row + 1) * 33);
+            one.rows = 3;
+            one.targets.clear();
+            for (int copy = 0; copy < 3; ++copy)
+                one.targets.insert(one.targets.end(), all.targets.begin() + row * 33,
+                                   all.targets.begin() + (row + 1) * 33);
             alone.push_back(bits(run(one, {}).delta));
         }
         std::sort(alone.begin(), alone.end());

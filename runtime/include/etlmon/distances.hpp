@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: MIT
-// The distances: what one element adds, and what the sum over all elements means.
-// Takes: an embedding z and a target g of D floats, all finite; a weight per element where the distance has weights.
-// Gives: per distance a struct that kernel.hpp runs over rows. Keeps true: the difference z - g comes first, always, so
+// The distances: how their sums are kept and what a sum over all elements means. What one element adds stands in
+// terms.inc, which is compiled once per instruction set.
+// Gives: per distance a struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
 // a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error bounds:
 // error_bounds.hpp. Each struct has
-//   Partial<V>  running sums, V a Pack or a float      add(to, point, z, g, w)  one element, or four, into them
-//   Point       what is computed once from z           combine(a, b)            of two lanes' sums
-//   row(sums)   a row's value >= 0, ordered as the     finish(value)            the distance
-//               distance is                            k...                     what it reads, where it is sound
+//   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered as the distance is
+//   Point       what is computed once from z           finish(value)  the distance
+//   k...        what it reads, where it is sound
 #pragma once
 
 #include "etlmon/pack.hpp"
@@ -33,14 +32,6 @@ template <class V>
 struct TwoSums {
   V apart, along;
 };
-template <uint32_t I>
-ETLMON_INLINE Sum<float> lane(const Sum<Pack>& s) noexcept {
-  return {lane<I>(s.sum)};
-}
-template <uint32_t I>
-ETLMON_INLINE TwoSums<float> lane(const TwoSums<Pack>& s) noexcept {
-  return {lane<I>(s.apart), lane<I>(s.along)};
-}
 
 /// A distance that is a plain sum over elements needs no more than its term.
 struct Additive {
@@ -50,13 +41,8 @@ struct Additive {
   static constexpr bool kWeighted = false;   ///< reads one weight per element
   static constexpr bool kQuadratic = false;  ///< reads D x D weights
   static constexpr bool kDirection = false;  ///< of z only the direction counts: z is scaled to length 1
-  static constexpr bool kRescales =
-      false;  ///< value is a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
-  static constexpr bool kTwoRows = true;  ///< the sums of two rows fit in the registers
-  template <class V>
-  ETLMON_INLINE static Sum<V> combine(const Sum<V>& a, const Sum<V>& b) noexcept {
-    return {a.sum + b.sum};
-  }
+  static constexpr bool kRescales = false;   ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
+  static constexpr bool kSum = true;         ///< a row's value is its sum
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
   ETLMON_INLINE static float finish(float value) noexcept { return value; }
 };
@@ -66,22 +52,23 @@ struct UnitPoint {
   float scale;
 };
 
-/// Rounded here: whether the product is fused with what follows would depend on how many rows share it.
-template <class V>
-ETLMON_INLINE V unit(UnitPoint point, V z) noexcept {
-  return rounded(z * point.scale);
-}
+// Sums that the kernels need besides the distances.
+struct SquaredLength : Additive {};  ///< sum z^2
+struct Product : Additive {};        ///< sum x g
+
+/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 / down.
+struct PowerOfTwo {
+  float down, up;
+};
+/// Sum of squares of differences that are scaled first.
+struct ScaledL2Sq : Additive {
+  using Point = PowerOfTwo;
+};
 
 }  // namespace detail
 
 /// sum (z - g)^2
-struct L2Sq : detail::Additive {
-  template <class V>
-  ETLMON_INLINE static void add(detail::Sum<V>& to, detail::NoPoint, V z, V g, V) noexcept {
-    const V difference = z - g;
-    to.sum = to.sum + difference * difference;
-  }
-};
+struct L2Sq : detail::Additive {};
 
 /// sqrt of sum (z - g)^2
 struct L2 : L2Sq {
@@ -90,39 +77,19 @@ struct L2 : L2Sq {
 };
 
 /// sum |z - g|
-struct L1 : detail::Additive {
-  template <class V>
-  ETLMON_INLINE static void add(detail::Sum<V>& to, detail::NoPoint, V z, V g, V) noexcept {
-    to.sum = to.sum + detail::magnitude(z - g);
-  }
-};
+struct L1 : detail::Additive {};
 
 /// max |z - g|
-struct Linf : detail::Additive {
-  template <class V>
-  ETLMON_INLINE static void add(detail::Sum<V>& to, detail::NoPoint, V z, V g, V) noexcept {
-    to.sum = detail::larger(detail::magnitude(z - g), to.sum);
-  }
-  template <class V>
-  ETLMON_INLINE static detail::Sum<V> combine(const detail::Sum<V>& a, const detail::Sum<V>& b) noexcept {
-    return {detail::larger(a.sum, b.sum)};
-  }
-};
+struct Linf : detail::Additive {};
 
 /// sqrt of sum w (z - g)^2: Mahalanobis distance with a diagonal inverse covariance.
 struct MahalanobisDiagonal : L2 {
   static constexpr bool kWeighted = true;
-  template <class V>
-  ETLMON_INLINE static void add(detail::Sum<V>& to, detail::NoPoint, V z, V g, V w) noexcept {
-    const V difference = z - g;
-    to.sum = to.sum + (w * difference) * difference;
-  }
 };
 
-/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is kernel.hpp's quadratic_form.
+/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is run.inc's quadratic_form.
 struct Mahalanobis : L2 {
   static constexpr bool kQuadratic = true;
-  static constexpr bool kTwoRows = false;
 };
 
 /// 1 - cos(z, g) for a target of length 1, as |u - g|^2 / 2 with u = z / |z|: exact to rounding for nearly parallel
@@ -130,11 +97,7 @@ struct Mahalanobis : L2 {
 struct Cosine : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
-  template <class V>
-  ETLMON_INLINE static void add(detail::Sum<V>& to, Point point, V z, V g, V) noexcept {
-    const V difference = detail::unit(point, z) - g;
-    to.sum = to.sum + difference * difference;
-  }
+  static constexpr bool kSum = false;
   ETLMON_INLINE static float row(const detail::Sum<float>& s) noexcept {
     const float half = 0.5f * s.sum;
     return half < 2.0f ? half : 2.0f;
@@ -146,21 +109,9 @@ struct Cosine : detail::Additive {
 struct Angular : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
-  static constexpr bool kTwoRows = false;
+  static constexpr bool kSum = false;
   template <class V>
   using Partial = detail::TwoSums<V>;
-  template <class V>
-  ETLMON_INLINE static void add(detail::TwoSums<V>& to, Point point, V z, V g, V) noexcept {
-    const V u = detail::unit(point, z);
-    const V difference = u - g;
-    const V total = u + g;
-    to.apart = to.apart + difference * difference;
-    to.along = to.along + total * total;
-  }
-  template <class V>
-  ETLMON_INLINE static detail::TwoSums<V> combine(const detail::TwoSums<V>& a, const detail::TwoSums<V>& b) noexcept {
-    return {a.apart + b.apart, a.along + b.along};
-  }
   /// tan^2 of half the angle. Below 2^-60, |u + g|^2 is 0 but for rounding, and the angle pi.
   ETLMON_INLINE static float row(const detail::TwoSums<float>& p) noexcept {
     constexpr float kLeast = 8.67361738e-19f;

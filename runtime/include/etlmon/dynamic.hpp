@@ -79,15 +79,15 @@ Measured measure_as(AggregationId aggregation, uint32_t n, const float* z, const
                     const float* weights, float* scratch) noexcept {
   switch (aggregation) {
     case AggregationId::min:
-      return measure_rows<Metric>(z, targets, weights, K, D, Min{});
+      return best<Metric, Min, Sizes, false>(z, targets, weights, {K, D}, Min{});
     case AggregationId::max:
-      return measure_rows<Metric>(z, targets, weights, K, D, Max{});
+      return best<Metric, Max, Sizes, false>(z, targets, weights, {K, D}, Max{});
     case AggregationId::mean:
-      return measure_rows<Metric>(z, targets, weights, K, D, Mean{});
+      return best<Metric, Mean, Sizes, false>(z, targets, weights, {K, D}, Mean{});
     case AggregationId::kth:
       break;
   }
-  return measure_rows<Metric>(z, targets, weights, K, D, KthOf{scratch, n, 0});
+  return best<Metric, KthOf, Sizes, false>(z, targets, weights, {K, D}, KthOf{scratch, n, 0});
 }
 
 }  // namespace detail

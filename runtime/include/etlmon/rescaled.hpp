@@ -5,16 +5,10 @@
 // way, and a vector of zeros has no direction. Kept out of line, one function for every K and D.
 #pragma once
 
-#include "etlmon/aggregate.hpp"
-#include "etlmon/rows.hpp"
+#include "etlmon/versions.hpp"
 
 namespace etlmon {
 namespace detail {
-
-/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 / down.
-struct PowerOfTwo {
-  float down, up;
-};
 
 ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
   uint32_t exponent = bits_of_x >> 23;
@@ -31,27 +25,17 @@ ETLMON_INLINE uint32_t greatest_magnitude(const float* x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// L2Sq of differences that are scaled first.
-struct ScaledL2Sq : Additive {
-  using Point = PowerOfTwo;
-  template <class V>
-  ETLMON_INLINE static void add(Sum<V>& to, Point power, V z, V g, V) noexcept {
-    const V difference = rounded(z - g) * power.down;
-    to.sum = to.sum + difference * difference;
-  }
-};
-
-/// Bits of |z - g|. A z that equals a target comes here too, so this is vector code as well.
+/// Bits of |z - g|.
 class RescaledL2 {
  public:
   RescaledL2(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
   uint32_t row(const float* g) const noexcept {
-    const uint32_t greatest = observe(one_row<Linf>({}, z_, g, z_, dimension_));
+    const uint32_t greatest = observe(baseline::one_row<Linf>({}, z_, g, z_, dimension_));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
     const PowerOfTwo power = power_of_two(greatest);
-    const float square = one_row<ScaledL2Sq>(power, z_, g, z_, dimension_);
+    const float square = baseline::one_row<ScaledL2Sq>(power, z_, g, z_, dimension_);
     return observe(rounded(rounded(square_root(square)) * power.up));
   }
 
@@ -59,11 +43,6 @@ class RescaledL2 {
   const float* z_;
   uint32_t dimension_;
 };
-
-/// z == g, element by element.
-ETLMON_COLD inline bool equal(const float* z, const float* g, uint32_t dimension) noexcept {
-  return observe(one_row<Linf>({}, z, g, z, dimension)) == 0;
-}
 
 /// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z - g), every
 /// |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element bounds every term.
@@ -141,7 +120,9 @@ class RescaledDirection {
 
   uint32_t row(const float* g) const noexcept {
     typename Metric::template Partial<float> sums{};
-    for (uint32_t i = 0; i < dimension_; ++i) Metric::add(sums, point_, rounded(z_[i] * down_), g[i], 0.0f);
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)), g[i], 0.0f);
+    }
     return observe(Metric::finish(Metric::row(sums)));
   }
 
@@ -159,7 +140,7 @@ class Unscaled {
  public:
   Unscaled(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
-  uint32_t row(const float* g) const noexcept { return observe(one_row<Metric>({}, z_, g, z_, dimension_)); }
+  uint32_t row(const float* g) const noexcept { return observe(baseline::one_row<Metric>({}, z_, g, z_, dimension_)); }
 
  private:
   const float* z_;
@@ -181,17 +162,18 @@ using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric>,
 template <class Metric>
 using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
 
-template <class Metric, class Aggregation>
-ETLMON_COLD Measured measure_rescaled(const float* z, const float* targets, const float* weights, uint32_t rows,
-                                      uint32_t dimension, Aggregation aggregation) noexcept {
-  const Rescaled<Metric> distance(z, weights, dimension);
+template <class Metric, class Aggregation, bool InColumns>
+ETLMON_COLD Measured measure_rescaled(const float* z, Set<InColumns> set, const float* weights,
+                                      Aggregation aggregation) noexcept {
+  const Rescaled<Metric> distance(z, weights, set.dimension);
   if (!distance.known()) return {from_bits(kMissingBits), 0};
   Nearest nearest;
-  for (uint32_t row = 0; row < rows; ++row) {
-    const uint32_t bits = distance.row(targets + static_cast<size_t>(row) * dimension);
+  typename Set<InColumns>::Buffer buffer;
+  for (uint32_t row = 0; row < set.rows; ++row) {
+    const uint32_t bits = distance.row(set.row(row, buffer));
     nearest.add(bits, row);
     if constexpr (Aggregation::kOfDistances) {
-      aggregation.add(rounded(from_bits(bits) / static_cast<float>(rows)));  // so that the sum cannot overflow
+      aggregation.add(rounded(from_bits(bits) / static_cast<float>(set.rows)));  // so that the sum cannot overflow
     } else {
       aggregation.add(bits);
     }

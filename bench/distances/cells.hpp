@@ -1,0 +1,69 @@
+// The cells of the distance bench and what competes in them.
+// A contestant gives, per cell, a function that takes an embedding (D floats) and K x D row-major targets and returns
+// the smallest l2 distance; it prepares what it wants from the targets in setup, which is not timed.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+// D, K
+#define ETLC_BENCH_CELLS(CELL) \
+    CELL(2, 64)                \
+    CELL(32, 4)                \
+    CELL(32, 64)               \
+    CELL(384, 1)               \
+    CELL(384, 4)               \
+    CELL(384, 16)              \
+    CELL(384, 64)              \
+    CELL(768, 16)              \
+    CELL(3840, 4)              \
+    CELL(3840, 64)             \
+    CELL(384, 10000)
+
+namespace bench {
+
+struct Cell {
+    std::uint32_t dimension, rows;
+};
+
+/// The smallest distance from z. `state` is what setup returned.
+using Nearest = float (*)(const float* z, const float* targets, const void* state);
+using Setup = const void* (*)(const float* targets, std::uint32_t rows, std::uint32_t dimension);
+
+struct Entry {
+    Cell cell;
+    Nearest nearest;
+};
+
+struct Contestant {
+    const char* name;
+    Setup setup;  ///< may be nullptr
+    std::vector<Entry> entries;
+};
+
+/// |g|^2 of every row: for the form |z|^2 + |g|^2 - 2 z.g.
+inline const void* squared_lengths(const float* targets, std::uint32_t rows, std::uint32_t dimension) {
+    static std::vector<float> lengths;
+    lengths.assign(rows, 0);
+    for (std::uint32_t k = 0; k < rows; ++k) {
+        for (std::uint32_t i = 0; i < dimension; ++i) {
+            const float x = targets[std::size_t{k} * dimension + i];
+            lengths[k] += x * x;
+        }
+    }
+    return lengths.data();
+}
+
+Contestant etlmon_gxx();
+Contestant etlmon_gxx_native();
+Contestant etlmon_clang();
+Contestant etlmon_clang_native();
+Contestant eigen_gemv();
+Contestant eigen_direct();
+Contestant openblas();
+Contestant highway();
+Contestant naive_O2();
+Contestant naive_O3_native();
+Contestant read_floor();
+
+}  // namespace bench

@@ -1,0 +1,182 @@
+// min l2 over K targets: nanoseconds per call of every contestant in every cell, in one run, and the ratios that count.
+// Usage: bench_distances [--json FILE] [--rounds N]
+// Contestants take turns within each round, so that a change of the machine's speed meets all of them; the median
+// round counts. Answers are compared first: a contestant that is wrong is an error, not a result.
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <memory>
+#include <random>
+#include <string>
+
+#include "cells.hpp"
+
+namespace {
+
+using namespace bench;
+using Clock = std::chrono::steady_clock;
+
+constexpr std::uint32_t kPoints = 8;
+
+/// A set of targets and points among them, 64-byte aligned.
+class Data {
+public:
+    explicit Data(Cell cell) : cell_(cell) {
+        std::mt19937 random(cell.dimension * 31 + cell.rows);
+        std::normal_distribution<float> normal;
+        targets_ = make(std::size_t{cell.rows} * cell.dimension, [&] { return normal(random); });
+        points_ = make(std::size_t{kPoints} * stride(), [&] { return normal(random); });
+    }
+    const float* targets() const { return targets_.get(); }
+    const float* point(std::uint32_t i) const { return points_.get() + std::size_t{i % kPoints} * stride(); }
+
+private:
+    struct Free {
+        void operator()(float* p) const { std::free(p); }
+    };
+    using Floats = std::unique_ptr<float, Free>;
+
+    std::size_t stride() const { return (cell_.dimension + 15) / 16 * 16; }
+    template <class Draw>
+    static Floats make(std::size_t n, const Draw& draw) {
+        Floats floats(static_cast<float*>(std::aligned_alloc(64, (n * sizeof(float) + 63) / 64 * 64)));
+        std::generate_n(floats.get(), n, draw);
+        return floats;
+    }
+
+    Cell cell_;
+    Floats targets_, points_;
+};
+
+double exact(const Data& data, Cell cell, std::uint32_t point) {
+    double least = HUGE_VAL;
+    for (std::uint32_t k = 0; k < cell.rows; ++k) {
+        double sum = 0;
+        for (std::uint32_t i = 0; i < cell.dimension; ++i) {
+            const double d = double{data.point(point)[i]} - double{data.targets()[std::size_t{k} * cell.dimension + i]};
+            sum += d * d;
+        }
+        least = std::min(least, sum);
+    }
+    return std::sqrt(least);
+}
+
+double seconds(Nearest nearest, const Data& data, const void* state, std::uint64_t calls) {
+    volatile float sink = 0;
+    const auto start = Clock::now();
+    for (std::uint64_t i = 0; i < calls; ++i)
+        sink = nearest(data.point(static_cast<std::uint32_t>(i)), data.targets(), state);
+    const std::chrono::duration<double> passed = Clock::now() - start;
+    static_cast<void>(sink);
+    return passed.count();
+}
+
+struct Competitor {
+    std::string name;
+    Nearest nearest;
+    const void* state;
+    std::uint64_t calls;
+    std::vector<double> rounds;  ///< ns per call
+};
+
+/// ns per call of every contestant, median over the rounds.
+std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants, int rounds) {
+    const Data data(cell);
+    std::vector<Competitor> competitors;
+    for (const Contestant& c : contestants) {
+        const auto entry = std::find_if(c.entries.begin(), c.entries.end(), [&](const Entry& e) {
+            return e.cell.dimension == cell.dimension && e.cell.rows == cell.rows;
+        });
+        const void* state = c.setup != nullptr ? c.setup(data.targets(), cell.rows, cell.dimension) : nullptr;
+        for (std::uint32_t i = 0; i < kPoints && c.name != std::string("read floor"); ++i) {
+            const double got = entry->nearest(data.point(i), data.targets(), state), want = exact(data, cell, i);
+            if (std::abs(got - want) > 1e-3 * want) {
+                std::fprintf(stderr, "%s at %u x %u: %g, expected %g\n", c.name, cell.dimension, cell.rows, got, want);
+                std::exit(1);
+            }
+        }
+        std::uint64_t calls = 1;
+        constexpr double kRound = 2e-3;
+        while (seconds(entry->nearest, data, state, calls) < kRound) calls *= 2;
+        competitors.push_back({c.name, entry->nearest, state, calls, {}});
+    }
+    for (int round = 0; round < rounds; ++round) {
+        for (Competitor& c : competitors)
+            c.rounds.push_back(seconds(c.nearest, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls));
+    }
+    std::map<std::string, double> medians;
+    for (Competitor& c : competitors) {
+        std::nth_element(c.rounds.begin(), c.rounds.begin() + rounds / 2, c.rounds.end());
+        medians[c.name] = c.rounds[static_cast<std::size_t>(rounds / 2)];
+    }
+    return medians;
+}
+
+std::string cpu_name() {
+    std::ifstream info("/proc/cpuinfo");
+    for (std::string line; std::getline(info, line);)
+        if (line.rfind("model name", 0) == 0) return line.substr(line.find(':') + 2);
+    return "unknown";
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    std::string json;
+    int rounds = 15;
+    for (int i = 1; i + 1 < argc; i += 2) {
+        if (std::strcmp(argv[i], "--json") == 0) json = argv[i + 1];
+        if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[i + 1]));
+    }
+    const std::vector<Contestant> ours {
+        etlmon_gxx(), etlmon_gxx_native(),
+#if defined(ETLC_BENCH_CLANG)
+            etlmon_clang(), etlmon_clang_native()
+#endif
+    };
+    const std::vector<Contestant> peers{eigen_gemv(), eigen_direct(), openblas(), highway()};
+    std::vector<Contestant> all{read_floor(), naive_O2(), naive_O3_native()};
+    all.insert(all.end(), peers.begin(), peers.end());
+    all.insert(all.end(), ours.begin(), ours.end());
+
+    std::printf("min l2 over K targets of D float32, ns per call, median of %d rounds; %s\n", rounds,
+                cpu_name().c_str());
+    std::printf("%-11s", "D x K");
+    for (const Contestant& c : all) std::printf(" %16s", c.name);
+    std::printf(" | of ours, the slowest: / best peer, floor /\n");
+    std::string rows;
+    for (const Cell cell : {
+#define CELL(D, K) Cell{D, K},
+             ETLC_BENCH_CELLS(CELL)
+#undef CELL
+         }) {
+        std::map<std::string, double> ns = measure(cell, all, rounds);
+        const std::string name = std::to_string(cell.dimension) + " x " + std::to_string(cell.rows);
+        std::printf("%-11s", name.c_str());
+        std::string results;
+        for (const Contestant& c : all) {
+            std::printf(" %16.1f", ns[c.name]);
+            results +=
+                (results.empty() ? "" : ", ") + ('"' + std::string(c.name)) + "\": " + std::to_string(ns[c.name]);
+        }
+        double best = HUGE_VAL, slowest = 0;
+        for (const Contestant& c : peers) best = std::min(best, ns[c.name]);
+        for (const Contestant& c : ours) slowest = std::max(slowest, ns[c.name]);
+        std::printf(" | %22.2f %8.2f\n", slowest / best, ns["read floor"] / slowest);
+        std::fflush(stdout);
+        rows += (rows.empty() ? "" : ",\n") + ("    {\"name\": \"" + name) + "\", \"results\": {" + results + "}}";
+    }
+    if (!json.empty()) {
+        std::ofstream out(json);
+        out << "{\n  \"format\": 1,\n  \"bench\": \"distances\",\n  \"unit\": \"ns\",\n  \"machine\": \"" << cpu_name()
+            << "\",\n  \"rows\": [\n"
+            << rows << "\n  ]\n}\n";
+        if (!out.flush()) return 1;
+    }
+    return 0;
+}

@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: MIT
+// Which version of the kernel runs: the best that the CPU and the operating system have.
+// Takes: nothing; asks the CPU once. Gives: best(...), a call of that version's run(...). Keeps true: on hosted x86-64
+// one constant-initialised pointer per kernel, which changes once, to a value that is the same whichever thread writes
+// it; elsewhere, and under ETLMON_NO_DISPATCH, a plain call.
+#pragma once
+
+#include "etlmon/versions.hpp"
+
+namespace etlmon {
+namespace detail {
+
+#if defined(ETLMON_DISPATCH)
+
+struct CpuId {
+  uint32_t a, b, c, d;
+};
+inline CpuId cpu_id(uint32_t leaf) noexcept {
+  CpuId id{};
+  __asm__("cpuid" : "=a"(id.a), "=b"(id.b), "=c"(id.c), "=d"(id.d) : "a"(leaf), "c"(0));
+  return id;
+}
+
+/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA) or 4 (AVX-512 F, VL, BW, DQ), where the
+/// operating system keeps the registers. (Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1,
+/// sections 14.3 and 15.2.)
+inline uint32_t x86_64_level() noexcept {
+  constexpr uint32_t kFma = 1u << 12, kOsxsave = 1u << 27, kAvx = 1u << 28;
+  constexpr uint32_t kAvx2 = 1u << 5, kAvx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
+  constexpr uint32_t kYmm = 0x6, kZmm = 0xe6;
+  constexpr uint32_t kLevel3 = kFma | kOsxsave | kAvx;
+  if (cpu_id(0).a < 7 || (cpu_id(1).c & kLevel3) != kLevel3) return 1;
+  uint32_t kept = 0, high = 0;
+  __asm__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
+  const uint32_t has = cpu_id(7).b;
+  if ((has & kAvx2) == 0 || (kept & kYmm) != kYmm) return 1;
+  return (has & kAvx512) == kAvx512 && (kept & kZmm) == kZmm ? 4 : 3;
+}
+
+template <class Metric, class Aggregation, class Size, bool InColumns>
+struct Dispatch {
+  using Run = Measured (*)(const float*, const float*, const float*, Size, Aggregation) noexcept;
+
+  static Run choice() noexcept {
+    const uint32_t level = x86_64_level();
+    if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns>;
+#if ETLMON_X86_64 < 3
+    if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns>;
+#endif
+    return baseline::run<Metric, Aggregation, Size, InColumns>;
+  }
+  ETLMON_COLD static Measured choose(const float* z, const float* targets, const float* weights, Size size,
+                                     Aggregation aggregation) noexcept {
+    const Run run = choice();
+    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
+    return run(z, targets, weights, size, aggregation);
+  }
+  inline static Run chosen = choose;
+};
+
+template <class Metric, class Aggregation, class Size, bool InColumns>
+ETLMON_INLINE Measured best(const float* z, const float* targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  using Kernel = Dispatch<Metric, Aggregation, Size, InColumns>;
+  return __atomic_load_n(&Kernel::chosen, __ATOMIC_RELAXED)(z, targets, weights, size, aggregation);
+}
+
+#else
+
+template <class Metric, class Aggregation, class Size, bool InColumns>
+ETLMON_INLINE Measured best(const float* z, const float* targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  return baseline::run<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+}
+
+#endif
+
+}  // namespace detail
+}  // namespace etlmon

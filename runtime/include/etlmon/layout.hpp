@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: MIT
+// In which order the elements of a row are added, and where a target set is better kept column by column.
+// Takes: K rows of D elements. Gives: order(K, D), in_columns(K, D), the set in columns, made by the compiler.
+// Keeps true: both depend on K and D alone, so the kernel with constant sizes and the one with sizes known at run time
+// compute the same sums; all rows of a set are added in the same order, so equal rows have equal distances.
+#pragma once
+
+#include "etlmon/pack.hpp"
+
+namespace etlmon {
+namespace detail {
+
+constexpr uint32_t kLanes = 16;  ///< floats of the widest vector
+
+enum class Order : uint8_t {
+  sequential,  ///< element after element, into one sum
+  lanes,       ///< element i into sum i mod 16
+  two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an addition's latency
+  four_chunks  ///< element i into sum i mod 64; and for sets beyond the caches, which are best read in one stream
+};
+
+/// Rows of a column: K, and copies of the last row up to whole vectors.
+constexpr uint32_t column_length(uint32_t K) noexcept { return (K + kLanes - 1) / kLanes * kLanes; }
+
+/// Many short rows: with a row in each lane no sum over lanes is needed. The limit keeps what the compiler has to
+/// evaluate within its default limits.
+constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
+  constexpr uint32_t kMost = 16384;
+  const bool short_rows = (D < kLanes && K > 4) || (D <= 4 * kLanes && K >= 2 * kLanes);
+  return kHasPacks && short_rows && K <= kMost && column_length(K) <= kMost / D;
+}
+
+constexpr Order order(uint32_t K, uint32_t D) noexcept {
+  if (!kHasPacks || D < kLanes || in_columns(K, D)) return Order::sequential;
+  constexpr uint32_t kCached = 1u << 19;  // 2 MiB
+  if (K == 1 || K > kCached / D) return Order::four_chunks;
+  return K == 2 ? Order::two_chunks : Order::lanes;
+}
+
+/// A target set, element by element: element i of row k is values[i * column_length(K) + k].
+template <uint32_t K, uint32_t D>
+struct Columns {
+  alignas(64) float values[D * column_length(K)];
+};
+
+template <uint32_t K, uint32_t D>
+constexpr Columns<K, D> columns_of(const float (&rows)[K * D]) noexcept {
+  Columns<K, D> columns{};
+  for (uint32_t i = 0; i < D; ++i) {
+    for (uint32_t k = 0; k < column_length(K); ++k) {
+      columns.values[i * column_length(K) + k] = rows[(k < K ? k : K - 1) * D + i];
+    }
+  }
+  return columns;
+}
+
+/// The columns of a set that is a constant of the program.
+template <uint32_t K, uint32_t D, const float (&Rows)[K * D]>
+struct ColumnsOf {
+  static constexpr Columns<K, D> kColumns = columns_of<K, D>(Rows);
+};
+
+/// Sizes known to the compiler, and sizes known at run time.
+template <uint32_t K, uint32_t D>
+struct Fixed {
+  static constexpr uint32_t rows() noexcept { return K; }
+  static constexpr uint32_t dimension() noexcept { return D; }
+  static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
+  /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
+  static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
+};
+struct Sizes {
+  uint32_t K, D;
+  constexpr uint32_t rows() const noexcept { return K; }
+  constexpr uint32_t dimension() const noexcept { return D; }
+  static constexpr bool may_be(Order) noexcept { return true; }
+  static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
+};
+
+}  // namespace detail
+}  // namespace etlmon

@@ -1,0 +1,113 @@
+// SPDX-License-Identifier: MIT
+// From the values of K rows to the distance of a predicate, and whether they can be trusted.
+// Takes: the values of all rows in row order. Gives: the aggregated distance and the nearest row. Keeps true: where a
+// square left [2^-80, FLT_MAX] and that could matter, the scaled form (rescaled.hpp) decides; a distance of exactly 0
+// is recognised without it.
+#pragma once
+
+#include "etlmon/aggregate.hpp"
+#include "etlmon/distances.hpp"
+#include "etlmon/layout.hpp"
+
+namespace etlmon {
+namespace detail {
+
+/// K rows of D elements, one after the other.
+template <bool InColumns>
+struct Set {
+  const float* values;
+  uint32_t rows, dimension;
+
+  struct Buffer {};
+  ETLMON_INLINE const float* row(uint32_t k, Buffer&) const noexcept {
+    return values + static_cast<size_t>(k) * dimension;
+  }
+};
+
+/// The same in columns.
+template <>
+struct Set<true> {
+  const float* values;
+  uint32_t rows, dimension;
+
+  struct Buffer {
+    float elements[4 * kLanes];
+  };
+  /// Row k, gathered in `to`.
+  ETLMON_INLINE const float* row(uint32_t k, Buffer& to) const noexcept {
+    const uint32_t length = column_length(rows);
+    for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = values[i * length + k];
+    return to.elements;
+  }
+};
+
+/// Everything about one measurement but its sizes and its rows: the nearest row, the aggregate, what they say together.
+template <class Metric, class Aggregation>
+struct Tally {
+  Nearest nearest;
+  Aggregation aggregation;
+  uint32_t greatest = 0;
+
+  ETLMON_INLINE void add(float value, uint32_t row) noexcept {
+    const uint32_t bits = observe(value);
+    nearest.add(bits, row);
+    if constexpr (Metric::kWeighted || Metric::kQuadratic) greatest = bits > greatest ? bits : greatest;
+    if constexpr (Aggregation::kOfDistances) {
+      aggregation.add(Metric::finish(from_bits(bits)));
+    } else {
+      aggregation.add(bits);
+    }
+  }
+  /// Bits of the aggregate: of a distance for the mean, else of a value.
+  ETLMON_INLINE uint32_t result(uint32_t rows) const noexcept {
+    if constexpr (Aggregation::kOfDistances) {
+      return observe(aggregation.result(rows));
+    } else {
+      return aggregation.result(nearest);
+    }
+  }
+  /// No square that matters was lost, and no sum of distances overflowed that may have a representable mean. Weights
+  /// can make a far row near: with them no row may have overflowed.
+  ETLMON_INLINE bool sound(uint32_t result) const noexcept {
+    if (!Metric::kRescales) return result <= kGreatest || !Aggregation::kOfDistances;
+    return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
+  }
+  /// The same where the nearest row turns out to be z itself: its 0 is exact, and no other row's underflow can matter.
+  ETLMON_INLINE bool sound_if_equal(uint32_t result) const noexcept {
+    constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, in doubt whether a square or a root
+    const bool exact = Aggregation::kNearest ? result == 0 : result >= kLeastRoot;
+    return nearest.least == 0 && exact && result <= kGreatest && greatest <= kGreatest;
+  }
+};
+
+/// The measurement with scaled differences.
+template <class Metric, class Aggregation, bool InColumns>
+ETLMON_COLD Measured measure_rescaled(const float* z, Set<InColumns> set, const float* weights,
+                                      Aggregation aggregation) noexcept;
+
+/// z is row k of the set, element by element.
+template <bool InColumns>
+ETLMON_COLD bool is_row(const float* z, Set<InColumns> set, uint32_t k) noexcept {
+  typename Set<InColumns>::Buffer buffer;
+  const float* row = set.row(k, buffer);
+  uint32_t different = 0;
+  for (uint32_t i = 0; i < set.dimension; ++i) different |= observe(z[i] - row[i]) & ~kSignBit;
+  return different == 0;
+}
+
+/// What the values say together. `aggregation`: as it was before it saw any.
+template <class Metric, class Aggregation, bool InColumns>
+ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, Set<InColumns> set,
+                                const float* weights, Aggregation aggregation) noexcept {
+  const uint32_t result = tally.result(set.rows);
+  if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
+    const bool sound =
+        tally.sound(result) || (Metric::kRescales && tally.sound_if_equal(result) && is_row(z, set, tally.nearest.row));
+    if (!sound) return measure_rescaled<Metric>(z, set, weights, aggregation);
+  }
+  const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
+  return {delta, tally.nearest.row};
+}
+
+}  // namespace detail
+}  // namespace etlmon
