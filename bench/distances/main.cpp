@@ -169,13 +169,11 @@ int main(int argc, char** argv) {
         for (const Contestant& c : ours) slowest = std::max(slowest, ns[c.name]);
         std::printf(" | %22.2f %8.2f\n", slowest / best, ns["read floor"] / slowest);
         std::fflush(stdout);
-        rows += (rows.empty() ? "" : ",\n") + ("    {\"name\": \"" + name) + "\", \"results\": {" + results + "}}";
+        rows += (rows.empty() ? "" : ",\n") + ("  {\"cell\": \"" + name) + "\", " + results + "}";
     }
     if (!json.empty()) {
         std::ofstream out(json);
-        out << "{\n  \"format\": 1,\n  \"bench\": \"distances\",\n  \"unit\": \"ns\",\n  \"machine\": \"" << cpu_name()
-            << "\",\n  \"rows\": [\n"
-            << rows << "\n  ]\n}\n";
+        out << "[\n" << rows << "\n]\n";
         if (!out.flush()) return 1;
     }
     return 0;
