@@ -1,0 +1,229 @@
+// What calibrated thresholds guarantee: the words, and whether they are true of drawn episodes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "calibrate/fit.hpp"
+#include "calibrate/ground_truth.hpp"
+#include "check/check.hpp"
+#include "check/guarantees.hpp"
+#include "ir/lower.hpp"
+#include "parse/parse.hpp"
+#include "plan/evaluator.hpp"
+#include "random.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using calibrate::Index;
+using check::Claim;
+
+check::Model load_uncalibrated(const std::string& text) {
+    diag::Sink sink;
+    const source::File file("t.etl", text);
+    check::Options options;
+    options.allow_uncalibrated = true;
+    auto model = check::check(parse::parse(file, sink), file, options, sink);
+    EXPECT_TRUE(model) << text;
+    return *model;
+}
+
+constexpr const char* kDeclarations =
+    "spec t; input z : f32[2]; input s, x, y : f32; input flag : bool; target g = [[0, 0]];\n"
+    "predicate a = l2(z, g) <= calibrated(conformal, alpha = 0.10);\n"
+    "predicate b = x <= calibrated(conformal, alpha = 0.05);\n"
+    "predicate e = y <= calibrated(f1);\n"
+    "predicate c = y <= calibrated(class_conditional, alpha = 0.1);\n"
+    "predicate literal = l2(z, g) <= 0.5;\n"
+    "predicate near = l2([x, y], g) <= 1;\n"
+    "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= calibrated(conformal, alpha = "
+    "5e-1);\n"
+    "predicate meant = s > 1; truth meant = s > 2;\n";
+
+/// All claims about one monitor, the parts in brackets.
+std::string claims_of(const std::string& formula) {
+    const check::Model model = load_uncalibrated(std::string(kDeclarations) + "monitor m = " + formula + ";");
+    std::string result;
+    for (const Claim& claim : check::claims(model, model.monitors[0])) {
+        if (!result.empty()) result += " | ";
+        if (!claim.part.empty()) result += "[" + claim.part + "] ";
+        result += check::text(claim);
+    }
+    return result;
+}
+
+TEST(Claims, AreReadOffTheNegationNormalForm) {
+    const std::string success = "P(some verdict of a new episode misses a success) <= ";
+    const std::string alarm = "P(some verdict of a new episode misses an alarm) <= ";
+    EXPECT_EQ(claims_of("F a"), success + "0.1");
+    EXPECT_EQ(claims_of("F (a && F b)"), success + "0.15");
+    EXPECT_EQ(claims_of("F (a && F a)"), success + "0.1");  // one event, however often it is looked at
+    EXPECT_EQ(claims_of("G !a"), alarm + "0.1");
+    EXPECT_EQ(claims_of("!(F a || F b)"), alarm + "0.15");
+    EXPECT_EQ(claims_of("G (a -> s > 0.5)"), alarm + "0.1");
+    EXPECT_EQ(claims_of("G (s > 0.5 -> F[0, 3] a)"), success + "0.1");
+    EXPECT_EQ(claims_of("flag U a"), success + "0.1");
+    EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
+    EXPECT_EQ(claims_of("F (s > 0.5 && flag)"),
+              "exact: nothing in it is calibrated, and its predicates are their own truth");
+}
+
+TEST(Claims, NothingWhereNothingIsKnown) {
+    EXPECT_EQ(claims_of("F e"), "nothing: 'e' is calibrated for F1");
+    EXPECT_EQ(claims_of("F (a && c)"), "nothing: 'c' covers frames, not episodes");
+    EXPECT_EQ(claims_of("F (a && literal)"), "nothing: 'literal' has a literal threshold and is not its own truth");
+    EXPECT_EQ(claims_of("F (a && meant)"), "nothing: 'meant' has a literal threshold and is not its own truth");
+    EXPECT_EQ(claims_of("F (a && !b)"), "nothing: 'a' stands in it plain, 'b' negated");
+    EXPECT_EQ(claims_of("F (a <-> flag)"), "nothing: 'a' stands in it both plain and negated");
+    EXPECT_EQ(claims_of("F (half && rest)"), "nothing: the alphas of its predicates add up to 1");
+}
+
+TEST(Claims, MixedConjunctsSpeakForThemselves) {
+    EXPECT_EQ(claims_of("F a && G !b"),
+              "nothing: 'a' stands in it plain, 'b' negated"
+              " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
+              " | [G !b] P(some verdict of a new episode misses an alarm) <= 0.05");
+    EXPECT_EQ(claims_of("!(G a -> F b)"),
+              "nothing: 'a' stands in it plain, 'b' negated"
+              " | [G a] P(some verdict of a new episode misses a success) <= 0.1"
+              " | [!(F b)] P(some verdict of a new episode misses an alarm) <= 0.05");
+    EXPECT_EQ(claims_of("F a && F e"),
+              "nothing: 'e' is calibrated for F1"
+              " | [F a] P(some verdict of a new episode misses a success) <= 0.1"
+              " | [F e] nothing: 'e' is calibrated for F1");
+}
+
+// ---- simulation ----------------------------------------------------------------------------------------------------
+
+constexpr int kSteps = 8;
+constexpr int kDemonstrations = 12;
+constexpr int kDraws = 2000;
+
+struct Episode {
+    std::vector<std::vector<plan::Sample>> samples;  ///< x, y, s
+    std::vector<bool> a, b;
+};
+
+/// Near 0 where the label holds, near 1 where it does not, with noise that hides a good part of it.
+float noisy(Random& random, bool label) {
+    double sum = 0;
+    for (int i = 0; i < 4; ++i) sum += random.uniform() - 0.5;
+    return static_cast<float>((label ? 0.0 : 1.0) + 0.8 * sum);
+}
+
+Episode random_episode(Random& random) {
+    Episode episode;
+    const double share = random.uniform();  // episodes differ, so frames are not exchangeable
+    for (int t = 0; t < kSteps; ++t) {
+        episode.a.push_back(random.chance(share));
+        episode.b.push_back(random.chance(0.2));
+        const float s = random.chance(0.3) ? 1.0F : 0.0F;
+        episode.samples.push_back(
+            {{true, {noisy(random, episode.a.back())}}, {true, {noisy(random, episode.b.back())}}, {true, {s}}});
+    }
+    return episode;
+}
+
+calibrate::Demonstration score(const Episode& episode) {
+    calibrate::Demonstration result;
+    result.scores.resize(2);
+    for (int t = 0; t < kSteps; ++t)
+        for (std::size_t p = 0; p < 2; ++p) {
+            if (!(p == 0 ? episode.a : episode.b)[static_cast<std::size_t>(t)]) continue;
+            calibrate::Scores& scores = result.scores[p];
+            const float delta = episode.samples[static_cast<std::size_t>(t)][p].values[0];
+            scores.worst = scores.has_score ? std::max(scores.worst, delta) : delta;
+            scores.worst_reach = static_cast<double>(scores.worst);
+            scores.has_score = true;
+        }
+    return result;
+}
+
+struct Steppable {
+    ir::Program program;
+    plan::Plan plan;
+    plan::Evaluator evaluator;
+
+    explicit Steppable(const check::Model& model)
+        : program(ir::lower(model)), plan(planned(program)), evaluator(plan) {}
+
+private:
+    static plan::Plan planned(ir::Program& program) {
+        diag::Sink sink;
+        return *plan::plan(program, {}, sink);
+    }
+};
+
+TEST(Claims, AreTrueOfDrawnEpisodes) {
+    // Positive, negative, mixed, whose conjuncts are the monitors after it.
+    check::Model model = load_uncalibrated(
+        "spec t; input x, y, s : f32;\n"
+        "predicate a = x <= calibrated(conformal, alpha = 0.2); predicate b = y <= calibrated(conformal, alpha = "
+        "0.1);\n"
+        "monitor p0 = F (a && F b); monitor p1 = G (s > 0.5 -> F[0, 3] a); monitor p2 = a U b;\n"
+        "monitor n0 = G !a; monitor n1 = G (a -> s > 0.5); monitor n2 = !a U (s > 0.5 && !b);\n"
+        "monitor m0 = G (s > 0.5 -> a) && G !b; monitor c0 = G (s > 0.5 -> a); monitor c1 = G !b;");
+    const calibrate::GroundTruth truth = calibrate::ground_truth(model, {0, 1});
+    Steppable monitors(model);
+    Steppable truths(truth.model);
+    Random random(2026);
+    std::vector<int> missed_success(model.monitors.size());
+    std::vector<int> missed_alarm(model.monitors.size());
+    int draws = 0;
+    for (int draw = 0; draw < kDraws; ++draw) {
+        std::vector<calibrate::Demonstration> demonstrations;
+        for (int i = 0; i < kDemonstrations; ++i) demonstrations.push_back(score(random_episode(random)));
+        const Episode test = random_episode(random);
+        bool fitted = true;
+        for (const Index p : {0U, 1U}) {
+            const auto fit = calibrate::fit(model.predicates[p], demonstrations, p);
+            if (const auto* found = std::get_if<calibrate::Fitted>(&fit))
+                model.predicates[p].threshold.value = found->epsilon;
+            else
+                fitted = false;
+        }
+        if (!fitted) continue;  // too few demonstrations showed it
+        ++draws;
+        monitors.evaluator.reset();
+        truths.evaluator.reset();
+        std::vector<bool> success(model.monitors.size());
+        std::vector<bool> alarm(model.monitors.size());
+        for (std::size_t t = 0; t < kSteps; ++t) {
+            std::vector<plan::Sample> samples = test.samples[t];
+            const auto& said = monitors.evaluator.step(samples);
+            samples.push_back({true, {test.a[t] ? 1.0F : 0.0F}});
+            samples.push_back({true, {test.b[t] ? 1.0F : 0.0F}});
+            const auto& meant = truths.evaluator.step(samples);
+            for (std::size_t m = 0; m < said.size(); ++m) {
+                if (meant[m].satisfied() && !said[m].satisfied()) success[m] = true;
+                if (meant[m].violated() && !said[m].violated()) alarm[m] = true;
+            }
+        }
+        for (std::size_t m = 0; m < success.size(); ++m) {
+            missed_success[m] += success[m] ? 1 : 0;
+            missed_alarm[m] += alarm[m] ? 1 : 0;
+        }
+    }
+    ASSERT_GT(draws, kDraws / 2);
+    int vacuous = 0;
+    for (std::size_t m = 0; m < model.monitors.size(); ++m) {
+        const check::Claim claim = check::claims(model, model.monitors[m])[0];
+        if (claim.kind == Claim::Kind::nothing) {
+            EXPECT_EQ(model.monitors[m].name, "m0");
+            continue;
+        }
+        const bool of_success = claim.kind == Claim::Kind::missed_success;
+        const double bound = std::stod(claim.bound);
+        const double share = static_cast<double>((of_success ? missed_success : missed_alarm)[m]) / draws;
+        const double other = static_cast<double>((of_success ? missed_alarm : missed_success)[m]) / draws;
+        EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) / draws)) << model.monitors[m].name;
+        // Nothing is said about the other kind of error, and nothing could be.
+        vacuous += other > bound ? 1 : 0;
+    }
+    EXPECT_GE(vacuous, 4);
+}
+
+}  // namespace
+}  // namespace etlc::tests
