@@ -36,7 +36,7 @@ while IFS= read -r line; do
 done <"$document" >"$folder/document.md"
 
 [ -z "$fence" ] || { echo "the last block is not closed"; exit 1; }
-[ "$commands" -ge 5 ] || { echo "only $commands commands were found"; exit 1; }
+[ "$commands" -ge 3 ] || { echo "only $commands commands were found"; exit 1; }
 if [ "${ETLC_UPDATE:-}" = 1 ]; then
     cp "$folder/document.md" "$document"
 else
