@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "monitoring.hpp"
 #include "picture.hpp"
@@ -41,7 +42,9 @@ void show(const std::string& folder, int pictured) {
         report.add(recording);
         if (++number != pictured) continue;
         write_picture(folder + "/dubins.svg", recording, number);
-        write_csv(folder + "/dubins.csv", recording);
+        std::vector<Embedding> embeddings;
+        for (const Step& step : recording.steps) embeddings.push_back(step.embedding);
+        write_csv(folder + "/dubins.csv", recording.episode.states, embeddings);
     }
     report.summary();
     fmt::print("\ndrive {} is drawn in {}/dubins.svg and recorded in {}/dubins.csv\n", pictured, folder, folder);

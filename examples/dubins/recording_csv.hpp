@@ -1,13 +1,15 @@
-// A recorded drive as a trace for `etlc run`: columns px, py, z[0] ... z[31], a row a step.
+// A drive as a trace for etlc: columns px, py, z[0] ... z[31], a row a step.
 #pragma once
 
 #include <string>
+#include <vector>
 
-#include "monitoring.hpp"
+#include "encoder.hpp"
+#include "world.hpp"
 
 namespace demo {
 
-/// Throws std::runtime_error where the file cannot be written.
-void write_csv(const std::string& path, const Recording& recording);
+/// One embedding a state. Throws std::runtime_error where the file cannot be written.
+void write_csv(const std::string& path, const std::vector<Car>& states, const std::vector<Embedding>& embeddings);
 
 }  // namespace demo

@@ -1,0 +1,111 @@
+// watch EPISODE.csv...: recorded drives past the class that etlc made of paper.etl, compiled with its thresholds.
+// Gives: per monitor in how many episodes its last verdict is what was true, by the car's position. Needs nothing but
+// the generated header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER watch.cpp
+#include <array>
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+#include <string>
+
+#include "paper.hpp"
+
+namespace {
+
+struct Frame {
+    double px = 0;
+    double py = 0;
+    std::array<float, 32> z{};
+};
+
+/// A row of columns px, py, z[0] ... z[31], as dubins_record writes it.
+bool read(const std::string& row, Frame& frame) {
+    const char* at = row.c_str();
+    char* end = nullptr;
+    const auto number = [&] {
+        const double value = std::strtod(at, &end);
+        const bool sound = end != at;
+        at = *end == ',' ? end + 1 : end;
+        if (!sound) at = nullptr;
+        return value;
+    };
+    frame.px = number();
+    if (at != nullptr) frame.py = number();
+    for (std::size_t i = 0; i < frame.z.size() && at != nullptr; ++i) frame.z[i] = static_cast<float>(number());
+    return at != nullptr;
+}
+
+/// The four formulas over what is true, written by hand.
+struct Truth {
+    bool reached = false;
+    bool avoided = true;
+    bool in_order = false;
+
+    static bool within(const Frame& frame, double x, double y, double radius) {
+        return (frame.px - x) * (frame.px - x) + (frame.py - y) * (frame.py - y) < radius * radius;
+    }
+    void step(const Frame& frame) {
+        reached |= within(frame, 0.8, 0.8, 0.25);
+        avoided &= !within(frame, 0.8, -0.8, 0.5);
+        in_order |= reached && within(frame, -0.8, 0.8, 0.25);
+    }
+};
+
+struct Score {
+    const char* name;
+    int satisfied = 0;
+    int agreeing = 0;
+
+    void count(const etlmon::Verdict& said, bool is) {
+        satisfied += is ? 1 : 0;
+        agreeing += said.satisfied() == is ? 1 : 0;
+    }
+};
+
+std::array<Score, 8> scores = {{{"reach_f1"},
+                                {"avoid_f1"},
+                                {"reach_avoid_f1"},
+                                {"sequential_f1"},
+                                {"reach_cp"},
+                                {"avoid_cp"},
+                                {"reach_avoid_cp"},
+                                {"sequential_cp"}}};
+
+bool watch(const char* path) {
+    std::ifstream file(path);
+    std::string row;
+    std::getline(file, row);  // the names of the columns
+    dubins_paper::Monitor monitor;
+    dubins_paper::Verdicts verdicts;
+    Truth truth;
+    while (std::getline(file, row)) {
+        Frame frame;
+        if (!read(row, frame)) return false;
+        dubins_paper::Inputs inputs;
+        inputs.z = frame.z;
+        verdicts = monitor.step(inputs);
+        truth.step(frame);
+    }
+    const bool both = truth.reached && truth.avoided;
+    scores[0].count(verdicts.reach_f1, truth.reached);
+    scores[1].count(verdicts.avoid_f1, truth.avoided);
+    scores[2].count(verdicts.reach_avoid_f1, both);
+    scores[3].count(verdicts.sequential_f1, truth.in_order);
+    scores[4].count(verdicts.reach_cp, truth.reached);
+    scores[5].count(verdicts.avoid_cp, truth.avoided);
+    scores[6].count(verdicts.reach_avoid_cp, both);
+    scores[7].count(verdicts.sequential_cp, truth.in_order);
+    return file.eof();
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    for (int i = 1; i < argc; ++i) {
+        if (watch(argv[i])) continue;
+        std::fprintf(stderr, "watch: %s cannot be read\n", argv[i]);
+        return 1;
+    }
+    std::printf("monitor         episodes agree  truly satisfied\n");
+    for (const Score& score : scores)
+        std::printf("%-14s  %5d of %5d  %15d\n", score.name, score.agreeing, argc - 1, score.satisfied);
+}
