@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "check/check.hpp"
 #include "check/decimal.hpp"
 #include "check/provenance.hpp"
 #include "check/steps.hpp"

@@ -32,6 +32,9 @@ struct Request {
 
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
 
+/// A model, as check/ gives it or made from such a one, through the stages after that.
+std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink);
+
 /// The text of request.emit; nothing where there was an error. `dependencies`: every file that the spec loads.
 std::optional<std::string> emit(const source::File& file, const Request& request, diag::Sink& sink,
                                 std::vector<std::string>& dependencies);

@@ -10,6 +10,7 @@
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
+#include "driver/evaluate.hpp"
 #include "driver/names.hpp"
 #include "driver/run.hpp"
 #include "driver/version.hpp"
@@ -33,6 +34,7 @@ struct Call {
     driver::Request request;
     driver::RunRequest run;
     driver::CalibrateRequest calibrate;
+    driver::EvaluateRequest evaluate;
 };
 
 bool warnings_are_errors(const Call& call) {
@@ -213,7 +215,8 @@ int compile_command(int argc, char** argv) {
     Call call;
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
-        "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...",
+        "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...,\n"
+        "etlc evaluate SPEC.etl --data FILE...",
         "etlc");
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
@@ -275,11 +278,48 @@ int calibrate_command(int argc, char** argv) {
     return calibrate_spec(call);
 }
 
+int evaluate_spec(const Call& call) {
+    diag::Sink sink;
+    source::File file;
+    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
+    driver::EvaluateRequest request = call.evaluate;
+    request.warnings_are_errors = warnings_are_errors(call);
+    request.progress = isatty(STDERR_FILENO) != 0;
+    driver::evaluate(file, call.request, request, sink);
+    return conclude(call, file, sink);
+}
+
+int evaluate_command(int argc, char** argv) {
+    Call call;
+    CLI::App app("Compares a spec's predicates and monitors with ground truth on recorded episodes.", "etlc evaluate");
+    add_common_options(app, call);
+    app.add_option("--data", call.evaluate.data, "episodes: files (.npz, .csv, .h5), folders and 'patterns'")
+        ->type_name("FILE")
+        ->required();
+    std::vector<std::string> names;
+    app.add_option("--map", names, "what an input is called in the episodes: --map z=obs/z")->type_name("NAME=OTHER");
+    app.add_option("--episodes", call.evaluate.groups, "of .h5 files, the groups that are episodes: 'data/*'")
+        ->type_name("PATTERN");
+    app.add_option("--json", call.evaluate.json, "also write the result as JSON; - is standard output")
+        ->type_name("FILE");
+    app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")->type_name("FILE");
+    app.add_option("-j,--jobs", call.evaluate.evaluation.jobs, "threads (default: as many as the machine has)")
+        ->type_name("N")
+        ->check(CLI::Range(1U, 1024U));
+    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    std::string mistake;
+    const auto parsed = driver::parse_names(names, mistake);
+    if (!parsed) return complain(app, mistake);
+    call.evaluate.evaluation.names = *parsed;
+    return evaluate_spec(call);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
     const std::string_view command = argc > 1 ? argv[1] : "";
     if (command == "run") return run_command(argc - 1, argv + 1);
+    if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
 }

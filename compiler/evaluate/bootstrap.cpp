@@ -1,0 +1,63 @@
+#include "evaluate/bootstrap.hpp"
+
+#include <algorithm>
+
+namespace etlc::evaluate {
+
+namespace {
+
+constexpr std::uint64_t kSeed = 2026;
+constexpr double kLow = 0.025;
+constexpr double kHigh = 0.975;
+
+/// splitmix64 (Steele, Lea, Flood 2014): the same on every machine, unlike the distributions of the standard library.
+class Random {
+public:
+    explicit Random(std::uint64_t seed) : state_(seed) {}
+
+    /// 0 to n - 1, n below 2^32; the bias is below n / 2^64.
+    std::uint64_t below(std::uint64_t n) {
+        state_ += 0x9e3779b97f4a7c15U;
+        std::uint64_t x = state_;
+        x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
+        x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
+        return (x ^ (x >> 31U)) % n;
+    }
+
+private:
+    std::uint64_t state_;
+};
+
+}  // namespace
+
+Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {
+    if (episodes == 0) return;
+    Random random(kSeed);
+    resamples_.assign(kResamples, Weights(episodes, 0));
+    for (Weights& weights : resamples_)
+        for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)];
+}
+
+Figure Bootstrap::figure(const std::function<std::optional<double>(const Weights&)>& statistic) const {
+    Figure result{statistic(whole_), {}};
+    if (!result.value || whole_.size() < 2) return result;
+    std::vector<std::optional<double>> values;
+    values.reserve(resamples_.size());
+    for (const Weights& weights : resamples_) values.push_back(statistic(weights));
+    result.interval = percentile_interval(values);
+    return result;
+}
+
+std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values) {
+    std::vector<double> there;
+    for (const auto& value : values)
+        if (value) there.push_back(*value);
+    if (2 * there.size() < values.size() || there.empty()) return std::nullopt;
+    std::sort(there.begin(), there.end());
+    const auto quantile = [&](double share) {
+        return there[static_cast<std::size_t>(share * static_cast<double>(there.size() - 1) + 0.5)];
+    };
+    return Interval{quantile(kLow), quantile(kHigh)};
+}
+
+}  // namespace etlc::evaluate

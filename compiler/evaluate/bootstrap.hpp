@@ -1,0 +1,47 @@
+// Intervals by resampling episodes: frames of one episode are not independent, episodes are.
+// Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 % and 97.5 % quantiles over
+// kResamples draws with replacement (Efron's percentile interval). Keeps true: the draws come from a fixed seed, so
+// that the same data give the same interval, on every machine and with any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+namespace etlc::evaluate {
+
+inline constexpr std::uint32_t kResamples = 1000;
+
+struct Interval {
+    double low = 0;
+    double high = 0;
+};
+
+/// A figure, where there is one, and its interval, where most resamples have the figure too.
+struct Figure {
+    std::optional<double> value;
+    std::optional<Interval> interval;
+};
+
+using Weights = std::vector<std::uint32_t>;  ///< per episode, how often it was drawn
+
+class Bootstrap {
+public:
+    explicit Bootstrap(std::size_t episodes);
+
+    const std::vector<Weights>& resamples() const { return resamples_; }
+    /// Every episode once.
+    const Weights& whole() const { return whole_; }
+
+    Figure figure(const std::function<std::optional<double>(const Weights&)>& statistic) const;
+
+private:
+    Weights whole_;
+    std::vector<Weights> resamples_;
+};
+
+/// Of the values that are there, which need not be sorted.
+std::optional<Interval> percentile_interval(const std::vector<std::optional<double>>& values);
+
+}  // namespace etlc::evaluate

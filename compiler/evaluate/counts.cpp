@@ -1,0 +1,48 @@
+#include "evaluate/counts.hpp"
+
+namespace etlc::evaluate {
+
+namespace {
+
+std::optional<double> share(std::uint64_t part, std::uint64_t whole) {
+    if (whole == 0) return std::nullopt;
+    return static_cast<double>(part) / static_cast<double>(whole);
+}
+
+}  // namespace
+
+void Counts::add(Label said, Label is) {
+    if (is == Label::unknown)
+        ++unlabelled;
+    else if (said == Label::unknown)
+        ++(is == Label::yes ? unsaid_positives : unsaid_negatives);
+    else if (said == Label::yes)
+        ++(is == Label::yes ? true_positives : false_positives);
+    else
+        ++(is == Label::yes ? false_negatives : true_negatives);
+}
+
+void Counts::add(const Counts& other, std::uint64_t times) {
+    true_positives += times * other.true_positives;
+    false_positives += times * other.false_positives;
+    false_negatives += times * other.false_negatives;
+    true_negatives += times * other.true_negatives;
+    unsaid_positives += times * other.unsaid_positives;
+    unsaid_negatives += times * other.unsaid_negatives;
+    unlabelled += times * other.unlabelled;
+}
+
+Rates rates(const Counts& c) {
+    const std::uint64_t hits = c.true_positives;
+    return {share(2 * hits, hits + c.false_positives + c.positives()), share(hits, hits + c.false_positives),
+            share(hits, c.positives()), share(hits + c.true_negatives, c.total())};
+}
+
+Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total) {
+    Counts counts;
+    (claim ? counts.true_positives : counts.false_negatives) = positives;
+    (claim ? counts.false_positives : counts.true_negatives) = total - positives;
+    return rates(counts);
+}
+
+}  // namespace etlc::evaluate

@@ -1,0 +1,236 @@
+#include "evaluate/evaluate.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <atomic>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <thread>
+
+#include "data/file.hpp"
+
+namespace etlc::evaluate {
+
+namespace {
+
+using Results = std::vector<std::optional<diag::Result<EpisodeResult>>>;
+
+constexpr std::size_t kMostNotes = 8;
+
+unsigned thread_count(const Request& request) {
+    const unsigned wanted = request.jobs > 0 ? request.jobs : std::max(1U, std::thread::hardware_concurrency());
+    return static_cast<unsigned>(std::min<std::size_t>(wanted, std::max<std::size_t>(1, request.episodes.size())));
+}
+
+/// Every episode, in order, whoever judged it.
+Results judge_all(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const Request& request) {
+    Results results(request.episodes.size());
+    std::atomic<std::size_t> next = 0;
+    std::mutex reporting;
+    std::size_t done = 0;
+    const auto work = [&] {
+        Judge judge(plan, truth, subject, request.names);
+        for (std::size_t i = next++; i < results.size(); i = next++) {
+            results[i] = judge.judge(request.episodes[i]);
+            if (!request.progress) continue;
+            const std::lock_guard lock(reporting);
+            request.progress(++done, results.size());
+        }
+    };
+    std::vector<std::thread> threads;
+    for (unsigned t = 1; t < thread_count(request); ++t) threads.emplace_back(work);
+    work();
+    for (std::thread& thread : threads) thread.join();
+    return results;
+}
+
+/// Those that can be read; the others are reported.
+std::optional<std::vector<EpisodeResult>> unpack(Results results, const Request& request, diag::Sink& sink) {
+    std::vector<EpisodeResult> episodes;
+    for (std::size_t i = 0; i < results.size(); ++i) {
+        if (*results[i])
+            episodes.push_back(std::move(**results[i]));
+        else
+            sink.report(data::in_file(results[i]->failure(), request.episodes[i]));
+    }
+    if (episodes.size() < results.size()) return std::nullopt;
+    return episodes;
+}
+
+/// A threshold looks better on the episodes that it was taken from, and what it promises is about others.
+bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request, const thresholds::File& file,
+                 diag::Sink& sink) {
+    const std::set<std::string> known(file.episodes.begin(), file.episodes.end());
+    std::vector<std::string> seen;
+    for (std::size_t i = 0; i < episodes.size(); ++i)
+        if (known.contains(episodes[i].hash)) seen.push_back(request.episodes[i]);
+    if (seen.empty()) return true;
+    auto& error = sink.report(
+        data::in_file({diag::Code::episode_calibrated_on,
+                       fmt::format("{} of the {} episodes {} among those that the thresholds in {} were calibrated on",
+                                   seen.size(), episodes.size(), seen.size() == 1 ? "is" : "are", file.path)},
+                      seen.front()));
+    for (std::size_t i = 1; i < std::min(seen.size(), kMostNotes); ++i) error.note(seen[i] + " is, too");
+    if (seen.size() > kMostNotes) error.note(fmt::format("and {} more", seen.size() - kMostNotes));
+    error.note("keep the episodes for evaluation apart from those for calibration");
+    return false;
+}
+
+using Get = std::function<Counts(std::size_t episode)>;
+
+Score score(const Bootstrap& bootstrap, const Get& get) {
+    std::vector<Counts> each;
+    for (std::size_t e = 0; e < bootstrap.whole().size(); ++e) each.push_back(get(e));
+    const auto sum = [&](const Weights& weights) {
+        Counts counts;
+        for (std::size_t e = 0; e < each.size(); ++e) counts.add(each[e], weights[e]);
+        return rates(counts);
+    };
+    const Rates whole = sum(bootstrap.whole());
+    std::vector<Rates> resampled;
+    for (const Weights& weights : bootstrap.resamples()) resampled.push_back(sum(weights));
+    const auto figure = [&](std::optional<double> Rates::*rate) {
+        Figure result{whole.*rate, {}};
+        if (!result.value || each.size() < 2) return result;
+        std::vector<std::optional<double>> values;
+        for (const Rates& r : resampled) values.push_back(r.*rate);
+        result.interval = percentile_interval(values);
+        return result;
+    };
+    Score result{{}, figure(&Rates::f1), figure(&Rates::precision), figure(&Rates::recall), figure(&Rates::agreement)};
+    for (const Counts& counts : each) result.counts.add(counts);
+    return result;
+}
+
+Detection detection(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t monitor) {
+    Detection result;
+    std::vector<std::int64_t> delays;
+    for (const EpisodeResult& episode : episodes) {
+        const auto& turn = episode.monitors[monitor].turn;
+        if (!turn) continue;
+        ++result.turns;
+        result.missed += turn->delay ? 0 : 1;
+        result.early += turn->delay && *turn->delay < 0 ? 1 : 0;
+        if (turn->delay) delays.push_back(*turn->delay);
+    }
+    if (delays.empty()) return result;
+    std::sort(delays.begin(), delays.end());
+    const std::size_t n = delays.size();
+    result.median = static_cast<double>(delays[(n - 1) / 2] + delays[n / 2]) / 2;
+    result.mean = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
+        std::int64_t sum = 0;
+        std::int64_t count = 0;
+        for (std::size_t e = 0; e < episodes.size(); ++e) {
+            const auto& turn = episodes[e].monitors[monitor].turn;
+            if (!turn || !turn->delay) continue;
+            sum += weights[e] * *turn->delay;
+            count += weights[e];
+        }
+        if (count == 0) return std::nullopt;
+        return static_cast<double>(sum) / static_cast<double>(count);
+    });
+    return result;
+}
+
+PredicateScore predicate_score(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t i) {
+    PredicateScore result;
+    result.frames = score(bootstrap, [&](std::size_t e) { return episodes[e].predicates[i]; });
+    std::vector<Scored> frames;
+    for (std::uint32_t e = 0; e < episodes.size(); ++e) {
+        for (Scored frame : episodes[e].scored[i]) {
+            frame.episode = e;
+            frames.push_back(frame);
+        }
+        result.unmeasured += episodes[e].unmeasured[i];
+        result.arrays += episodes[e].from_array[i] ? 1 : 0;
+    }
+    const Ranking ranking(std::move(frames));
+    result.auroc = bootstrap.figure([&](const Weights& weights) { return ranking.auroc(weights); });
+    return result;
+}
+
+MonitorScore monitor_score(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t m,
+                           const MonitorSubject& subject) {
+    MonitorScore result;
+    result.steps = score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].steps; });
+    result.episodes = score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].episode; });
+    result.detection = detection(bootstrap, episodes, m);
+    if (!subject.stages.empty())
+        result.ordering =
+            score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].ordering.value_or(Counts{}); });
+    return result;
+}
+
+Evaluation summarise(const check::Model& model, const Subject& subject, const std::vector<EpisodeResult>& episodes) {
+    Evaluation result;
+    result.episodes = episodes.size();
+    result.step_seconds = model.step_seconds;
+    std::set<std::string> contents;
+    for (const EpisodeResult& episode : episodes) {
+        result.frames += episode.frames;
+        result.repeated += contents.insert(episode.hash).second ? 0 : 1;
+    }
+    const Bootstrap bootstrap(episodes.size());
+    for (std::size_t i = 0; i < subject.labelled.size(); ++i) {
+        result.predicates.push_back(predicate_score(bootstrap, episodes, i));
+        result.predicates.back().name = model.predicates[subject.labelled[i]].name;
+    }
+    for (std::size_t m = 0; m < subject.monitors.size(); ++m) {
+        const MonitorSubject& monitor = subject.monitors[m];
+        result.monitors.push_back(monitor.lacking.empty() ? monitor_score(bootstrap, episodes, m, monitor)
+                                                          : MonitorScore{});
+        result.monitors.back().name = model.monitors[monitor.monitor].name;
+        for (const Index p : monitor.lacking) {
+            const check::Predicate& predicate = model.predicates[p];
+            result.monitors.back().lacking.push_back(predicate.name.empty() ? predicate.text + predicate.threshold.text
+                                                                            : predicate.name);
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink) {
+    std::vector<bool> has_truth(model.predicates.size());
+    for (const check::Truth& truth : model.truths) has_truth[truth.predicate] = true;
+    std::vector<data::Channel> channels;
+    std::vector<Index> asked;
+    for (Index p = 0; p < model.predicates.size(); ++p) {
+        if (has_truth[p] || model.predicates[p].name.empty()) continue;
+        channels.push_back({"truth." + model.predicates[p].name, data::Channel::Kind::boolean, 1, true});
+        asked.push_back(p);
+    }
+    if (!channels.empty() && !request.episodes.empty()) {
+        for (const Index input : calibrate::identity_inputs(model)) {  // which tell the number of steps
+            const check::Input& i = model.inputs[input];
+            const auto kind = i.type == check::InputType::boolean ? data::Channel::Kind::boolean
+                              : i.is_embedding()                  ? data::Channel::Kind::vector
+                                                                  : data::Channel::Kind::scalar;
+            channels.push_back({i.name, kind, i.dimension});
+        }
+        const auto trace = data::open_trace(request.episodes[0], data::renamed(channels, request.names));
+        if (!trace) {
+            sink.report(data::in_file(trace.failure(), request.episodes[0]));
+            return std::nullopt;
+        }
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            if ((*trace)->has(i)) has_truth[asked[i]] = true;
+    }
+    std::vector<Index> labelled;
+    for (Index p = 0; p < model.predicates.size(); ++p)
+        if (has_truth[p]) labelled.push_back(p);
+    return labelled;
+}
+
+std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+                                   const Request& request, const std::optional<thresholds::File>& seen,
+                                   diag::Sink& sink) {
+    auto episodes = unpack(judge_all(plan, truth, subject, request), request, sink);
+    if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
+    return summarise(*plan.model, subject, *episodes);
+}
+
+}  // namespace etlc::evaluate

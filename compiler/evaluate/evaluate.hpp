@@ -1,0 +1,89 @@
+// `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
+// Takes: the plans of the spec and of its ground truth, and the episodes. Gives: counts and rates per predicate and
+// monitor, each with its interval and beside the claims that do not look. Keeps true: the result is the same whatever
+// the number of threads; one episode a thread is open at a time; episodes that thresholds were calibrated on are
+// refused.
+#pragma once
+
+#include <functional>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diag/diag.hpp"
+#include "evaluate/bootstrap.hpp"
+#include "evaluate/judge.hpp"
+#include "evaluate/subject.hpp"
+#include "plan/plan.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::evaluate {
+
+struct Request {
+    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
+    data::NamesInFile names;
+    unsigned jobs = 0;  ///< threads; 0: as many as the machine has
+    /// Called now and then, by any thread, never by two at once.
+    std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+/// Counts of claims, with intervals over episodes.
+struct Score {
+    Counts counts;
+    Figure f1;
+    Figure precision;
+    Figure recall;
+    Figure agreement;
+};
+
+struct PredicateScore {
+    std::string name;
+    Score frames;
+    Figure auroc;                  ///< of the distance, whatever the threshold
+    std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown: misses
+    std::uint64_t arrays = 0;      ///< episodes whose labels come from an array of theirs
+};
+
+/// When the true verdict turned away from that of the first step, and the monitor's with it.
+struct Detection {
+    std::uint64_t turns = 0;  ///< episodes in which it did
+    std::uint64_t missed = 0;
+    std::uint64_t early = 0;  ///< the monitor turned before
+    Figure mean;              ///< steps from turn to turn, of those that were not missed
+    std::optional<double> median;
+};
+
+struct MonitorScore {
+    std::string name;
+    std::vector<std::string> lacking;  ///< predicates without truth; then nothing else is set
+    Score steps;
+    Score episodes;
+    Detection detection;
+    std::optional<Score> ordering;  ///< sequential formulas: episodes in which every stage was truly visited
+};
+
+struct Evaluation {
+    std::uint64_t episodes = 0;
+    std::uint64_t frames = 0;
+    std::uint64_t repeated = 0;  ///< episodes with the content of an earlier one
+    double step_seconds = 0;     ///< 0: the spec has no rate
+    std::vector<PredicateScore> predicates;
+    std::vector<MonitorScore> monitors;
+};
+
+/// The predicates that have a truth in the spec or an array in the first episode; nothing where that cannot be read, or
+/// where there is neither a predicate nor a monitor to evaluate, as the sink then says.
+std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink);
+
+/// `seen`: the thresholds that the plan has, where they were calibrated. Nothing where the sink now says why.
+std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+                                   const Request& request, const std::optional<thresholds::File>& seen,
+                                   diag::Sink& sink);
+
+/// For people: an aligned table. For spreadsheets: a figure a row. For programs: JSON.
+std::string table(const Evaluation& evaluation);
+std::string csv(const Evaluation& evaluation);
+std::string json(const Evaluation& evaluation);
+
+}  // namespace etlc::evaluate

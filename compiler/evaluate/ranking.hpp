@@ -1,0 +1,29 @@
+// How well a distance tells frames apart, whatever the threshold: the area under the ROC curve.
+// Takes: a score and a label per frame, and the episode it is of. Gives: the probability that a positive frame scores
+// higher than a negative one, ties counted half (Mann-Whitney). Keeps true: exact, no binning.
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace etlc::evaluate {
+
+struct Scored {
+    float score = 0;  ///< the greater, the more likely positive
+    std::uint32_t episode = 0;
+    bool positive = false;
+};
+
+class Ranking {
+public:
+    explicit Ranking(std::vector<Scored> frames);
+
+    /// With each episode's frames counted `weights[episode]` times; nothing where one of the classes is empty.
+    std::optional<double> auroc(const std::vector<std::uint32_t>& weights) const;
+
+private:
+    std::vector<Scored> frames_;  ///< by score
+};
+
+}  // namespace etlc::evaluate

@@ -1,0 +1,115 @@
+#include "evaluate/subject.hpp"
+
+#include <algorithm>
+#include <set>
+
+namespace etlc::evaluate {
+
+namespace {
+
+using check::Formula;
+using Kind = check::Formula::Kind;
+
+void collect_predicates(const check::Model& model, Index formula, std::vector<bool>& seen, std::set<Index>& found) {
+    if (seen[formula]) return;
+    seen[formula] = true;
+    const Formula& f = model.formulas[formula];
+    if (f.kind == Kind::predicate) found.insert(f.index);
+    for (const Index operand : f.operands) collect_predicates(model, operand, seen, found);
+}
+
+/// Without a truth: what it says of scalars, by a threshold that somebody wrote down, is what it means.
+bool is_its_own_truth(const check::Model& model, Index predicate) {
+    const check::Predicate& p = model.predicates[predicate];
+    return p.threshold.origin == check::ThresholdOrigin::literal &&
+           std::none_of(p.inputs.begin(), p.inputs.end(), [&](Index i) { return model.inputs[i].is_embedding(); });
+}
+
+bool is_eventually(const Formula& f) {
+    return f.kind == Kind::eventually && f.low == 0 && f.high == check::kUnbounded;
+}
+
+bool looks_ahead(const check::Model& model, Index formula) {
+    const Formula& f = model.formulas[formula];
+    switch (f.kind) {
+        case Kind::next:
+        case Kind::eventually:
+        case Kind::always:
+        case Kind::until:
+        case Kind::weak_until:
+        case Kind::release: return true;
+        default: break;
+    }
+    return std::any_of(f.operands.begin(), f.operands.end(), [&](Index o) { return looks_ahead(model, o); });
+}
+
+void flatten(const check::Model& model, Index formula, std::vector<Index>& conjuncts) {
+    const Formula& f = model.formulas[formula];
+    if (f.kind != Kind::conjunction) return conjuncts.push_back(formula);
+    for (const Index operand : f.operands) flatten(model, operand, conjuncts);
+}
+
+/// The conjuncts of each of a, b, ... of F (a && F (b && ...)); fewer than two where the formula has another shape.
+std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula) {
+    std::vector<std::vector<Index>> stages;
+    while (is_eventually(model.formulas[formula])) {
+        std::vector<Index> conjuncts;
+        flatten(model, model.formulas[formula].operands[0], conjuncts);
+        const auto ahead = [&](Index c) { return looks_ahead(model, c); };
+        const auto rest = std::stable_partition(conjuncts.begin(), conjuncts.end(), [&](Index c) { return !ahead(c); });
+        const auto further = conjuncts.end() - rest;
+        if (further > 1 || (further == 1 && !is_eventually(model.formulas[*rest]))) return {};
+        if (rest == conjuncts.begin()) return {};
+        stages.emplace_back(conjuncts.begin(), rest);
+        if (further == 0) return stages;
+        formula = *rest;
+    }
+    return {};
+}
+
+Index append(check::Model& model, Kind kind, std::vector<Index> operands) {
+    Formula formula;
+    formula.kind = kind;
+    formula.operands = std::move(operands);
+    model.formulas.push_back(std::move(formula));
+    return static_cast<Index>(model.formulas.size() - 1);
+}
+
+/// A monitor of the ground truth that says whether the stage has been visited.
+Index append_visit(check::Model& model, const std::string& name, const std::vector<Index>& conjuncts) {
+    const Index stage = conjuncts.size() == 1 ? conjuncts[0] : append(model, Kind::conjunction, conjuncts);
+    check::Monitor monitor;
+    monitor.name = name;
+    monitor.formula = append(model, Kind::eventually, {stage});
+    model.monitors.push_back(std::move(monitor));
+    return static_cast<Index>(model.monitors.size() - 1);
+}
+
+}  // namespace
+
+Subject subject(const check::Model& model, std::vector<Index> labelled) {
+    Subject result{labelled, calibrate::ground_truth(model, labelled), {}};
+    check::Model& truth = result.truth.model;
+    truth.monitors.clear();
+    for (Index m = 0; m < model.monitors.size(); ++m) {
+        const check::Monitor& monitor = model.monitors[m];
+        MonitorSubject& subject = result.monitors.emplace_back();
+        subject.monitor = m;
+        std::set<Index> predicates;
+        std::vector<bool> seen(model.formulas.size());
+        collect_predicates(model, monitor.formula, seen, predicates);
+        for (const Index p : predicates) {
+            const bool has_label = std::find(labelled.begin(), labelled.end(), p) != labelled.end();
+            if (!has_label && !is_its_own_truth(model, p)) subject.lacking.push_back(p);
+        }
+        if (!subject.lacking.empty()) continue;
+        subject.truth = static_cast<Index>(truth.monitors.size());
+        truth.monitors.push_back(monitor);
+        const auto stages = stages_of(model, monitor.formula);
+        if (monitor.sliding || stages.size() < 2) continue;
+        for (const auto& conjuncts : stages) subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));
+    }
+    return result;
+}
+
+}  // namespace etlc::evaluate
