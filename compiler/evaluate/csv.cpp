@@ -57,6 +57,7 @@ std::string csv(const Evaluation& evaluation) {
         const std::string what = fmt::format("predicate,{},frames", p.name);
         rows.score(what, p.frames);
         rows.row(what, "auroc", p.auroc);
+        rows.row(what, "coverage", p.coverage);
     }
     for (const MonitorScore& m : evaluation.monitors) {
         if (!m.lacking.empty()) continue;

@@ -146,6 +146,19 @@ PredicateScore predicate_score(const Bootstrap& bootstrap, const std::vector<Epi
         result.unmeasured += episodes[e].unmeasured[i];
         result.arrays += episodes[e].from_array[i] ? 1 : 0;
     }
+    // What conformal calibration promises: P(no positive frame of an episode is missed) >= 1 - alpha.
+    result.coverage = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
+        std::uint64_t with_positives = 0;
+        std::uint64_t covered = 0;
+        for (std::size_t e = 0; e < episodes.size(); ++e) {
+            const Counts& counts = episodes[e].predicates[i];
+            if (counts.positives() == 0) continue;
+            with_positives += weights[e];
+            covered += counts.true_positives == counts.positives() ? weights[e] : 0;
+        }
+        if (with_positives == 0) return std::nullopt;
+        return static_cast<double>(covered) / static_cast<double>(with_positives);
+    });
     const Ranking ranking(std::move(frames));
     result.auroc = bootstrap.figure([&](const Weights& weights) { return ranking.auroc(weights); });
     return result;

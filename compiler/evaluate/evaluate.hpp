@@ -41,6 +41,7 @@ struct PredicateScore {
     std::string name;
     Score frames;
     Figure auroc;                  ///< of the distance, whatever the threshold
+    Figure coverage;               ///< of the episodes with a positive frame, those of which none is missed
     std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown: misses
     std::uint64_t arrays = 0;      ///< episodes whose labels come from an array of theirs
 };

@@ -71,7 +71,7 @@ Object& add_score(Object& object, const Score& score) {
 
 std::string predicate(const PredicateScore& p, std::size_t indent) {
     Object object(indent);
-    add_score(object, p.frames).figure("auroc", p.auroc);
+    add_score(object, p.frames).figure("auroc", p.auroc).figure("coverage", p.coverage);
     object.count("unmeasured", p.unmeasured).count("episodes_labelled_by_array", p.arrays);
     return object.text();
 }

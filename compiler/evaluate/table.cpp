@@ -79,11 +79,13 @@ void add_remarks(std::string& text, const std::string& name, const Counts& count
 std::string predicates_part(const Evaluation& evaluation) {
     std::vector<Row> rows = {heading("predicate, by frames", "frames inside")};
     rows[0].push_back("AUROC");
+    rows[0].push_back("episodes without a miss");
     std::string remarks;
     for (const PredicateScore& p : evaluation.predicates) {
         const std::size_t first = rows.size();
         add(rows, p.name, p.frames);
         rows[first].push_back(figure(p.auroc));
+        rows[first].push_back(figure(p.coverage));
         add_remarks(remarks, p.name, p.frames.counts, "frames");
         if (p.arrays > 0)
             remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n", p.name, p.arrays);
@@ -148,8 +150,8 @@ std::string left_out(const Evaluation& evaluation) {
 
 std::string table(const Evaluation& evaluation) {
     std::string text =
-        fmt::format("{} episodes, {} frames; in brackets 95 % intervals from {} resamples of the episodes\n",
-                    evaluation.episodes, evaluation.frames, kResamples);
+        fmt::format("{} episode{}, {} frames; in brackets 95 % intervals from {} resamples of the episodes\n",
+                    evaluation.episodes, evaluation.episodes == 1 ? "" : "s", evaluation.frames, kResamples);
     if (evaluation.repeated > 0)
         text += fmt::format("{} of the episodes repeat another's content: the intervals are too narrow\n",
                             evaluation.repeated);

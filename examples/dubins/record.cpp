@@ -1,6 +1,6 @@
 // dubins_record FOLDER SEED...: drives as episodes for `etlc calibrate` and `etlc evaluate`.
-// Gives: for each seed a hundred drives, 40 in FOLDER/SEED/calibration, 60 in FOLDER/SEED/test, one .csv each. Keeps
-// true: which drive is on which side is drawn from the seed, whatever its plan, so the two sides are exchangeable.
+// Gives: for each seed 300 drives, 120 in FOLDER/SEED/calibration, 180 in FOLDER/SEED/test, one .csv each. Keeps true:
+// which drive is on which side is drawn from the seed, whatever its plan, so the two sides are exchangeable.
 #include <fmt/core.h>
 
 #include <charconv>
@@ -21,9 +21,9 @@
 namespace demo {
 namespace {
 
-constexpr int kDrives = 100;
-constexpr int kForCalibration = 40;
-constexpr int kSteps = 240;  // 12 s
+constexpr int kDrives = 300;
+constexpr int kForCalibration = 120;  // 40 %
+constexpr int kSteps = 240;           // 12 s
 
 /// 0 to n - 1 in a random order (Fisher and Yates).
 std::vector<int> shuffled(int n, std::uint64_t seed) {

@@ -1,0 +1,82 @@
+#include "evaluated.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+
+#include "driver/compile.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::tests {
+namespace {
+
+namespace fs = std::filesystem;
+
+class Folder {
+public:
+    explicit Folder(const std::vector<std::string>& episodes)
+        : path_(fs::path(testing::TempDir()) / fmt::format("etlc_evaluate_{}", ::getpid())) {
+        fs::create_directories(path_);
+        for (std::size_t i = 0; i < episodes.size(); ++i) {
+            files.push_back((path_ / fmt::format("{:04}.csv", i)).string());
+            std::ofstream(files.back()) << episodes[i];
+        }
+    }
+    Folder(const Folder&) = delete;
+    Folder& operator=(const Folder&) = delete;
+    ~Folder() { fs::remove_all(path_); }
+
+    std::vector<std::string> files;
+
+private:
+    fs::path path_;
+};
+
+std::optional<evaluate::Evaluation> run(const std::string& spec, const std::vector<std::string>& episodes,
+                                        unsigned jobs, diag::Sink& sink) {
+    const Folder folder(episodes);
+    const source::File file("t.etl", spec);
+    const auto compiled = driver::compile(file, {}, sink);
+    if (!compiled) return std::nullopt;
+    evaluate::Request request;
+    request.episodes = folder.files;
+    request.jobs = jobs;
+    auto labelled = evaluate::find_labelled(*compiled->model, request, sink);
+    if (!labelled) return std::nullopt;
+    evaluate::Subject subject = evaluate::subject(*compiled->model, *labelled);
+    const auto truth = driver::compile(std::move(subject.truth.model), {}, sink);
+    if (!truth) return std::nullopt;
+    return evaluate::evaluate(compiled->plan, truth->plan, subject, request, std::nullopt, sink);
+}
+
+}  // namespace
+
+check::Model model_of(const std::string& spec) {
+    diag::Sink sink;
+    const source::File file("t.etl", spec);
+    auto model = check::check(parse::parse(file, sink), file, {}, sink);
+    EXPECT_TRUE(model) << spec;
+    return std::move(*model);
+}
+
+evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes, unsigned jobs) {
+    diag::Sink sink;
+    const auto result = run(spec, episodes, jobs, sink);
+    for (const diag::Diagnostic& finding : sink.sorted())
+        EXPECT_EQ(finding.severity(), diag::Severity::warning) << finding.message;
+    return result ? *result : evaluate::Evaluation{};
+}
+
+std::vector<std::string> mistakes(const std::string& spec, const std::vector<std::string>& episodes) {
+    diag::Sink sink;
+    EXPECT_FALSE(run(spec, episodes, 1, sink));
+    std::vector<std::string> messages;
+    for (const diag::Diagnostic& finding : sink.sorted())
+        messages.push_back(fs::path(finding.file).filename().string() + ": " + finding.message);
+    return messages;
+}
+
+}  // namespace etlc::tests

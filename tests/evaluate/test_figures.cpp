@@ -1,0 +1,171 @@
+// Rates, AUROC and intervals against their definitions, computed the slow way.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+#include <random>
+
+#include "evaluate/bootstrap.hpp"
+#include "evaluate/counts.hpp"
+#include "evaluate/ranking.hpp"
+
+namespace etlc::evaluate {
+namespace {
+
+using Pairs = std::vector<std::pair<Label, Label>>;  // said, is
+
+Pairs random_pairs(std::mt19937& random, bool unknowns) {
+    Pairs pairs(1 + random() % 30);
+    for (auto& [said, is] : pairs) {
+        const auto draw = [&] {
+            const std::uint64_t x = random() % (unknowns ? 5 : 4);
+            return x == 4 ? Label::unknown : x % 2 == 0 ? Label::yes : Label::no;
+        };
+        said = draw();
+        is = draw();
+    }
+    return pairs;
+}
+
+std::optional<double> share(const Pairs& pairs, auto of, auto what) {
+    double whole = 0;
+    double part = 0;
+    for (const auto& [said, is] : pairs) {
+        if (is == Label::unknown || !of(said, is)) continue;
+        whole += 1;
+        part += what(said, is) ? 1 : 0;
+    }
+    if (whole == 0) return std::nullopt;
+    return part / whole;
+}
+
+void expect_near(const std::optional<double>& found, const std::optional<double>& expected) {
+    ASSERT_EQ(found.has_value(), expected.has_value());
+    if (found) {
+        EXPECT_NEAR(*found, *expected, 1e-12);
+    }
+}
+
+TEST(Rates, AreTheSharesThatTheirNamesSay) {
+    std::mt19937 random(1);
+    const auto any = [](Label, Label) { return true; };
+    const auto claimed = [](Label said, Label) { return said == Label::yes; };
+    const auto positive = [](Label, Label is) { return is == Label::yes; };
+    const auto agree = [](Label said, Label is) { return said == is; };
+    for (int round = 0; round < 2000; ++round) {
+        const Pairs pairs = random_pairs(random, round % 2 == 0);
+        Counts counts;
+        for (const auto& [said, is] : pairs) counts.add(said, is);
+        const Rates found = rates(counts);
+        const auto precision = share(pairs, claimed, agree);
+        const auto recall = share(pairs, positive, agree);
+        expect_near(found.precision, precision);
+        expect_near(found.recall, recall);
+        expect_near(found.agreement, share(pairs, any, agree));
+        // F1 is the harmonic mean of the two, 0 where both are.
+        if (precision && recall)
+            expect_near(found.f1, *precision + *recall == 0 ? 0 : 2 * *precision * *recall / (*precision + *recall));
+        else
+            expect_near(found.f1, precision || recall ? std::optional(0.0) : std::nullopt);
+        Counts thrice;
+        thrice.add(counts, 3);
+        expect_near(rates(thrice).f1, found.f1);
+    }
+}
+
+TEST(Rates, OfClaimsThatDoNotLook) {
+    std::mt19937 random(2);
+    for (int round = 0; round < 500; ++round) {
+        const Pairs pairs = random_pairs(random, false);
+        for (const Label claim : {Label::yes, Label::no}) {
+            Counts counts;
+            for (const auto& pair : pairs) counts.add(claim, pair.second);
+            const Rates blind = rates_of_constant(claim == Label::yes, counts.positives(), counts.total());
+            expect_near(blind.f1, rates(counts).f1);
+            expect_near(blind.precision, rates(counts).precision);
+            expect_near(blind.recall, rates(counts).recall);
+            expect_near(blind.agreement, rates(counts).agreement);
+        }
+    }
+}
+
+TEST(Ranking, CountsPairsOfFrames) {
+    std::mt19937 random(3);
+    for (int round = 0; round < 300; ++round) {
+        std::vector<Scored> frames(random() % 40);
+        for (Scored& frame : frames)  // ties are common
+            frame = {static_cast<float>(random() % 8), static_cast<std::uint32_t>(random() % 5), random() % 3 == 0};
+        std::vector<std::uint32_t> weights(5);
+        for (std::uint32_t& weight : weights) weight = random() % 4;
+        double won = 0;
+        double pairs = 0;
+        for (const Scored& a : frames) {
+            for (const Scored& b : frames) {
+                if (!a.positive || b.positive) continue;
+                const double times = static_cast<double>(weights[a.episode]) * weights[b.episode];
+                pairs += times;
+                won += times * (a.score > b.score ? 1 : a.score == b.score ? 0.5 : 0);
+            }
+        }
+        expect_near(Ranking(frames).auroc(weights), pairs == 0 ? std::nullopt : std::optional(won / pairs));
+    }
+}
+
+TEST(Bootstrap, DrawsEpisodesWithReplacement) {
+    const Bootstrap bootstrap(50);
+    ASSERT_EQ(bootstrap.resamples().size(), kResamples);
+    std::vector<double> drawn(50);
+    for (const Weights& weights : bootstrap.resamples()) {
+        EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0U), 50U);
+        for (std::size_t e = 0; e < 50; ++e) drawn[e] += weights[e];
+    }
+    for (const double times : drawn) EXPECT_NEAR(times, kResamples, 6 * std::sqrt(kResamples));
+    EXPECT_EQ(bootstrap.resamples(), Bootstrap(50).resamples());
+    // The first draws, so that a table made elsewhere is the same.
+    EXPECT_EQ(Bootstrap(3).resamples()[0], (Weights{0, 1, 2}));
+}
+
+TEST(Bootstrap, IntervalsCoverAMean) {
+    // Of 200 samples of 40 numbers, about 95 % have an interval with the true mean in it; at least 90 % is far below.
+    std::mt19937 random(4);
+    std::uniform_real_distribution<double> uniform(0, 1);
+    const Bootstrap bootstrap(40);
+    int covered = 0;
+    for (int round = 0; round < 200; ++round) {
+        std::vector<double> values(40);
+        for (double& value : values) value = uniform(random);
+        const Figure figure = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
+            double sum = 0;
+            for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i];
+            return sum / 40;
+        });
+        ASSERT_TRUE(figure.value && figure.interval);
+        EXPECT_LE(figure.interval->low, *figure.value);
+        EXPECT_GE(figure.interval->high, *figure.value);
+        covered += figure.interval->low <= 0.5 && 0.5 <= figure.interval->high ? 1 : 0;
+    }
+    EXPECT_GE(covered, 175);
+    EXPECT_LE(covered, 199);
+}
+
+TEST(Bootstrap, QuantilesAreThoseOfTheValuesThatAreThere) {
+    std::vector<std::optional<double>> values;
+    for (int i = 1000; i >= 0; --i) values.emplace_back(i);
+    EXPECT_EQ(percentile_interval(values)->low, 25);
+    EXPECT_EQ(percentile_interval(values)->high, 975);
+    values.resize(1900);  // most of them there
+    EXPECT_EQ(percentile_interval(values)->low, 25);
+    values.resize(2100);
+    EXPECT_FALSE(percentile_interval(values));
+    EXPECT_FALSE(percentile_interval({}));
+}
+
+TEST(Bootstrap, OfOneEpisodeHasNoInterval) {
+    const auto one = [](const Weights&) { return std::optional(1.0); };
+    EXPECT_FALSE(Bootstrap(1).figure(one).interval);
+    EXPECT_TRUE(Bootstrap(2).figure(one).interval);
+}
+
+}  // namespace
+}  // namespace etlc::evaluate
