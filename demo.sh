@@ -45,3 +45,22 @@ awk '/^ private:/ { exit }
 
 title "100 drives past that class: each verdict beside the truth"
 show build/release/examples/dubins/dubins "$out"
+
+title "The paper's experiment: thresholds from labelled drives, by both of its methods"
+drives=$out/drives
+record=build/release/examples/dubins/dubins_record
+show grep -E '^(predicate|truth|monitor|sliding)' examples/dubins/paper.etl
+echo
+show "$record" "$drives" 1
+show etlc calibrate examples/dubins/paper.etl --data "$drives/1/calibration" -o "$out/paper.thresholds.json"
+echo
+show etlc examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" -o "$out/paper.hpp"
+show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I "$out" examples/dubins/watch.cpp -o "$out/watch"
+echo
+echo "The compiled class, on the 180 drives that the thresholds have not seen:"
+show "$out/watch" "$drives/1/test"
+echo
+show etlc evaluate examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" --data "$drives/1/test"
+
+title "The same over five seeds, beside the paper's table"
+show examples/dubins/experiment.sh build/release/etlc "$record" "$drives"

@@ -32,18 +32,18 @@ awk -F, '
     }
     function figure(key, percent) {
         if (!n[key]) return "-"
-        return percent ? sprintf("%.1f ±%.1f %%", 100 * mean(key), 100 * spread(key)) : sprintf("%.2f ±%.2f", mean(key), spread(key))
+        return percent ? sprintf("%.1f (%.1f) %%", 100 * mean(key), 100 * spread(key)) : sprintf("%.2f (%.2f)", mean(key), spread(key))
     }
     function row(name, f1, cp, level, paper,   i, p) {
-        printf "%-28s %13s %13s %13s %15s %13s %13s %15s\n", name, figure(f1 " " level " f1"), figure(f1 " " level " precision"),
+        printf "%-28s %12s %12s %12s %14s %12s %12s %14s\n", name, figure(f1 " " level " f1"), figure(f1 " " level " precision"),
             figure(f1 " " level " recall"), figure(f1 " " level " agreement", 1), figure(cp " " level " precision"),
             figure(cp " " level " recall"), figure(cp " " level " agreement", 1)
         split(paper, p, " ")
-        printf "%-28s %12s  %12s  %12s  %14s  %12s  %12s  %14s\n", "  the paper", p[1], p[2], p[3], p[4] " %", p[5], p[6], p[7] " %"
+        printf "%-28s %12s %12s %12s %14s %12s %12s %14s\n", "  the paper", p[1], p[2], p[3], p[4] " %", p[5], p[6], p[7] " %"
     }
     END {
-        printf "%d seeds, for each 120 drives to calibrate on and 180 others to evaluate on; mean and standard deviation over the seeds\n\n", seeds
-        printf "%-28s %12s  %12s  %12s  %14s  %12s  %12s  %14s\n", "", "F1", "precision", "recall", "agreement", "CP precision", "CP recall", "CP agreement"
+        printf "%d seeds, for each 120 drives to calibrate on and 180 others to evaluate on; mean (standard deviation) over the seeds\n\n", seeds
+        printf "%-28s %12s %12s %12s %14s %12s %12s %14s\n", "", "F1", "precision", "recall", "agreement", "CP precision", "CP recall", "CP agreement"
         row("Reach A (frames)", "a_f1", "a_cp", "frames", "0.85 0.87 0.83 98.6 0.79 0.93 98.5")
         row("Avoid C (frames)", "c_f1", "c_cp", "frames", "0.80 0.69 0.94 96.5 0.70 0.92 96.5")
         row("Reach-avoid (frames)", "clear_a_f1", "clear_a_cp", "steps", "0.85 0.87 0.83 98.6 0.79 0.93 98.5")

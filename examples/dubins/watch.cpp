@@ -1,9 +1,11 @@
-// watch EPISODE.csv...: recorded drives past the class that etlc made of paper.etl, compiled with its thresholds.
-// Gives: per monitor in how many episodes its last verdict is what was true, by the car's position. Needs nothing but
-// the generated header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER watch.cpp
+// watch FOLDER: recorded drives, .csv files as dubins_record writes them, past the class that etlc made of paper.etl,
+// compiled with its thresholds. Gives: per monitor in how many episodes its last verdict is what was true, by the car's
+// position. Needs nothing but the generated header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I
+// FOLDER_OF_THE_HEADER watch.cpp
 #include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
 #include <fstream>
 #include <string>
 
@@ -70,7 +72,7 @@ std::array<Score, 8> scores = {{{"reach_f1"},
                                 {"reach_avoid_cp"},
                                 {"sequential_cp"}}};
 
-bool watch(const char* path) {
+bool watch(const std::filesystem::path& path) {
     std::ifstream file(path);
     std::string row;
     std::getline(file, row);  // the names of the columns
@@ -100,12 +102,18 @@ bool watch(const char* path) {
 }  // namespace
 
 int main(int argc, char** argv) {
-    for (int i = 1; i < argc; ++i) {
-        if (watch(argv[i])) continue;
-        std::fprintf(stderr, "watch: %s cannot be read\n", argv[i]);
+    if (argc != 2 || !std::filesystem::is_directory(argv[1])) {
+        std::fprintf(stderr, "usage: watch FOLDER\n");
+        return 2;
+    }
+    int drives = 0;
+    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) {
+        ++drives;
+        if (watch(entry.path())) continue;
+        std::fprintf(stderr, "watch: %s cannot be read\n", entry.path().c_str());
         return 1;
     }
     std::printf("monitor         episodes agree  truly satisfied\n");
     for (const Score& score : scores)
-        std::printf("%-14s  %5d of %5d  %15d\n", score.name, score.agreeing, argc - 1, score.satisfied);
+        std::printf("%-14s  %5d of %5d  %15d\n", score.name, score.agreeing, drives, score.satisfied);
 }
