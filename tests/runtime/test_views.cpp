@@ -163,4 +163,26 @@ TEST(Storage, Int8IsScaleTimesInteger) {
     }
 }
 
+TEST(Storage, ManyAtOnceAsOneByOne) {
+    constexpr std::uint32_t kAtOnce = 7;
+    for (std::uint32_t first = 0; first + kAtOnce <= 0x10000; first += kAtOnce) {
+        std::uint16_t halves[kAtOnce];
+        std::int8_t bytes[kAtOnce];
+        float from_halves[kAtOnce], from_bytes[kAtOnce];
+        for (std::uint32_t i = 0; i < kAtOnce; ++i) {
+            halves[i] = static_cast<std::uint16_t>(first + i);
+            bytes[i] = static_cast<std::int8_t>(first + i);
+        }
+        etlmon::widen_f16(halves, from_halves, kAtOnce);
+        etlmon::widen_i8(bytes, 0.1F, from_bytes, kAtOnce);
+        for (std::uint32_t i = 0; i < kAtOnce; ++i) {
+            float one = 0;
+            etlmon::widen_f16(&halves[i], &one, 1);
+            ASSERT_EQ(std::memcmp(&one, &from_halves[i], sizeof one), 0) << first + i;
+            etlmon::widen_i8(&bytes[i], 0.1F, &one, 1);
+            ASSERT_EQ(std::memcmp(&one, &from_bytes[i], sizeof one), 0) << first + i;
+        }
+    }
+}
+
 }  // namespace

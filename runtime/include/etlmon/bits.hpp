@@ -62,8 +62,12 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
 /// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler is kept from seeing
 /// where the bits come from: it must not conclude from the arithmetic what they cannot be.
 ETLMON_INLINE uint32_t observe(const float& x) noexcept {
+#if defined(ETLMON_HAS_BIT_CAST)  // unlike copy_bytes it tells the compiler that x is aligned
+  uint32_t bits = __builtin_bit_cast(uint32_t, x);
+#else
   uint32_t bits = 0;
   copy_bytes(&bits, &x, sizeof bits);
+#endif
 #if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
   __asm__("" : "+r"(bits));
 #endif
@@ -113,11 +117,11 @@ ETLMON_INLINE float square_root(float x) noexcept {
 }  // namespace detail
 
 ETLMON_INLINE bool is_nan(const float& x) noexcept {
-  return (detail::observe(x) & ~detail::kSignBit) > detail::kInfinityBits;
+  return (detail::observe(x) << 1) > (detail::kInfinityBits << 1);  // without the sign
 }
 
 ETLMON_INLINE bool is_finite(const float& x) noexcept {
-  return (detail::observe(x) & ~detail::kSignBit) < detail::kInfinityBits;
+  return (detail::observe(x) << 1) < (detail::kInfinityBits << 1);
 }
 
 }  // namespace etlmon

@@ -163,8 +163,8 @@ template <class Metric>
 using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
 
 template <class Metric, class Aggregation, bool InColumns>
-ETLMON_COLD Measured measure_rescaled(const float* z, Set<InColumns> set, const float* weights,
-                                      Aggregation aggregation) noexcept {
+Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float* weights,
+                          Aggregation aggregation) noexcept {
   const Rescaled<Metric> distance(z, weights, set.dimension);
   if (!distance.known()) return {from_bits(kMissingBits), 0};
   Nearest nearest;

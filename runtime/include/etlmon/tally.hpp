@@ -72,38 +72,63 @@ struct Tally {
     if (!Metric::kRescales) return result <= kGreatest || !Aggregation::kOfDistances;
     return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
   }
-  /// The same where the nearest row turns out to be z itself: its 0 is exact, and no other row's underflow can matter.
+  /// The same, for other aggregations than min, where the nearest row turns out to be z itself: its 0 is exact, and no
+  /// other row's underflow can matter.
   ETLMON_INLINE bool sound_if_equal(uint32_t result) const noexcept {
     constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, in doubt whether a square or a root
-    const bool exact = Aggregation::kNearest ? result == 0 : result >= kLeastRoot;
-    return nearest.least == 0 && exact && result <= kGreatest && greatest <= kGreatest;
+    return nearest.least == 0 && result >= kLeastRoot && result <= kGreatest && greatest <= kGreatest;
   }
 };
 
 /// The measurement with scaled differences.
 template <class Metric, class Aggregation, bool InColumns>
-ETLMON_COLD Measured measure_rescaled(const float* z, Set<InColumns> set, const float* weights,
-                                      Aggregation aggregation) noexcept;
+Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float* weights,
+                          Aggregation aggregation) noexcept;
 
 /// z is row k of the set, element by element.
 template <bool InColumns>
-ETLMON_COLD bool is_row(const float* z, Set<InColumns> set, uint32_t k) noexcept {
+bool is_row(const float* z, const Set<InColumns>& set, uint32_t k) noexcept {
   typename Set<InColumns>::Buffer buffer;
   const float* row = set.row(k, buffer);
-  uint32_t different = 0;
-  for (uint32_t i = 0; i < set.dimension; ++i) different |= observe(z[i] - row[i]) & ~kSignBit;
-  return different == 0;
+  for (uint32_t i = 0; i < set.dimension; ++i) {
+    if ((observe(z[i] - row[i]) & ~kSignBit) != 0) return false;
+  }
+  return true;
+}
+
+/// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form.
+template <class Metric, class Aggregation, class Size, bool InColumns>
+ETLMON_COLD Measured measure_again(const float* z, const float* targets, const float* weights, Size size,
+                                   Aggregation aggregation) noexcept {
+  const Set<InColumns> set{targets, size.rows(), size.dimension()};
+  if constexpr (Metric::kRescales && Aggregation::kNearest) {
+    for (uint32_t row = 0; row < set.rows; ++row) {
+      if (is_row(z, set, row)) return {0.0f, row};
+    }
+  }
+  return measure_rescaled<Metric>(z, set, weights, aggregation);
+}
+
+/// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
+template <bool InColumns>
+ETLMON_COLD bool is_equal(const float* z, const float* targets, uint32_t rows, uint32_t dimension,
+                          uint32_t row) noexcept {
+  return is_row(z, Set<InColumns>{targets, rows, dimension}, row);
 }
 
 /// What the values say together. `aggregation`: as it was before it saw any.
-template <class Metric, class Aggregation, bool InColumns>
-ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, Set<InColumns> set,
-                                const float* weights, Aggregation aggregation) noexcept {
-  const uint32_t result = tally.result(set.rows);
+template <bool InColumns, class Metric, class Aggregation, class Size>
+ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, const float* targets,
+                                const float* weights, Size size, Aggregation aggregation) noexcept {
+  const uint32_t result = tally.result(size.rows());
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
-    const bool sound =
-        tally.sound(result) || (Metric::kRescales && tally.sound_if_equal(result) && is_row(z, set, tally.nearest.row));
-    if (!sound) return measure_rescaled<Metric>(z, set, weights, aggregation);
+    bool sound = tally.sound(result);
+    if constexpr (Metric::kRescales && !Aggregation::kNearest) {
+      if (!sound && tally.sound_if_equal(result)) {
+        sound = is_equal<InColumns>(z, targets, size.rows(), size.dimension(), tally.nearest.row);
+      }
+    }
+    if (!sound) return measure_again<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
   }
   const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
   return {delta, tally.nearest.row};

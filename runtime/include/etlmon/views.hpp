@@ -89,24 +89,35 @@ class Flag {
   uint8_t state_ = kNone;
 };
 
+#if defined(ETLMON_HAS_PACKS)
+namespace detail {
+/// Bits that have their sign set where one of four floats is not finite: adding one to the exponent carries there.
+ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
+  PackBits bits;
+  copy_bytes(&bits, x, sizeof bits);
+  return (bits & 0x7f800000) + 0x00800000;
+}
+}  // namespace detail
+#endif
+
 /// Every one of n floats is finite.
 ETLMON_INLINE bool finite(const float* x, size_t n) noexcept {
+  size_t i = 0;
   bool all = true;
-  size_t single = 0;
 #if defined(ETLMON_HAS_PACKS)
-  single = n - n % 4;
-  detail::PackBits worst{};
-  for (size_t i = 0; i < single; i += 4) {
-    detail::PackBits bits;
-    detail::copy_bytes(&bits, x + i, sizeof bits);
-    worst |= (bits & 0x7fffffff) > 0x7f7fffff;
+  detail::PackBits a{}, b{}, c{}, d{};
+  for (; i + 16 <= n; i += 16) {
+    a |= detail::not_finite(x + i);
+    b |= detail::not_finite(x + i + 4);
+    c |= detail::not_finite(x + i + 8);
+    d |= detail::not_finite(x + i + 12);
   }
-  all = (worst[0] | worst[1] | worst[2] | worst[3]) == 0;
+  for (; i + 4 <= n; i += 4) a |= detail::not_finite(x + i);
+  a |= b | c | d;
+  all = (a[0] | a[1] | a[2] | a[3]) >= 0;
 #endif
-  for (size_t i = single; i < n; ++i) {
-    uint32_t bits = 0;
-    detail::copy_bytes(&bits, x + i, sizeof bits);
-    all &= (bits & ~detail::kSignBit) < detail::kInfinityBits;
+  for (; i < n; ++i) {
+    if (!is_finite(x[i])) return false;
   }
   return all;
 }

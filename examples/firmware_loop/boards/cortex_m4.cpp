@@ -1,0 +1,68 @@
+// A Cortex-M4F without an operating system (QEMU's mps2-an386): vectors, start, and semihosting for text.
+// ARM "Semihosting for AArch32 and AArch64", 2.0; ARMv7-M Architecture Reference Manual, B1.5 and B3.3.
+#include <stdint.h>
+
+#include "board.hpp"
+
+extern "C" {
+extern uint32_t bss_start, bss_end, stack_top;
+int main();
+[[noreturn]] void reset() noexcept;
+[[noreturn]] void fault() noexcept;
+}
+
+namespace {
+
+volatile uint32_t& at(uint32_t address) noexcept {
+    return *reinterpret_cast<volatile uint32_t*>(address);
+}
+
+uint32_t semihost(uint32_t operation, const void* argument) noexcept {
+    register uint32_t r0 __asm__("r0") = operation;
+    register const void* r1 __asm__("r1") = argument;
+    __asm__ volatile("bkpt 0xab" : "+r"(r0) : "r"(r1) : "memory");
+    return r0;
+}
+
+}  // namespace
+
+extern "C" {
+
+/// The processor starts with this stack, here.
+__attribute__((section(".vectors"), used)) const void* const vectors[16] = {
+    &stack_top,
+    reinterpret_cast<const void*>(reset),
+    reinterpret_cast<const void*>(fault),
+    reinterpret_cast<const void*>(fault),
+    reinterpret_cast<const void*>(fault),
+    reinterpret_cast<const void*>(fault),
+    reinterpret_cast<const void*>(fault),
+};
+
+void reset() noexcept {
+    at(0xe000ed88) = at(0xe000ed88) | 0xfu << 20;  // CPACR: the floating-point unit is on
+    __asm__ volatile("dsb\n isb");
+    for (uint32_t* p = &bss_start; p != &bss_end; ++p) *p = 0;
+    at(0xe000e014) = 0xffffff;  // SysTick counts down, over and over
+    at(0xe000e018) = 0;
+    at(0xe000e010) = 5;
+    board_exit(main());
+}
+
+void fault() noexcept {
+    board_exit(2);
+}
+}
+
+void board_write(const char* text) noexcept {
+    semihost(0x04, text);
+}
+
+void board_exit(int status) noexcept {
+    const uint32_t block[2] = {0x20026, static_cast<uint32_t>(status)};  // ADP_Stopped_ApplicationExit
+    for (;;) semihost(0x20, block);
+}
+
+unsigned board_instructions() noexcept {
+    return 0xffffff - at(0xe000e018);
+}

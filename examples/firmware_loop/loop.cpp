@@ -1,0 +1,144 @@
+// Five monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that are used again.
+// Writes a line per step: the monitor class, the step, and of every verdict its status, lower bound, robustness and
+// upper bound, as the bits of the floats. Everywhere the same lines, which tests/firmware compares.
+#include <stdint.h>
+
+#include "belt.hpp"
+#include "board.hpp"
+#include "dock.hpp"
+#include "gauge.hpp"
+#include "grasp.hpp"
+#include "hover.hpp"
+#include "recording.hpp"
+
+namespace {
+
+constexpr uint32_t kEpisodes = 50, kSteps = 50;
+
+/// A line of text, put together without a library.
+class Line {
+public:
+    explicit Line(const char* name) noexcept {
+        while (*name != 0) put(*name++);
+    }
+    void number(uint32_t x) noexcept {
+        put(' ');
+        for (int shift = 28; shift >= 0; shift -= 4) put("0123456789abcdef"[(x >> shift) & 15]);
+    }
+    void verdict(const etlmon::Verdict& verdict) noexcept {
+        number(verdict.status);
+        number(bits(verdict.lower));
+        number(bits(verdict.robustness));
+        number(bits(verdict.upper));
+    }
+    void write() noexcept {
+        put('\n');
+        put(0);
+        board_write(text_);
+    }
+
+private:
+    void put(char c) noexcept { text_[length_++] = c; }
+    static uint32_t bits(const float& x) noexcept {
+        uint32_t b = 0;
+        __builtin_memcpy(&b, &x, sizeof b);
+        return b;
+    }
+    char text_[160];
+    uint32_t length_ = 0;
+};
+
+void show(const grasp::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.grasped);
+}
+void show(const dock::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.docks), to.verdict(v.steady);
+}
+void show(const hover::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.settles), to.verdict(v.lands), to.verdict(v.kept);
+}
+void show(const belt::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.calm), to.verdict(v.jolted);
+}
+void show(const gauge::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.returns), to.verdict(v.explains);
+}
+
+// What a driver would do: fill the buffers that live as long as the loop, and hand out views of them.
+float embedding[384];
+uint16_t halves[16];
+int8_t bytes[16];
+
+void sample(Recording& from, grasp::Inputs& in) noexcept {
+    from.fill(embedding, 384, 0.0f, 1.0f);
+    if (!from.once_in(17)) in.z = embedding;
+    in.force = 2.0f + 2.25f * from.noise();  // at times beyond its range
+}
+void sample(Recording& from, dock::Inputs& in) noexcept {
+    static float z[6];
+    from.fill(z, 6, 0.25f, 1.0f);
+    if (!from.once_in(17)) in.z = z;
+    if (!from.once_in(5)) in.called = from.once_in(3);
+}
+void sample(Recording& from, hover::Inputs& in) noexcept {
+    in.x = 0.5f + from.noise();
+    in.y = 0.125f + from.noise();
+    if (!from.once_in(40)) in.battery = 0.75f + 0.75f * from.noise();
+}
+void sample(Recording& from, belt::Inputs& in) noexcept {
+    from.fill(halves, 16);
+    from.fill(bytes, 16, 64);
+    if (!from.once_in(17)) in.a = halves;
+    if (!from.once_in(17)) in.b = bytes;
+}
+void sample(Recording& from, gauge::Inputs& in) noexcept {
+    static float v[3];
+    from.fill(v, 3, 0.75f, 1.25f);
+    if (!from.once_in(9)) in.v = v;
+    in.t = 1.0f + from.noise();
+}
+
+/// All episodes of one monitor class. Returns the instructions of a step, on average.
+template <class Monitor, class Inputs>
+uint32_t run(const char* name) noexcept {
+    static Monitor monitor;
+    uint32_t instructions = 0;
+    for (uint32_t episode = 0; episode < kEpisodes; ++episode) {
+        Recording recording(episode);
+        monitor.reset();
+        for (uint32_t step = 0; step < kSteps; ++step) {
+            Inputs in;
+            sample(recording, in);
+            const unsigned before = board_instructions();
+            const auto verdicts = monitor.step(in);
+            instructions += (board_instructions() - before) & 0xffffff;
+            Line line(name);
+            line.number(episode * kSteps + step);
+            show(verdicts, line);
+            line.write();
+        }
+    }
+    return instructions / (kEpisodes * kSteps);
+}
+
+void report(const char* name, uint32_t instructions) noexcept {
+    Line line(name);
+    line.number(instructions);
+    line.write();
+}
+
+}  // namespace
+
+int main() {
+    const uint32_t grasps = run<grasp::Monitor, grasp::Inputs>("grasp");
+    const uint32_t docks = run<dock::Monitor, dock::Inputs>("dock");
+    const uint32_t hovers = run<hover::Monitor, hover::Inputs>("hover");
+    const uint32_t belts = run<belt::Monitor, belt::Inputs>("belt");
+    const uint32_t gauges = run<gauge::Monitor, gauge::Inputs>("gauge");
+    report("instructions grasp", grasps);
+    report("instructions dock", docks);
+    report("instructions hover", hovers);
+    report("instructions belt", belts);
+    report("instructions gauge", gauges);
+    return 0;
+}
