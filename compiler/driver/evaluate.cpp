@@ -18,15 +18,14 @@ void show_progress(std::size_t done, std::size_t total) {
     if (done == total) fmt::print(stderr, "\r{:40}\r", "");
 }
 
-/// The file that the spec's thresholds were read from; nothing where none is calibrated.
+/// The file that the spec's thresholds were read from; nothing where nothing is calibrated.
 std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
                                               const Request& request) {
-    const auto calibrated = [](const check::Predicate& p) {
-        return p.threshold.origin != check::ThresholdOrigin::literal;
-    };
-    if (std::none_of(model.predicates.begin(), model.predicates.end(), calibrated)) return std::nullopt;
     const std::string& given = request.check.thresholds_path;
-    auto file = thresholds::read(given.empty() ? check::default_thresholds_path(spec) : given);
+    const std::string path = given.empty() ? check::default_thresholds_path(spec) : given;
+    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) == model.dependencies.end())
+        return std::nullopt;
+    auto file = thresholds::read(path);
     if (!file) return std::nullopt;  // check/ has read it, and would have said so
     return std::move(*file);
 }

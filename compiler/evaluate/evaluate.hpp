@@ -73,11 +73,12 @@ struct Evaluation {
     std::vector<MonitorScore> monitors;
 };
 
-/// The predicates that have a truth in the spec or an array in the first episode; nothing where that cannot be read, or
-/// where there is neither a predicate nor a monitor to evaluate, as the sink then says.
+/// The predicates that have a truth in the spec or an array in the first episode; nothing where that cannot be read, as
+/// the sink then says.
 std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink);
 
-/// `seen`: the thresholds that the plan has, where they were calibrated. Nothing where the sink now says why.
+/// `seen`: the thresholds that the plan has, where they were calibrated; the episodes in it are refused. Nothing where
+/// the sink now says why.
 std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
                                    const Request& request, const std::optional<thresholds::File>& seen,
                                    diag::Sink& sink);

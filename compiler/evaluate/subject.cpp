@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <set>
+#include <utility>
 
 namespace etlc::evaluate {
 
@@ -90,7 +91,7 @@ Index append_visit(check::Model& model, const std::string& name, const std::vect
 Subject subject(const check::Model& model, std::vector<Index> labelled) {
     Subject result{labelled, calibrate::ground_truth(model, labelled), {}};
     check::Model& truth = result.truth.model;
-    truth.monitors.clear();
+    const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         MonitorSubject& subject = result.monitors.emplace_back();
@@ -104,7 +105,7 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         }
         if (!subject.lacking.empty()) continue;
         subject.truth = static_cast<Index>(truth.monitors.size());
-        truth.monitors.push_back(monitor);
+        truth.monitors.push_back(true_monitors[m]);
         const auto stages = stages_of(model, monitor.formula);
         if (monitor.sliding || stages.size() < 2) continue;
         for (const auto& conjuncts : stages) subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));
