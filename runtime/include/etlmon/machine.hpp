@@ -37,11 +37,12 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
 
 /// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper:
 /// any state, what it owes strongly is worth its highest unseen value.
-template <class V>
-Reading machine_read(const V* now, uint32_t states, const Owed* owed, const Key* weak, const Key* strong) noexcept {
-  Reading reading{kFalse, kBottom, kBottom};
+template <class V, class End>
+auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* weak, const End* strong) noexcept {
+  using Result = decltype(reading_of(*now));
+  Result reading = Lattice<Result>::bottom();
   for (uint32_t q = 0; q < states; ++q) {
-    const Reading at = reading_of(now[q]);
+    const Result at = reading_of(now[q]);
     reading.upper = max(reading.upper, min(at.upper, strong[owed[q].strong]));
     if (owed[q].weak == kStrongly) continue;
     reading.rho = max(reading.rho, at.rho);
@@ -51,26 +52,28 @@ Reading machine_read(const V* now, uint32_t states, const Owed* owed, const Key*
 }
 
 /// The registers of a machine with its tables elsewhere; state 0 is the initial one.
-template <uint32_t States>
+template <class V, uint32_t States>
 class Machine {
+  using End = typename Lattice<V>::End;
+
  public:
   void reset() noexcept {
     turn_ = 0;
-    for (uint32_t q = 0; q < States; ++q) registers_[0][q] = q == 0 ? kTrue : kFalse;
+    for (uint32_t q = 0; q < States; ++q) registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
   }
 
-  void advance(const Transition* transitions, const uint32_t* ends, const Value* guards) noexcept {
+  void advance(const Transition* transitions, const uint32_t* ends, const V* guards) noexcept {
     machine_advance(registers_[turn_], registers_[1 - turn_], States, transitions, ends, guards);
     turn_ = 1 - turn_;
   }
 
-  Reading read(const Owed* owed, const Key* weak, const Key* strong) const noexcept {
+  BasicReading<V> read(const Owed* owed, const End* weak, const End* strong) const noexcept {
     return machine_read(registers_[turn_], States, owed, weak, strong);
   }
 
  private:
-  Value registers_[2][States];
   uint32_t turn_;
+  V registers_[2][States];
 };
 
 }  // namespace etlmon

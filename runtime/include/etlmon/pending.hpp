@@ -3,7 +3,7 @@
 // Takes: readings of the operands at n positions, oldest first, the last one being the present. Gives: readings of the
 // formula there, by the definitions of robustness and of the bounds, every window cut at the present.
 // Keeps true: position p tells exactly what rho and the bounds of the operator are there on this prefix; the work is at
-// most n times the window.
+// most n times the window. R: Reading or BasicReading<Truth>.
 #pragma once
 
 #include <stdint.h>
@@ -14,18 +14,18 @@
 namespace etlmon {
 
 /// The last N values of a stream.
-template <uint32_t N>
+template <class V, uint32_t N>
 class Recent {
  public:
   void reset() noexcept { next_ = 0; }
 
-  void push(Value value) noexcept {
+  void push(V value) noexcept {
     values_[next_] = value;
     next_ = next_ + 1 == N ? 0 : next_ + 1;
   }
 
   /// The last n <= N, oldest first, as readings of settled values.
-  void list(Reading* out, uint32_t n) const noexcept {
+  void list(BasicReading<V>* out, uint32_t n) const noexcept {
     uint32_t at = next_ >= n ? next_ - n : next_ + N - n;
     for (uint32_t p = 0; p < n; ++p) {
       out[p] = settled(values_[at]);
@@ -34,17 +34,58 @@ class Recent {
   }
 
  private:
-  Value values_[N];
   uint32_t next_;
+  V values_[N];
 };
 
-constexpr Reading kReadsTrue{kTrue, kTop, kTop};
-constexpr Reading kReadsFalse{kFalse, kBottom, kBottom};
+/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end something better may
+/// come.
+struct Seeking {
+  template <class V>
+  static constexpr V gain(V a, V b) noexcept {
+    return max(a, b);
+  }
+  template <class V>
+  static constexpr V keep(V a, V b) noexcept {
+    return min(a, b);
+  }
+  template <class V>
+  static constexpr V nothing() noexcept {
+    return Lattice<V>::bottom();
+  }
+  template <class V>
+  static constexpr V all() noexcept {
+    return Lattice<V>::top();
+  }
+  /// The bound that what is unseen moves.
+  template <class R>
+  static constexpr auto& open_end(R& reading) noexcept {
+    return reading.upper;
+  }
+};
 
-template <>
-struct Lattice<Reading> {
-  static constexpr Reading bottom() noexcept { return kReadsFalse; }
-  static constexpr Reading top() noexcept { return kReadsTrue; }
+/// G and R guard: the dual.
+struct Guarding {
+  template <class V>
+  static constexpr V gain(V a, V b) noexcept {
+    return min(a, b);
+  }
+  template <class V>
+  static constexpr V keep(V a, V b) noexcept {
+    return max(a, b);
+  }
+  template <class V>
+  static constexpr V nothing() noexcept {
+    return Lattice<V>::top();
+  }
+  template <class V>
+  static constexpr V all() noexcept {
+    return Lattice<V>::bottom();
+  }
+  template <class R>
+  static constexpr auto& open_end(R& reading) noexcept {
+    return reading.lower;
+  }
 };
 
 /// The upper bound of a window without one.
@@ -55,110 +96,78 @@ constexpr uint32_t window_end(uint32_t from, uint32_t high, uint32_t n) noexcept
   return high < n - from ? from + high + 1 : n;
 }
 
-inline void pending_and(const Reading* f, const Reading* g, Reading* out, uint32_t n) noexcept {
+template <class R>
+void pending_and(const R* f, const R* g, R* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = min(f[p], g[p]);
 }
 
-inline void pending_or(const Reading* f, const Reading* g, Reading* out, uint32_t n) noexcept {
+template <class R>
+void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = max(f[p], g[p]);
 }
 
-/// f U[low,high] g; F is U with f true. unseen: the highest unseen value of g.
-inline void pending_until(const Reading* f, const Reading* g, Reading* out, uint32_t n, uint32_t low, uint32_t high,
-                          Key unseen) noexcept {
+/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F and G.
+/// unseen: the highest, or lowest, unseen value of g.
+template <class Sense, class R, class End>
+void pending_at_each(const R* f, const R* g, R* out, uint32_t n, uint32_t low, uint32_t high, End unseen) noexcept {
   for (uint32_t p = 0; p < n; ++p) {
-    Reading best = kReadsFalse;
-    Reading held = kReadsTrue;
+    R best = Sense::template nothing<R>();
+    R held = Sense::template all<R>();
     const uint32_t end = window_end(p, high, n);
     for (uint32_t j = p; j < end; ++j) {
-      if (j - p >= low) best = max(best, min(held, g[j]));
-      if (f != nullptr) held = min(held, f[j]);
+      if (j - p >= low) best = Sense::gain(best, Sense::keep(held, g[j]));
+      if (f != nullptr) held = Sense::keep(held, f[j]);
     }
-    if (high >= n - p) best.upper = max(best.upper, min(held.upper, unseen));
+    auto& open = Sense::open_end(best);
+    if (high >= n - p) open = Sense::gain(open, Sense::keep(Sense::open_end(held), unseen));
     out[p] = best;
   }
 }
 
-/// f R[low,high] g; G is R with f false. unseen: the lowest unseen value of g.
-inline void pending_release(const Reading* f, const Reading* g, Reading* out, uint32_t n, uint32_t low, uint32_t high,
-                            Key unseen) noexcept {
-  for (uint32_t p = 0; p < n; ++p) {
-    Reading worst = kReadsTrue;
-    Reading freed = kReadsFalse;
-    const uint32_t end = window_end(p, high, n);
-    for (uint32_t j = p; j < end; ++j) {
-      if (j - p >= low) worst = min(worst, max(freed, g[j]));
-      if (f != nullptr) freed = max(freed, f[j]);
-    }
-    if (high >= n - p) worst.lower = min(worst.lower, max(freed.lower, unseen));
-    out[p] = worst;
-  }
-}
-
-/// f U[low,high] g (f nullptr: F) from position 0, its operands settled `horizon` steps late. `n` readings of them, the
-/// last at `step`. best and held: the operator and its left side up to the last settled position; both are moved on by
-/// one.
-inline Reading pending_until_from_start(Value& best, Value& held, const Reading* f, const Reading* g, uint32_t n,
-                                        uint32_t step, uint32_t horizon, uint32_t low, uint32_t high,
-                                        Key unseen) noexcept {
+/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them, the last at `step`.
+/// best and held: the operator and its left side up to the last settled position; both are moved on by one.
+template <class Sense, class V, class End>
+BasicReading<V> pending_from_start(V& best, V& held, const BasicReading<V>* f, const BasicReading<V>* g, uint32_t n,
+                                   uint32_t step, uint32_t horizon, uint32_t low, uint32_t high, End unseen) noexcept {
   const auto open = [&](uint32_t position) { return low <= position && position <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;
   if (step >= horizon) {
-    if (open(position)) best = max(best, min(held, g[0].rho));
-    if (f != nullptr) held = min(held, f[0].rho);
+    if (open(position)) best = Sense::gain(best, Sense::keep(held, g[0].rho));
+    if (f != nullptr) held = Sense::keep(held, f[0].rho);
     ++p, ++position;
   }
-  Reading result = settled(best);
-  Reading left = settled(held);
+  BasicReading<V> result = settled(best);
+  BasicReading<V> left = settled(held);
   for (; p < n; ++p, ++position) {
-    if (open(position)) result = max(result, min(left, g[p]));
-    if (f != nullptr) left = min(left, f[p]);
+    if (open(position)) result = Sense::gain(result, Sense::keep(left, g[p]));
+    if (f != nullptr) left = Sense::keep(left, f[p]);
   }
-  if (high == kWithoutEnd || step < high) result.upper = max(result.upper, min(left.upper, unseen));
-  return result;
-}
-
-/// f R[low,high] g (f nullptr: G), the dual.
-inline Reading pending_release_from_start(Value& worst, Value& freed, const Reading* f, const Reading* g, uint32_t n,
-                                          uint32_t step, uint32_t horizon, uint32_t low, uint32_t high,
-                                          Key unseen) noexcept {
-  const auto open = [&](uint32_t position) { return low <= position && position <= high; };
-  uint32_t p = 0;
-  uint32_t position = step + 1 - n;
-  if (step >= horizon) {
-    if (open(position)) worst = min(worst, max(freed, g[0].rho));
-    if (f != nullptr) freed = max(freed, f[0].rho);
-    ++p, ++position;
-  }
-  Reading result = settled(worst);
-  Reading left = settled(freed);
-  for (; p < n; ++p, ++position) {
-    if (open(position)) result = min(result, max(left, g[p]));
-    if (f != nullptr) left = max(left, f[p]);
-  }
-  if (high == kWithoutEnd || step < high) result.lower = min(result.lower, max(left.lower, unseen));
+  auto& end = Sense::open_end(result);
+  if (high == kWithoutEnd || step < high) end = Sense::gain(end, Sense::keep(Sense::open_end(left), unseen));
   return result;
 }
 
 /// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first one settled where
 /// `settles`; scratch: 2 * states readings; settled_guards: width + states values. Its registers are moved on by the
 /// settled row.
-inline Reading pending_machine(Value* registers, uint32_t states, const Reading* guards, uint32_t width, uint32_t n,
-                               bool settles, const Transition* transitions, const uint32_t* ends, const Owed* owed,
-                               const Key* weak, const Key* strong, Reading* scratch, Value* settled_guards) noexcept {
-  Reading* now = scratch;
-  Reading* next = scratch + states;
+template <class V, class End>
+BasicReading<V> pending_machine(V* registers, uint32_t states, const BasicReading<V>* guards, uint32_t width,
+                                uint32_t n, bool settles, const Transition* transitions, const uint32_t* ends,
+                                const Owed* owed, const End* weak, const End* strong, BasicReading<V>* scratch,
+                                V* settled_guards) noexcept {
+  BasicReading<V>* now = scratch;
+  BasicReading<V>* next = scratch + states;
   if (settles) {
     for (uint32_t g = 0; g < width; ++g) settled_guards[g] = guards[g].rho;
-    Value* moved = settled_guards + width;
+    V* moved = settled_guards + width;
     machine_advance(registers, moved, states, transitions, ends, settled_guards);
     for (uint32_t q = 0; q < states; ++q) registers[q] = moved[q];
   }
   for (uint32_t q = 0; q < states; ++q) now[q] = settled(registers[q]);
   for (uint32_t p = settles ? 1 : 0; p < n; ++p) {
     machine_advance(now, next, states, transitions, ends, guards + p * width);
-    Reading* const other = now;
+    BasicReading<V>* const other = now;
     now = next;
     next = other;
   }
@@ -166,23 +175,25 @@ inline Reading pending_machine(Value* registers, uint32_t states, const Reading*
 }
 
 /// Its registers, with room on the stack for the rest.
-template <uint32_t States, uint32_t Width>
+template <class V, uint32_t States, uint32_t Width>
 class PendingMachine {
+  using End = typename Lattice<V>::End;
+
  public:
   void reset() noexcept {
-    for (uint32_t q = 0; q < States; ++q) registers_[q] = q == 0 ? kTrue : kFalse;
+    for (uint32_t q = 0; q < States; ++q) registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
   }
 
-  Reading read(const Reading (*guards)[Width], uint32_t n, bool settles, const Transition* transitions,
-               const uint32_t* ends, const Owed* owed, const Key* weak, const Key* strong) noexcept {
-    Reading scratch[2 * States];
-    Value values[Width + States];
+  BasicReading<V> read(const BasicReading<V> (*guards)[Width], uint32_t n, bool settles, const Transition* transitions,
+                       const uint32_t* ends, const Owed* owed, const End* weak, const End* strong) noexcept {
+    BasicReading<V> scratch[2 * States];
+    V values[Width + States];
     return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends, owed, weak, strong,
                            scratch, values);
   }
 
  private:
-  Value registers_[States];
+  V registers_[States];
 };
 
 }  // namespace etlmon

@@ -9,29 +9,49 @@
 
 namespace etlmon {
 
-/// rho on the prefix so far, and what every continuation keeps it between.
-struct Reading {
-  Value rho;
-  Key lower;
-  Key upper;
+/// rho on the prefix so far, and what every continuation keeps it between. V: Value or Truth.
+template <class V>
+struct BasicReading {
+  V rho;
+  typename Lattice<V>::End lower;
+  typename Lattice<V>::End upper;
 };
+using Reading = BasicReading<Value>;
 
-constexpr Reading min(Reading a, Reading b) noexcept {
+template <class V>
+constexpr BasicReading<V> min(BasicReading<V> a, BasicReading<V> b) noexcept {
   return {min(a.rho, b.rho), min(a.lower, b.lower), min(a.upper, b.upper)};
 }
 
-constexpr Reading max(Reading a, Reading b) noexcept {
+template <class V>
+constexpr BasicReading<V> max(BasicReading<V> a, BasicReading<V> b) noexcept {
   return {max(a.rho, b.rho), max(a.lower, b.lower), max(a.upper, b.upper)};
 }
 
 /// A reading that no continuation changes.
-constexpr Reading settled(Value rho) noexcept { return {rho, rho.low, rho.high}; }
+template <class V>
+constexpr BasicReading<V> settled(V rho) noexcept {
+  return {rho, rho.low, rho.high};
+}
 
 /// A register as a reading.
-constexpr Reading reading_of(Value settled_value) noexcept { return settled(settled_value); }
-constexpr Reading reading_of(Reading reading) noexcept { return reading; }
+template <class V>
+constexpr BasicReading<V> reading_of(V settled_value) noexcept {
+  return settled(settled_value);
+}
+template <class V>
+constexpr BasicReading<V> reading_of(BasicReading<V> reading) noexcept {
+  return reading;
+}
 
-inline Verdict prefix_verdict(Reading reading) noexcept {
+template <class V>
+struct Lattice<BasicReading<V>> {
+  static constexpr BasicReading<V> bottom() noexcept { return settled(Lattice<V>::bottom()); }
+  static constexpr BasicReading<V> top() noexcept { return settled(Lattice<V>::top()); }
+};
+
+template <class V>
+auto prefix_verdict(BasicReading<V> reading) noexcept {
   return prefix_verdict(reading.rho, reading.lower, reading.upper);
 }
 

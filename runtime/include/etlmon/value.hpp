@@ -73,13 +73,15 @@ constexpr V max(V a, V b, V c, More... more) noexcept {
   return max(max(a, b), c, more...);
 }
 
-/// The least and the greatest element of a value type: bottom is false, top is true. A mode (Boolean words, say) is a
-/// type with min and max found by argument-dependent lookup and a specialisation of this.
+/// The least and the greatest element of a value type: bottom is false, top is true; End is the type of its two ends,
+/// low and high. A mode (truth.hpp, say) is a type with min and max found by argument-dependent lookup and a
+/// specialisation of this.
 template <class V>
 struct Lattice;
 
 template <>
 struct Lattice<Key> {
+  using End = Key;
   static constexpr Key bottom() noexcept { return kBottom; }
   static constexpr Key top() noexcept { return kTop; }
 };
@@ -92,6 +94,7 @@ struct Lattice<float> {
 
 template <>
 struct Lattice<Value> {
+  using End = Key;
   static constexpr Value bottom() noexcept { return kFalse; }
   static constexpr Value top() noexcept { return kTrue; }
 };

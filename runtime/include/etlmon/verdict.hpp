@@ -7,22 +7,20 @@
 
 #include <stdint.h>
 
+#include "etlmon/truth.hpp"
 #include "etlmon/value.hpp"
 
 namespace etlmon {
 
-/// The answer about one monitor after one step. Undecided: the numbers are NaN and every question but decided() is
-/// moot.
-struct Verdict {
-  static constexpr uint32_t kSatisfied = 1;
-  static constexpr uint32_t kViolated = 2;
-  static constexpr uint32_t kDecided = 4;
-  static constexpr uint32_t kFinal = 8;
+/// What can be asked about one monitor after one step, in bits. Undecided: every question but decided() is moot.
+template <class Word>
+struct Status {
+  static constexpr Word kSatisfied = 1;
+  static constexpr Word kViolated = 2;
+  static constexpr Word kDecided = 4;
+  static constexpr Word kFinal = 8;
 
-  float robustness = kMissing;  ///< rho; pessimistic where a sample is missing
-  float lower = kMissing;       ///< no continuation of the trace takes rho below this
-  float upper = kMissing;       ///< nor above this
-  uint32_t status = 0;          ///< the bits above
+  Word status = 0;  ///< of the bits above
 
   constexpr bool satisfied() const noexcept { return (status & kSatisfied) != 0; }
   constexpr bool violated() const noexcept { return (status & kViolated) != 0; }
@@ -34,6 +32,13 @@ struct Verdict {
   constexpr bool final() const noexcept { return (status & kFinal) != 0; }
 };
 
+/// The answer about one monitor after one step. Undecided: the numbers are NaN.
+struct Verdict : Status<uint32_t> {
+  float robustness = kMissing;  ///< rho; pessimistic where a sample is missing
+  float lower = kMissing;       ///< no continuation of the trace takes rho below this
+  float upper = kMissing;       ///< nor above this
+};
+
 static_assert(sizeof(Verdict) == 16, "a verdict is three floats and its status");
 
 /// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over every continuation.
@@ -41,8 +46,10 @@ inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;  // signs of keys: rho.low >= 0
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;   // rho.high < 0
   const uint32_t settled = (~static_cast<uint32_t>(lower) | static_cast<uint32_t>(upper)) >> 31;
-  return {float_of(rho.low), float_of(lower), float_of(upper),
-          satisfied | violated << 1 | Verdict::kDecided | settled << 3};
+  return {{satisfied | violated << 1 | Verdict::kDecided | settled << 3},
+          float_of(rho.low),
+          float_of(lower),
+          float_of(upper)};
 }
 
 /// About a position whose horizon has been seen: the only doubt left is a missing sample.
@@ -50,7 +57,21 @@ inline Verdict sliding_verdict(Value rho) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;
   const float low = float_of(rho.low);
-  return {low, low, float_of(rho.high), satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal};
+  return {{satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal}, low, low, float_of(rho.high)};
 }
+
+/// The answer of a Boolean monitor: the same questions, no numbers.
+using BooleanVerdict = Status<uint8_t>;
+
+static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
+
+inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noexcept {
+  const unsigned satisfied = holds.low ? BooleanVerdict::kSatisfied : 0u;
+  const unsigned violated = holds.high ? 0u : BooleanVerdict::kViolated;
+  const unsigned settled = surely || !perhaps ? BooleanVerdict::kFinal : 0u;
+  return {static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
+}
+
+inline BooleanVerdict sliding_verdict(Truth holds) noexcept { return prefix_verdict(holds, true, true); }
 
 }  // namespace etlmon
