@@ -101,6 +101,10 @@ struct Expr {
 
 enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
 
+/// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a formula's value is true
+/// (+inf) or false (-inf).
+enum class Values : std::uint8_t { robustness, boolean };
+
 enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional };
 
 struct Threshold {

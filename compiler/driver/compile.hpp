@@ -25,6 +25,7 @@ struct Compiled {
 struct Request {
     check::Options check;
     plan::Limits limits;
+    check::Values values = check::Values::robustness;
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
     bool standalone = false;  ///< the header with the runtime in it
@@ -33,7 +34,8 @@ struct Request {
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
 
 /// A model, as check/ gives it or made from such a one, through the stages after that.
-std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink);
+std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink,
+                                check::Values values = check::Values::robustness);
 
 /// The text of request.emit; nothing where there was an error. `dependencies`: every file that the spec loads.
 std::optional<std::string> emit(const source::File& file, const Request& request, diag::Sink& sink,

@@ -137,6 +137,13 @@ void add_common_options(CLI::App& app, Call& call) {
     app.add_option("--thresholds", call.request.check.thresholds_path,
                    "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
+    app.add_option("--values", call.request.values,
+                   "what monitors compute with; boolean: truth values, and only what can still change a verdict")
+        ->transform(
+            CLI::CheckedTransformer(std::map<std::string, check::Values>{{"robustness", check::Values::robustness},
+                                                                         {"boolean", check::Values::boolean}})
+                .description("robustness|boolean"))
+        ->default_str("robustness");
     app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")->capture_default_str();
     app.add_option("--max-code", call.request.limits.code_bytes, "most bytes of code, estimated, targets aside")
         ->capture_default_str();

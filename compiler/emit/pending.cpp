@@ -31,9 +31,10 @@ void print_part(Printer& out, const Context& context, const Pending& pending, co
     }
     const bool max = ir::takes_max(part.op);
     const std::string left = part.operands.size() == 2 ? names.parts[part.operands[0]] : "nullptr";
-    print_wrapped(out, fmt::format("etlmon::{}({}, {}, {}, {}, {}, {}, {});", max ? "pending_until" : "pending_release",
-                                   left, names.parts[part.operands.back()], array, names.count, part.interval.low,
-                                   part.interval.high, max ? context.high(part.unseen) : context.low(part.unseen)));
+    print_wrapped(out, fmt::format("etlmon::pending_at_each<etlmon::{}>({}, {}, {}, {}, {}, {}, {});",
+                                   max ? "Seeking" : "Guarding", left, names.parts[part.operands.back()], array,
+                                   names.count, part.interval.low, part.interval.high,
+                                   max ? context.high(part.unseen) : context.low(part.unseen)));
 }
 
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
@@ -43,12 +44,13 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const bool max = ir::takes_max(fold.op);
     const std::string left = fold.left == kNone ? "nullptr" : names.parts[fold.left];
     const std::string end = fold.interval.bounded() ? fmt::format("{}", fold.interval.high) : "etlmon::kWithoutEnd";
-    print_wrapped(out, fmt::format("const Reading {} = etlmon::{}({}, {}, {}, {}, {}, step_, {}, {}, {}, {});",
-                                   context.names.reading_local.at(r),
-                                   max ? "pending_until_from_start" : "pending_release_from_start",
-                                   context.names.reading_member.at(r), context.names.guard_member.at(r), left,
-                                   names.parts[fold.right], names.count, pending.horizon, fold.interval.low, end,
-                                   max ? context.high(fold.unseen) : context.low(fold.unseen)));
+    print_wrapped(
+        out,
+        fmt::format(
+            "const Reading {} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, step_, {}, {}, {}, {});",
+            context.names.reading_local.at(r), max ? "Seeking" : "Guarding", context.names.reading_member.at(r),
+            context.names.guard_member.at(r), left, names.parts[fold.right], names.count, pending.horizon,
+            fold.interval.low, end, max ? context.high(fold.unseen) : context.low(fold.unseen)));
 }
 
 void print_machine(Printer& out, const Context& context, std::uint32_t r) {
@@ -62,7 +64,7 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
         for (std::uint32_t part : pending.guards[g])
             literals.push_back(fmt::format("{}[{}]", names.parts[part], names.position));
         print_wrapped(out, fmt::format("{}[{}][{}] = {};", locals.guards, names.position, g,
-                                       literals.empty() ? "etlmon::kReadsTrue" : call("min", literals)));
+                                       literals.empty() ? "etlmon::settled(etlmon::kTrue)" : call("min", literals)));
     }
     out.close();
     print_machine_keys(out, context, r, pending.machine);
@@ -92,14 +94,14 @@ std::vector<Member> pending_members(const Context& context, std::uint32_t r) {
     for (std::size_t i = 0; i < pending.parts.size(); ++i) {
         const std::string& leaf = context.names.pending.at(r).leaves[i];
         if (leaf.empty()) continue;
-        result.push_back({fmt::format("etlmon::Recent<{}>", pending.horizon + 1), leaf,
+        result.push_back({fmt::format("etlmon::Recent<Value, {}>", pending.horizon + 1), leaf,
                           context.graph.text(pending.parts[i].node), leaf + ".reset();"});
     }
     const std::string& name = context.names.reading_member.at(r);
     if (!pending.is_fold) {
         result.push_back(
-            {fmt::format("etlmon::PendingMachine<{}, {}>", pending.machine.states.size(), pending.guards.size()), name,
-             text, name + ".reset();"});
+            {fmt::format("etlmon::PendingMachine<Value, {}, {}>", pending.machine.states.size(), pending.guards.size()),
+             name, text, name + ".reset();"});
         return result;
     }
     const bool max = ir::takes_max(pending.fold.op);

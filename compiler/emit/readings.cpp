@@ -339,7 +339,7 @@ std::vector<Member> reading_members(const Context& context) {
         if (member == context.names.reading_member.end()) continue;
         const std::string& name = member->second;
         if (is_table(reading)) {
-            result.push_back({fmt::format("etlmon::Machine<{}>", reading.machine.states.size()), name, text,
+            result.push_back({fmt::format("etlmon::Machine<Value, {}>", reading.machine.states.size()), name, text,
                               fmt::format("{}.reset();", name)});
             continue;
         }

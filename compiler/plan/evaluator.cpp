@@ -7,6 +7,7 @@
 #include "etlmon/delay.hpp"
 #include "etlmon/predicate.hpp"
 #include "etlmon/window.hpp"
+#include "plan/literals.hpp"
 
 namespace etlc::plan {
 
@@ -18,10 +19,6 @@ using etlmon::kTrue;
 namespace {
 
 constexpr Value kAnything{kBottom, kTop};
-
-Value key_range(check::Range range) {
-    return {etlmon::key_of(range.low), etlmon::key_of(range.high)};
-}
 
 std::uint32_t saturating_increment(std::uint32_t x) {
     return x == std::numeric_limits<std::uint32_t>::max() ? x : x + 1;
@@ -120,9 +117,7 @@ void Evaluator::measure_predicates() {
         if (present && predicate.plain_distance()) measured = distances_[predicate.expression.index];
         if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
         measured_[p] = measured;
-        const Value range = key_range(predicate.robustness);
-        literals_[p] = predicate.upper_bound() ? etlmon::at_most(measured.delta, predicate.threshold.value, range)
-                                               : etlmon::at_least(measured.delta, predicate.threshold.value, range);
+        literals_[p] = literal(predicate, measured.delta, plan_.values);
         missing |= std::isnan(measured.delta);
     }
     if (missing) missing_steps_ = saturating_increment(missing_steps_);

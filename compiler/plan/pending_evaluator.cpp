@@ -60,9 +60,9 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count, con
     const etlmon::Reading* right = parts_[part.operands.back()].data();
     const auto [low, high] = part.interval;
     if (ir::takes_max(part.op))
-        etlmon::pending_until(left, right, out.data(), count, low, high, streams[part.unseen].high);
+        etlmon::pending_at_each<etlmon::Seeking>(left, right, out.data(), count, low, high, streams[part.unseen].high);
     else
-        etlmon::pending_release(left, right, out.data(), count, low, high, streams[part.unseen].low);
+        etlmon::pending_at_each<etlmon::Guarding>(left, right, out.data(), count, low, high, streams[part.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count,
@@ -72,16 +72,16 @@ etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t
     const etlmon::Reading* right = parts_[fold.right].data();
     const auto [low, high] = fold.interval;
     if (ir::takes_max(fold.op))
-        return etlmon::pending_until_from_start(registers_[0], registers_[1], left, right, count, step,
-                                                pending_.horizon, low, high, streams[fold.unseen].high);
-    return etlmon::pending_release_from_start(registers_[0], registers_[1], left, right, count, step, pending_.horizon,
-                                              low, high, streams[fold.unseen].low);
+        return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left, right, count, step,
+                                                           pending_.horizon, low, high, streams[fold.unseen].high);
+    return etlmon::pending_from_start<etlmon::Guarding>(registers_[0], registers_[1], left, right, count, step,
+                                                        pending_.horizon, low, high, streams[fold.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
                                                   const std::vector<Value>& streams) {
     const std::size_t width = pending_.guards.size();
-    Readings guards(count * width, etlmon::kReadsTrue);
+    Readings guards(count * width, etlmon::settled(kTrue));
     for (std::uint32_t p = 0; p < count; ++p)
         for (std::size_t g = 0; g < width; ++g)
             for (std::uint32_t part : pending_.guards[g])

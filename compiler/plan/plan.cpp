@@ -45,11 +45,12 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
 
 class Planning {
 public:
-    Planning(ir::Program& program, const Limits& limits)
+    Planning(ir::Program& program, const Limits& limits, check::Values values)
         : program_(program),
-          streams_(program.graph, plan_.streams),
+          streams_(program.graph, plan_.streams, values),
           readings_(program.graph, streams_, plan_.readings, automaton_limits(limits)) {
         plan_.model = &program.graph.model();
+        plan_.values = values;
     }
 
     /// False where a monitor is too large; the sink then says which part.
@@ -177,8 +178,8 @@ void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
 
 }  // namespace
 
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink) {
-    Planning planning(program, limits);
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values) {
+    Planning planning(program, limits, values);
     bool complete = true;
     for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;

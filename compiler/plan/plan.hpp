@@ -173,6 +173,7 @@ struct Cost {
 
 struct Plan {
     const check::Model* model = nullptr;
+    check::Values values = check::Values::robustness;
     std::vector<Index> inputs;  ///< that some monitor depends on, in order of declaration
     std::vector<Index> targets;
     std::vector<Index> distances;
@@ -193,7 +194,8 @@ struct Limits {
 };
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink);
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
+                         check::Values values = check::Values::robustness);
 
 /// A plan without monitors: the evaluator then only measures these predicates, as it does for monitors that use them.
 Plan measuring(const check::Model& model, const std::vector<Index>& predicates);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cassert>
 
+#include "plan/literals.hpp"
+
 namespace etlc::plan {
 
 namespace {
@@ -15,10 +17,6 @@ using ir::Node;
 using ir::Op;
 
 constexpr Value kAnything{kBottom, kTop};
-
-Value outward(check::Range range) {
-    return {etlmon::key_of(range.low), etlmon::key_of(range.high)};
-}
 
 bool equal(Value a, Value b) {
     return a.low == b.low && a.high == b.high;
@@ -231,7 +229,7 @@ Slot StreamBuilder::unseen(NodeId id) {
         case Op::constant_false: slot = constant(kFalse); break;
         case Op::flag: slot = constant(kAnything); break;
         case Op::predicate: {
-            const Value range = outward(graph_.model().predicates[node.index].robustness);
+            const Value range = unseen_range(graph_.model().predicates[node.index], values_);
             slot = constant(node.negated ? negate(range) : range);
             break;
         }

@@ -14,7 +14,8 @@ namespace etlc::plan {
 
 class StreamBuilder {
 public:
-    StreamBuilder(const ir::Graph& graph, std::vector<Stream>& streams) : graph_(graph), streams_(streams) {}
+    StreamBuilder(const ir::Graph& graph, std::vector<Stream>& streams, check::Values values)
+        : graph_(graph), streams_(streams), values_(values) {}
 
     /// The stream of rho(node, k, i) at k = i - lag, lag = the node's horizon, which is bounded.
     Slot of(NodeId node);
@@ -50,6 +51,7 @@ private:
 
     const ir::Graph& graph_;
     std::vector<Stream>& streams_;
+    check::Values values_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
     using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t,

@@ -9,25 +9,47 @@
 namespace etlc::reference {
 namespace {
 
+using check::Values;
+
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Unseen negate(const Unseen& range) {
     return {-range.highest, -range.lowest};
 }
 
+bool holds(const check::Predicate& predicate, double delta) {
+    const double epsilon = predicate.threshold.value;
+    switch (predicate.comparison) {
+        case check::Comparison::less_equal: return delta <= epsilon;
+        case check::Comparison::less: return delta < epsilon;
+        case check::Comparison::greater_equal: return delta >= epsilon;
+        case check::Comparison::greater: return delta > epsilon;
+    }
+    return false;
+}
+
+double truth(bool holds) {
+    return holds ? kInfinity : -kInfinity;
+}
+
 /// "for a predicate its range [...]"; "a bool has robustness +inf or -inf".
-Unseen range_of(const check::Model& model, const Node& atom) {
+Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     Unseen range{-kInfinity, kInfinity};
     if (atom.kind == Node::Kind::predicate) {
-        const check::Range& robustness = model.predicates[atom.index].robustness;
-        range = {robustness.low, robustness.high};
+        const check::Predicate& predicate = model.predicates[atom.index];
+        range = {predicate.robustness.low, predicate.robustness.high};
+        if (values == Values::boolean) {  // a comparison is true on one side only
+            const bool at_low = holds(predicate, predicate.delta.low);
+            const bool at_high = holds(predicate, predicate.delta.high);
+            range = {truth(at_low && at_high), truth(at_low || at_high)};
+        }
     }
     return atom.negated ? negate(range) : range;
 }
 
 /// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is unknown.
 std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
-                             const std::vector<Telemetry>& telemetry) {
+                             const std::vector<Telemetry>& telemetry, Values values) {
     if (atom.kind == Node::Kind::boolean) {
         if (samples[atom.index].empty()) return {};
         return samples[atom.index][0] != 0 ? kInfinity : -kInfinity;
@@ -36,6 +58,7 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     const double delta = telemetry[atom.index].delta;
     const double epsilon = predicate.threshold.value;
     if (delta != delta) return {};
+    if (values == Values::boolean) return truth(holds(predicate, delta));
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
 }
 
@@ -73,8 +96,8 @@ Verdict sliding_verdict(const Value& value) {
 
 class Evaluation {
 public:
-    Evaluation(const check::Model& model, const Trace& trace)
-        : model_(model), form_(normal_form(model)), samples_(accept(model, trace)) {
+    Evaluation(const check::Model& model, const Trace& trace, Values values)
+        : model_(model), values_(values), form_(normal_form(model)), samples_(accept(model, trace)) {
         for (const check::Monitor& monitor : model.monitors)
             horizons_.push_back(monitor.sliding ? horizon(model, monitor.formula) : 0);
     }
@@ -89,6 +112,7 @@ public:
 
 private:
     const check::Model& model_;
+    Values values_;
     NormalForm form_;
     std::vector<Samples> samples_;
     std::vector<std::uint64_t> horizons_;
@@ -116,9 +140,9 @@ private:
         for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
             const Node& node = form_.nodes[n];
             if (!node.is_atom()) continue;
-            literals_.ranges[n] = range_of(model_, node);
+            literals_.ranges[n] = range_of(model_, node, values_);
             for (std::size_t step = 0; step < samples_.size(); ++step) {
-                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step]);
+                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step], values_);
                 literals_.values[n].push_back(literal(rho, node.negated, literals_.ranges[n]));
                 if (!rho) lacking[step] = true;
             }
@@ -163,8 +187,8 @@ private:
 
 }  // namespace
 
-Run evaluate(const check::Model& model, const Trace& trace) {
-    return Evaluation(model, trace).run();
+Run evaluate(const check::Model& model, const Trace& trace, Values values) {
+    return Evaluation(model, trace, values).run();
 }
 
 }  // namespace etlc::reference

@@ -45,6 +45,8 @@ struct Run {
     std::uint32_t missing_steps = 0;
 };
 
-Run evaluate(const check::Model& model, const Trace& trace);
+/// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest and highest unseen
+/// value are what its comparison can say over the range of its expression.
+Run evaluate(const check::Model& model, const Trace& trace, check::Values values = check::Values::robustness);
 
 }  // namespace etlc::reference

@@ -38,11 +38,11 @@ reference::Verdict observed(const etlmon::Verdict& verdict) {
     return result;
 }
 
-PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits) : model_(model) {
+PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits, check::Values values) : model_(model) {
     ir::Program program = ir::lower(model);
     opt::optimise(program);
     diag::Sink sink;
-    plan_ = plan::plan(program, limits, sink);
+    plan_ = plan::plan(program, limits, sink, values);
     for (const diag::Diagnostic& diagnostic : sink.sorted())
         if (diagnostic.severity() == diag::Severity::error)
             refusal_ += std::string(refusal_.empty() ? "" : " ") + std::string(diag::info(diagnostic.code).code);

@@ -16,7 +16,8 @@ namespace etlc::tests {
 class PlanRunner {
 public:
     /// The model must outlive the runner. `limits` as `etlc` takes them.
-    explicit PlanRunner(const check::Model& model, const plan::Limits& limits = {});
+    explicit PlanRunner(const check::Model& model, const plan::Limits& limits = {},
+                        check::Values values = check::Values::robustness);
 
     /// Empty where the spec was planned; else the codes of the errors, separated by spaces.
     const std::string& refusal() const { return refusal_; }

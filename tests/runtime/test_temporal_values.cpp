@@ -168,7 +168,7 @@ TEST(TemporalVerdict, EverySlidingVerdict) {
     for (const Key low : kKeys)
         for (const Key high : kKeys) {
             if (low > high) continue;
-            const Verdict verdict = etlmon::sliding_verdict({low, high});
+            const Verdict verdict = etlmon::sliding_verdict(Value{low, high});
             ASSERT_EQ(etlmon::key_of(verdict.robustness), low);
             ASSERT_EQ(etlmon::key_of(verdict.lower), low);
             ASSERT_EQ(etlmon::key_of(verdict.upper), high);

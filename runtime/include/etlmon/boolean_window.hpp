@@ -92,7 +92,9 @@ class Window<Trigger<Truth>, N> {
   using Element = typename Window<Since<Truth>, N>::Element;
 
   void reset() noexcept { failed_.reset(); }
-  Element push(Span<Truth> now) noexcept { return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)}; }
+  Element push(Span<Truth> now) noexcept {
+    return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
+  }
 
  private:
   Window<Since<Truth>, N> failed_;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Measuring only what a verdict still depends on.
-// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a step, and "and", "or"
-// and "not" of such values, which ask their operands from left to right and stop at the first that decides.
-// Keeps true: a value is found out at most once; what comes out is the min, max or negation of all operands, asked or
-// not: kNo decides a min and kYes a max whatever the others are.
+// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a step, and "and",
+// "or" and "not" of such values, which ask their operands from left to right and stop at the first that decides. Keeps
+// true: a value is found out at most once; what comes out is the min, max or negation of all operands, asked or not:
+// kNo decides a min and kYes a max whatever the others are.
 #pragma once
 
 #include "etlmon/truth.hpp"

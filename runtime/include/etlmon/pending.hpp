@@ -38,6 +38,14 @@ class Recent {
   V values_[N];
 };
 
+namespace detail {
+/// A parameter that follows the others' type: nullptr may stand for it.
+template <class T>
+struct As {
+  using Type = T;
+};
+}  // namespace detail
+
 /// The two senses of a future operator. F and U seek: the best over a window, and beyond its end something better may
 /// come.
 struct Seeking {
@@ -109,7 +117,8 @@ void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
 /// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F and G.
 /// unseen: the highest, or lowest, unseen value of g.
 template <class Sense, class R, class End>
-void pending_at_each(const R* f, const R* g, R* out, uint32_t n, uint32_t low, uint32_t high, End unseen) noexcept {
+void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n, uint32_t low, uint32_t high,
+                     End unseen) noexcept {
   for (uint32_t p = 0; p < n; ++p) {
     R best = Sense::template nothing<R>();
     R held = Sense::template all<R>();
@@ -127,8 +136,9 @@ void pending_at_each(const R* f, const R* g, R* out, uint32_t n, uint32_t low, u
 /// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them, the last at `step`.
 /// best and held: the operator and its left side up to the last settled position; both are moved on by one.
 template <class Sense, class V, class End>
-BasicReading<V> pending_from_start(V& best, V& held, const BasicReading<V>* f, const BasicReading<V>* g, uint32_t n,
-                                   uint32_t step, uint32_t horizon, uint32_t low, uint32_t high, End unseen) noexcept {
+BasicReading<V> pending_from_start(V& best, V& held, const typename detail::As<BasicReading<V>>::Type* f,
+                                   const BasicReading<V>* g, uint32_t n, uint32_t step, uint32_t horizon, uint32_t low,
+                                   uint32_t high, End unseen) noexcept {
   const auto open = [&](uint32_t position) { return low <= position && position <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;

@@ -43,18 +43,19 @@ struct Lattice<Truth> {
 constexpr Truth truth_of(bool yes) noexcept { return yes ? kYes : kNo; }
 constexpr Truth truth_of(Flag flag) noexcept { return flag.present() ? truth_of(flag.value()) : kPerhaps; }
 
-/// The comparison itself decides, on keys: exact under any compiler flags. A NaN delta is unknown.
-ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon) noexcept {
-  return is_nan(delta) ? kPerhaps : truth_of(key_of(delta) <= key_of(epsilon));
+/// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is unknown: `range`,
+/// all that it may come to.
+ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) <= key_of(epsilon));
 }
-ETLMON_INLINE Truth is_below(const float& delta, const float& epsilon) noexcept {
-  return is_nan(delta) ? kPerhaps : truth_of(key_of(delta) < key_of(epsilon));
+ETLMON_INLINE Truth is_below(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) < key_of(epsilon));
 }
-ETLMON_INLINE Truth is_at_least(const float& delta, const float& epsilon) noexcept {
-  return is_nan(delta) ? kPerhaps : truth_of(key_of(delta) >= key_of(epsilon));
+ETLMON_INLINE Truth is_at_least(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) >= key_of(epsilon));
 }
-ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon) noexcept {
-  return is_nan(delta) ? kPerhaps : truth_of(key_of(delta) > key_of(epsilon));
+ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) > key_of(epsilon));
 }
 
 }  // namespace etlmon

@@ -12,44 +12,55 @@
 
 namespace etlmon {
 
-/// What can be asked about one monitor after one step, in bits. Undecided: every question but decided() is moot.
-template <class Word>
-struct Status {
-  static constexpr Word kSatisfied = 1;
-  static constexpr Word kViolated = 2;
-  static constexpr Word kDecided = 4;
-  static constexpr Word kFinal = 8;
+/// What can be asked about one monitor after one step; Self has `status`, of the bits below. Undecided: every question
+/// but decided() is moot.
+template <class Self>
+struct Answers {
+  static constexpr uint8_t kSatisfied = 1;
+  static constexpr uint8_t kViolated = 2;
+  static constexpr uint8_t kDecided = 4;
+  static constexpr uint8_t kFinal = 8;
 
-  Word status = 0;  ///< of the bits above
-
-  constexpr bool satisfied() const noexcept { return (status & kSatisfied) != 0; }
-  constexpr bool violated() const noexcept { return (status & kViolated) != 0; }
+  constexpr bool satisfied() const noexcept { return has(kSatisfied); }
+  constexpr bool violated() const noexcept { return has(kViolated); }
   /// A missing sample leaves it open.
-  constexpr bool unknown() const noexcept { return (status & (kSatisfied | kViolated | kDecided)) == kDecided; }
+  constexpr bool unknown() const noexcept { return decided() && !satisfied() && !violated(); }
   /// False only before a sliding monitor has seen its horizon.
-  constexpr bool decided() const noexcept { return (status & kDecided) != 0; }
+  constexpr bool decided() const noexcept { return has(kDecided); }
   /// No continuation of the trace changes it between satisfied and violated.
-  constexpr bool final() const noexcept { return (status & kFinal) != 0; }
+  constexpr bool final() const noexcept { return has(kFinal); }
+
+ private:
+  constexpr bool has(uint8_t bit) const noexcept { return (static_cast<const Self*>(this)->status & bit) != 0; }
 };
 
 /// The answer about one monitor after one step. Undecided: the numbers are NaN.
-struct Verdict : Status<uint32_t> {
+struct Verdict : Answers<Verdict> {
   float robustness = kMissing;  ///< rho; pessimistic where a sample is missing
   float lower = kMissing;       ///< no continuation of the trace takes rho below this
   float upper = kMissing;       ///< nor above this
+  uint32_t status = 0;          ///< bits of Answers
 };
 
 static_assert(sizeof(Verdict) == 16, "a verdict is three floats and its status");
+
+/// The answer of a Boolean monitor: the same questions, no numbers.
+struct BooleanVerdict : Answers<BooleanVerdict> {
+  uint8_t status = 0;  ///< bits of Answers
+};
+
+static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
 
 /// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over every continuation.
 inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;  // signs of keys: rho.low >= 0
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;   // rho.high < 0
   const uint32_t settled = (~static_cast<uint32_t>(lower) | static_cast<uint32_t>(upper)) >> 31;
-  return {{satisfied | violated << 1 | Verdict::kDecided | settled << 3},
+  return {{},
           float_of(rho.low),
           float_of(lower),
-          float_of(upper)};
+          float_of(upper),
+          satisfied | violated << 1 | Verdict::kDecided | settled << 3};
 }
 
 /// About a position whose horizon has been seen: the only doubt left is a missing sample.
@@ -57,19 +68,14 @@ inline Verdict sliding_verdict(Value rho) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;
   const float low = float_of(rho.low);
-  return {{satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal}, low, low, float_of(rho.high)};
+  return {{}, low, low, float_of(rho.high), satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal};
 }
-
-/// The answer of a Boolean monitor: the same questions, no numbers.
-using BooleanVerdict = Status<uint8_t>;
-
-static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
 
 inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noexcept {
   const unsigned satisfied = holds.low ? BooleanVerdict::kSatisfied : 0u;
   const unsigned violated = holds.high ? 0u : BooleanVerdict::kViolated;
   const unsigned settled = surely || !perhaps ? BooleanVerdict::kFinal : 0u;
-  return {static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
+  return {{}, static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
 }
 
 inline BooleanVerdict sliding_verdict(Truth holds) noexcept { return prefix_verdict(holds, true, true); }

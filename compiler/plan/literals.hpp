@@ -1,0 +1,19 @@
+// What predicates come to as values: in robustness, or in truth values.
+// Takes: a predicate and its delta. Gives: the value that its literal has at this step, and the one that stands for all
+// it may come to. Keeps true: truth values are +inf and -inf, so that everything above works on one type; a NaN delta
+// is unknown, which is the whole range.
+#pragma once
+
+#include "check/model.hpp"
+#include "etlmon/value.hpp"
+
+namespace etlc::plan {
+
+/// The lowest and highest value of a predicate: the range of its robustness or, in truth values, what its comparison
+/// can say over the range of its expression.
+etlmon::Value unseen_range(const check::Predicate& predicate, check::Values values);
+
+/// The value of a predicate whose distance or expression came to delta.
+etlmon::Value literal(const check::Predicate& predicate, float delta, check::Values values);
+
+}  // namespace etlc::plan
