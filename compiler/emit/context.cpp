@@ -1,5 +1,6 @@
 #include "emit/context.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace etlc::emit {
@@ -49,21 +50,15 @@ std::string float_literal(float x) {
     return text + "f";
 }
 
-std::string key_literal(plan::Key key) {
-    if (key == etlmon::kTop) return "etlmon::kTop";
-    if (key == etlmon::kBottom) return "etlmon::kBottom";
-    return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
-}
-
-std::string value_literal(plan::Value value) {
-    if (value.low == value.high && value.low == etlmon::kTop) return "etlmon::kTrue";
-    if (value.low == value.high && value.low == etlmon::kBottom) return "etlmon::kFalse";
-    return fmt::format("Value{{{}, {}}}", key_literal(value.low), key_literal(value.high));
-}
-
-std::string call(std::string_view function, const std::vector<std::string>& arguments) {
-    if (arguments.size() == 1) return arguments.front();
-    std::string text;
+std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy) {
+    std::string text = arguments.front();
+    if (arguments.size() == 1) return text;
+    if (lazy) {
+        for (std::size_t i = 1; i < arguments.size(); ++i)
+            text = fmt::format("{}({}, {})", function, text, arguments[i]);
+        return text;
+    }
+    text.clear();
     for (const std::string& argument : arguments) text += (text.empty() ? "" : ", ") + argument;
     return fmt::format("{}({})", function, text);
 }
@@ -93,23 +88,83 @@ void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::s
         out.line(comment.empty() ? declaration : fmt::format("{:<{}}  // {}", declaration, width, comment));
 }
 
+std::string Context::literal(plan::Key key) const {
+    if (key == etlmon::kTop) return spelling.top;
+    if (key == etlmon::kBottom) return spelling.bottom;
+    return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
+}
+
+std::string Context::literal(plan::Value value) const {
+    if (value.low == value.high && value.low == etlmon::kTop) return spelling.yes;
+    if (value.low == value.high && value.low == etlmon::kBottom) return spelling.no;
+    if (boolean()) return "etlmon::kPerhaps";
+    return fmt::format("Value{{{}, {}}}", literal(value.low), literal(value.high));
+}
+
+bool Context::lazy(plan::Slot slot) const {
+    if (!boolean()) return false;
+    const plan::Stream& stream = plan.streams[slot];
+    switch (stream.op) {
+        case StreamOp::predicate:
+        case StreamOp::flag: return true;
+        case StreamOp::negation:
+        case StreamOp::conjunction:
+        case StreamOp::disjunction:
+        case StreamOp::within:
+            return std::any_of(stream.operands.begin(), stream.operands.end(),
+                               [&](plan::Slot operand) { return lazy(operand); });
+        default: return false;
+    }
+}
+
+std::uint64_t Context::work(plan::Slot slot) const {
+    const plan::Stream& stream = plan.streams[slot];
+    if (!lazy(slot)) return 0;
+    if (stream.op == StreamOp::predicate) return plan::measured_elements(model, stream.index);
+    std::uint64_t sum = 0;
+    for (plan::Slot operand : stream.operands) sum += work(operand);
+    return sum;
+}
+
+std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {
+    if (boolean())
+        std::stable_sort(slots.begin(), slots.end(), [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
+    return slots;
+}
+
 std::string Context::value(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    if (stream.op == StreamOp::constant) return value_literal(stream.value);
-    if (stream.op == StreamOp::predicate) return "now." + names.predicate_atom.at(stream.index);
-    if (stream.op == StreamOp::flag) return "now." + names.flag_atom.at(stream.index);
+    const std::string now = boolean() ? "" : "now.";
+    if (stream.op == StreamOp::constant) return literal(stream.value);
+    if (stream.op == StreamOp::predicate) return now + names.predicate_atom.at(stream.index);
+    if (stream.op == StreamOp::flag) return now + names.flag_atom.at(stream.index);
     if (is_register(stream.op)) return names.stream_member.at(slot);
     return names.stream_local.at(slot);
 }
 
 std::string Context::low(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    return stream.op == StreamOp::constant ? key_literal(stream.value.low) : value(slot) + ".low";
+    return stream.op == StreamOp::constant ? literal(stream.value.low) : value(slot) + ".low";
 }
 
 std::string Context::high(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    return stream.op == StreamOp::constant ? key_literal(stream.value.high) : value(slot) + ".high";
+    return stream.op == StreamOp::constant ? literal(stream.value.high) : value(slot) + ".high";
+}
+
+std::string reading_declaration(const Context& context, std::uint32_t reading) {
+    const bool declared = context.boolean() && context.plan.readings[reading].operands.empty();
+    return (declared ? "" : "const Reading ") + context.names.reading_local.at(reading);
+}
+
+std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors) {
+    std::string text;
+    for (std::size_t m : monitors) {
+        const auto open = context.names.open_local.find(m);
+        if (open == context.names.open_local.end()) return "";
+        text += (text.empty() ? "" : " || ") + open->second;
+    }
+    return text;
 }
 
 std::string Context::place(source::Span span) const {

@@ -9,9 +9,21 @@
 #include "emit/names.hpp"
 #include "emit/printer.hpp"
 #include "plan/budget.hpp"
+#include "plan/dependents.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::emit {
+
+/// How constants are spelt: of robustness, or of truth.
+struct Spelling {
+    std::string yes = "etlmon::kTrue";
+    std::string no = "etlmon::kFalse";
+    std::string top = "etlmon::kTop";  ///< one end of them
+    std::string bottom = "etlmon::kBottom";
+};
+inline Spelling truth_spelling() {
+    return {"etlmon::kYes", "etlmon::kNo", "true", "false"};
+}
 
 struct Context {
     const plan::Plan& plan;
@@ -20,7 +32,18 @@ struct Context {
     Names names;
     std::string spec_file;  ///< file name without folders
     std::string name_space;
+    Spelling spelling;
+    plan::Dependents dependents;
 
+    bool boolean() const { return plan.values == check::Values::boolean; }
+    std::string literal(plan::Value value) const;
+    std::string literal(plan::Key key) const;
+    /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
+    bool lazy(plan::Slot slot) const;
+    /// Target elements that a lazy stream may have to measure.
+    std::uint64_t work(plan::Slot slot) const;
+    /// In a Boolean monitor, the cheapest to find out first; else as they are.
+    std::vector<plan::Slot> by_work(std::vector<plan::Slot> slots) const;
     /// `now.at_a`, a local, a register or a constant: what stands for the stream in judge().
     std::string value(plan::Slot slot) const;
     /// The low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
@@ -35,27 +58,32 @@ struct Context {
 std::string open_condition(ir::Interval interval);
 /// A float32 literal that reads back to the same bits: "0.31f".
 std::string float_literal(float x);
-std::string key_literal(plan::Key key);
-std::string value_literal(plan::Value value);
 /// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four spaces deeper.
 void print_wrapped(Printer& out, const std::string& text);
 /// Declarations with their comments in one column.
 void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations);
-/// "max(a, b, c)"; of one argument, that argument.
-std::string call(std::string_view function, const std::vector<std::string>& arguments);
+/// "max(a, b, c)"; of one argument, that argument. Where some are lazy, "max(max(a, b), c)".
+std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy = false);
 
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);
 void print_inputs_and_verdicts(Printer& out, const Context& context);
 void print_constants(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
+void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
+/// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is judged.
+void print_advance(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);
 /// Of machines as tables: the lists of keys that say what the states are worth, as locals.
 void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading, const plan::Machine& machine);
+/// What the reading's value is assigned to: a Boolean monitor has declared it before it asks whether to compute it.
+std::string reading_declaration(const Context& context, std::uint32_t reading);
+/// "reach_open || avoid_open"; empty where one of the monitors is sliding, or the class is not Boolean: always.
+std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
 std::string table_name(const Context& context, std::uint32_t reading);
 
 /// A data member of the class: its declaration and how reset() sets it.

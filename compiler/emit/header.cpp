@@ -35,7 +35,8 @@ bool waits(const plan::Reading& reading) {
 
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
-    std::set<std::string> headers{"predicate", "reading", "verdict", "version", "views"};
+    const bool boolean = context.boolean();
+    std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version", "views"};
     if (!plan.distances.empty()) headers.insert("kernel");
     for (Index p : plan.predicates)
         if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
@@ -44,11 +45,11 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("storage");
         if (input.hold > 0) headers.insert("hold");
     }
-    if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert("delay");
+    if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert(boolean ? "boolean_window" : "delay");
     if (any_stream(plan, {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since, StreamOp::window_trigger,
                           StreamOp::window_until, StreamOp::window_release}) ||
         std::any_of(plan.readings.begin(), plan.readings.end(), waits))
-        headers.insert("window");
+        headers.insert(boolean ? "boolean_window" : "window");
     if (!context.names.table_locals.empty()) headers.insert("machine");
     if (!context.names.pending.empty()) headers.insert("pending");
     return headers;
@@ -74,6 +75,16 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
 
 // ---- the class
 
+std::vector<Member> telemetry_members(const Context& context) {
+    std::vector<Member> result;
+    for (const auto& [p, name] : context.names.predicate_member) {
+        const bool plain = context.model.predicates[p].plain_distance();
+        result.push_back({plain ? "etlmon::Measured" : "float", name, "telemetry",
+                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing")});
+    }
+    return result;
+}
+
 std::vector<Member> own_members(const Context& context) {
     const plan::Plan& plan = context.plan;
     std::vector<Member> result;
@@ -85,13 +96,13 @@ std::vector<Member> own_members(const Context& context) {
         result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second,
                           fmt::format("the last {} that was there", input.name), held->second + ".reset();"});
     }
-    for (const auto& [p, name] : context.names.predicate_member) {
-        const bool plain = context.model.predicates[p].plain_distance();
-        result.push_back({plain ? "etlmon::Measured" : "float", name, "telemetry",
-                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing")});
-    }
+    const std::vector<Member> telemetry = telemetry_members(context);
+    result.insert(result.end(), telemetry.begin(), telemetry.end());
     for (const auto& [m, name] : context.names.verdict_member)
         result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();"});
+    if (context.boolean())
+        result.push_back({"Verdicts", context.names.verdicts_member, "the last ones; final ones stay",
+                          context.names.verdicts_member + " = Verdicts();"});
     if (plan.counts_steps) result.push_back({"uint32_t", "step_", "index of the step; saturates", "step_ = 0;"});
     if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "calls of finish()", "finished_ = 0;"});
     result.push_back({"uint32_t", "missing_steps_", "saturates", "missing_steps_ = 0;"});
@@ -134,6 +145,13 @@ void print_atoms(Printer& out, const Context& context) {
     out.line();
 }
 
+void print_boolean_step(Printer& out, const Context& context) {
+    out.open("Verdicts step(const Inputs& in) noexcept {");
+    for (const Member& member : telemetry_members(context)) out.line(member.reset);
+    out.line("return advance(in);");
+    out.close();
+}
+
 void print_public_part(Printer& out, const Context& context, const std::vector<Member>& all) {
     const plan::Cost& cost = context.plan.cost;
     out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)", cost.state_bytes);
@@ -151,7 +169,10 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     out.close();
     out.line();
     out.line("/// One call, one time step.");
-    out.line("Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }");
+    if (context.boolean())
+        print_boolean_step(out, context);
+    else
+        out.line("Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }");
     out.line();
     if (context.plan.has_sliding) {
         out.line(
@@ -162,19 +183,19 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
             "verdict.");
         out.open("Verdicts finish() noexcept {");
         out.line("if (finished_ != 0xffffffffu) ++finished_;");
-        out.line("return judge(Atoms());");
+        out.line(context.boolean() ? "return advance(Inputs());" : "return judge(Atoms());");
         out.close();
         out.line();
     }
     if (!context.names.predicate_member.empty()) {
-        out.line(
-            "/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside "
-            "its");
-        out.line("/// threshold, and the row of the nearest target.");
+        out.line("/// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown{}",
+                 context.boolean() ? " or not asked for," : ", beside its");
+        out.line("/// {}threshold, and the row of the nearest target.", context.boolean() ? "beside its " : "");
         print_telemetry(out, context);
         out.line();
     }
-    out.line("/// Steps on which some predicate or bool input was unknown; saturates.");
+    out.line("/// Steps on which some predicate or bool input {}was unknown; saturates.",
+             context.boolean() ? "that was asked for " : "");
     out.line("uint32_t missing_steps() const noexcept { return missing_steps_; }");
 }
 
@@ -186,15 +207,20 @@ void print_class(Printer& out, const Context& context) {
     print_public_part(out, context, all);
     out.line();
     out.label("private:");
-    out.line("using Value = etlmon::Value;");
-    out.line("using Key = etlmon::Key;");
-    out.line("using Reading = etlmon::Reading;");
+    const bool boolean = context.boolean();
+    out.line("using Value = etlmon::{};", boolean ? "Truth" : "Value");
+    out.line("using Key = {};", boolean ? "bool" : "etlmon::Key");
+    out.line("using Reading = etlmon::{};", boolean ? "BasicReading<Value>" : "Reading");
     out.line();
-    print_atoms(out, context);
+    if (!boolean) print_atoms(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
-    print_measure(out, context);
-    out.line();
-    print_judge(out, context);
+    if (boolean) {
+        print_advance(out, context);
+    } else {
+        print_measure(out, context);
+        out.line();
+        print_judge(out, context);
+    }
     out.line();
     std::vector<std::pair<std::string, std::string>> lines;
     for (const Member& member : all)
@@ -205,23 +231,35 @@ void print_class(Printer& out, const Context& context) {
     out.line();
 }
 
+/// Members of a Boolean class that are made of bytes.
+bool is_bytes(const Member& member) {
+    return member.type == "Value" || member.type == "Verdicts" ||
+           member.type.find("PendingMachine") != std::string::npos;
+}
+
 }  // namespace
 
 std::vector<Member> members(const Context& context) {
     std::vector<Member> all = reading_members(context);
     for (const std::vector<Member>& more : {stream_members(context), own_members(context)})
         all.insert(all.end(), more.begin(), more.end());
+    // Words before bytes: no padding but at the end.
+    std::stable_partition(all.begin(), all.end(),
+                          [&](const Member& member) { return !context.boolean() || !is_bytes(member); });
     return all;
 }
 
 std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
     const check::Model& model = *plan.model;
+    const bool boolean = plan.values == check::Values::boolean;
     const Context context{plan,
                           graph,
                           model,
                           make_names(plan, graph),
                           file_name(model.file.path()),
-                          options.name_space.empty() ? model.name : options.name_space};
+                          options.name_space.empty() ? model.name : options.name_space,
+                          boolean ? truth_spelling() : Spelling(),
+                          plan::dependents(plan)};
     Printer out;
     out.line("// Made by etlc {} from {}: change that, and run etlc again.", options.version, context.spec_file);
     print_summary(out, context);

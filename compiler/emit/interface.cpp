@@ -75,8 +75,9 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
-        verdicts.emplace_back(fmt::format("etlmon::Verdict {};", monitor.name),
-                              context.place(context.model.monitors[monitor.index].span));
+        verdicts.emplace_back(
+            fmt::format("etlmon::{} {};", context.boolean() ? "BooleanVerdict" : "Verdict", monitor.name),
+            context.place(context.model.monitors[monitor.index].span));
     print_aligned(out, verdicts);
     out.close("};");
     out.line();

@@ -14,10 +14,21 @@ std::string verdict(const Context& context, std::size_t m) {
     return fmt::format("etlmon::prefix_verdict({})", context.names.reading_local.at(monitor.reading));
 }
 
+/// In a Boolean monitor: computed while some verdict can still change.
+void print_reading_while_open(Printer& out, const Context& context, std::uint32_t r) {
+    const plan::Reading& reading = context.plan.readings[r];
+    if (!reading.operands.empty()) return print_reading(out, context, r);  // of others: nothing is asked for
+    out.line("Reading {}{{}};", context.names.reading_local.at(r));
+    out.open(fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
+    print_reading(out, context, r);
+    out.close();
+}
+
 void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
-    const bool ends = plan.has_sliding;  // prefixes do not grow while finish() reports the last positions
+    const bool ends =
+        plan.has_sliding && !context.boolean();  // prefixes do not grow while finish() reports the last positions
     if (ends) {
         out.gap();
         out.open("if (finished_ == 0) {");
@@ -25,7 +36,7 @@ void print_readings(Printer& out, const Context& context) {
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
         out.line("// {}", context.place(plan.readings[r].node));
-        print_reading(out, context, r);
+        context.boolean() ? print_reading_while_open(out, context, r) : print_reading(out, context, r);
     }
     if (!ends) return;
     for (const auto& [m, name] : context.names.verdict_member)
@@ -33,7 +44,50 @@ void print_readings(Printer& out, const Context& context) {
     out.close();
 }
 
+/// The answers so far, with those that can still change brought up to date.
+void print_open_verdicts(Printer& out, const Context& context) {
+    const std::string& kept = context.names.verdicts_member;
+    for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
+        const plan::Monitor& monitor = context.plan.monitors[m];
+        if (monitor.sliding)
+            print_wrapped(
+                out, fmt::format("{}.{} = exists({}) ? etlmon::sliding_verdict({}) : etlmon::BooleanVerdict();", kept,
+                                 monitor.name, monitor.horizon, context.value(monitor.stream)));
+        else
+            print_wrapped(
+                out, fmt::format("if ({}) {}.{} = etlmon::prefix_verdict({});", context.names.open_local.at(m), kept,
+                                 monitor.name, context.names.reading_local.at(monitor.reading)));
+    }
+}
+
 }  // namespace
+
+void print_advance(Printer& out, const Context& context) {
+    const plan::Plan& plan = context.plan;
+    out.line(
+        "/// One step of every formula: min is \"and\", max is \"or\". A predicate is measured when a verdict that "
+        "can");
+    out.line("/// still change first depends on it; min and max ask from left to right and stop where one decides.");
+    out.open(fmt::format("Verdicts advance({}const Inputs& in) noexcept {{",
+                         plan.inputs.empty() ? "[[maybe_unused]] " : ""));
+    out.line("using etlmon::max;");
+    out.line("using etlmon::min;");
+    out.line("bool missing = false;");
+    print_atoms_on_demand(out, context);
+    out.gap();
+    for (const auto& [m, open] : context.names.open_local)
+        out.line("const bool {} = {}!{}.{}.final();", open, plan.has_sliding ? "finished_ == 0 && " : "",
+                 context.names.verdicts_member, plan.monitors[m].name);
+    out.gap();
+    print_streams(out, context);
+    print_readings(out, context);
+    out.gap();
+    print_open_verdicts(out, context);
+    out.line("if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;");
+    if (plan.counts_steps) out.line("if (step_ != 0xffffffffu) ++step_;");
+    out.line("return {};", context.names.verdicts_member);
+    out.close();
+}
 
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;

@@ -1,6 +1,8 @@
-// measure(): from the samples of a step to the robustness of every predicate.
+// measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor the same samples and
+// predicates, each found out when a verdict first depends on it (etlmon/demand.hpp).
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
+#include "plan/literals.hpp"
 
 namespace etlc::emit {
 
@@ -10,12 +12,22 @@ using check::Expr;
 using check::Index;
 using check::InputType;
 
+/// An input that is looked at on demand; one that is held is looked at on every step.
+bool on_demand(const Context& context, Index i) {
+    return context.boolean() && context.model.inputs[i].hold == 0;
+}
+
+/// The pointer to this step's sample.
+std::string sample(const Context& context, Index i) {
+    return context.names.input_local.at(i) + (on_demand(context, i) ? "()" : "");
+}
+
 /// The conditions under which all of some inputs are there: "z != nullptr && gripper != nullptr".
 std::string all_present(const Context& context, const std::vector<Index>& inputs) {
     std::string text;
     for (Index i : inputs) {
         if (!text.empty()) text += " && ";
-        text += context.names.input_local.at(i) + " != nullptr";
+        text += sample(context, i) + " != nullptr";
     }
     return text;
 }
@@ -27,6 +39,19 @@ std::string present(const check::Input& input) {
                        float_literal(input.range.high));
 }
 
+std::string widening(const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& buffer = context.names.input_buffer.at(i);
+    if (input.type == InputType::f16)
+        return fmt::format("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer, input.dimension);
+    return fmt::format("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name, float_literal(input.scale), buffer,
+                       input.dimension);
+}
+
+bool is_widened(const check::Input& input) {
+    return input.type == InputType::f16 || input.type == InputType::i8;
+}
+
 void print_widened(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
@@ -34,11 +59,7 @@ void print_widened(Printer& out, const Context& context, Index i) {
     out.line("float {}[{}];", buffer, input.dimension);
     out.line("const float* {} = nullptr;", local);
     out.open(fmt::format("if ({}) {{", present(input)));
-    if (input.type == InputType::f16)
-        out.line("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer, input.dimension);
-    else
-        out.line("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name, float_literal(input.scale), buffer,
-                 input.dimension);
+    out.line(widening(context, i));
     out.line("{} = {};", local, buffer);
     out.close();
 }
@@ -46,6 +67,13 @@ void print_widened(Printer& out, const Context& context, Index i) {
 void print_flag(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
+    if (on_demand(context, i)) {
+        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.line("missing |= !in.{}.present();", input.name);
+        out.line("return etlmon::truth_of(in.{});", input.name);
+        out.close("});");
+        return;
+    }
     if (input.hold == 0) {
         out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
         out.line("missing |= !in.{}.present();", input.name);
@@ -55,21 +83,47 @@ void print_flag(Printer& out, const Context& context, Index i) {
     out.line("const uint32_t {} = in.{}.value();", word, input.name);
     out.line("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : nullptr);", local,
              context.names.hold_member.at(i), input.name, word);
+    if (context.boolean()) {
+        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.line("missing |= {} == nullptr;", local);
+        out.line("return etlmon::truth_of({0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag());", local);
+        out.close("});");
+        return;
+    }
     out.line("now.{} = etlmon::value_of({} != nullptr ? etlmon::Flag(*{} != 0) : etlmon::Flag());",
              context.names.flag_atom.at(i), local, local);
     out.line("missing |= {} == nullptr;", local);
+}
+
+std::string data_of(const check::Input& input) {
+    return input.is_embedding() ? fmt::format("in.{}.data()", input.name) : fmt::format("&in.{}", input.name);
+}
+
+void print_input_on_demand(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (!is_widened(input))
+        return out.line("const etlmon::Lazy {}([&]() noexcept {{ return {} ? {} : nullptr; }});", local, present(input),
+                        data_of(input));
+    const std::string& buffer = context.names.input_buffer.at(i);
+    out.line("float {}[{}];", buffer, input.dimension);
+    out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept -> const float* {{", local));
+    out.line("if (!{}) return nullptr;", present(input));
+    out.line(widening(context, i));
+    out.line("return {};", buffer);
+    out.close("});");
 }
 
 void print_input(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
     if (input.type == InputType::boolean) return print_flag(out, context, i);
+    if (on_demand(context, i)) return print_input_on_demand(out, context, i);
     const bool held = input.hold > 0;
-    if (input.type == InputType::f16 || input.type == InputType::i8)
+    if (is_widened(input))
         print_widened(out, context, i);
     else
-        out.line("const float* {}{} = {} ? {} : nullptr;", held ? "" : "const ", local, present(input),
-                 input.is_embedding() ? fmt::format("in.{}.data()", input.name) : fmt::format("&in.{}", input.name));
+        out.line("const float* {}{} = {} ? {} : nullptr;", held ? "" : "const ", local, present(input), data_of(input));
     if (held) out.line("{} = {}.take({});", local, context.names.hold_member.at(i), local);
 }
 
@@ -98,12 +152,12 @@ std::string kernel_call(const Context& context, Index d, const std::string& z) {
 void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
     const check::Distance& distance = context.model.distances[d];
     if (!distance.point_is_vector) {
-        const std::string& z = context.names.input_local.at(distance.point[0]);
+        const std::string z = sample(context, distance.point[0]);
         print_wrapped(out, fmt::format("if ({} != nullptr) {} = {};", z, into, kernel_call(context, d, z)));
         return;
     }
     std::string elements;
-    for (Index i : distance.point) elements += (elements.empty() ? "*" : ", *") + context.names.input_local.at(i);
+    for (Index i : distance.point) elements += (elements.empty() ? "*" : ", *") + sample(context, i);
     print_wrapped(out, fmt::format("if ({}) {{", all_present(context, distance.point)));
     out.indent();
     print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
@@ -121,8 +175,9 @@ std::string expression(const Context& context, const Expr& e) {
     };
     switch (e.kind) {
         case Expr::Kind::number: return float_literal(e.number32);
-        case Expr::Kind::scalar: return "*" + context.names.input_local.at(e.index);
-        case Expr::Kind::distance: return context.names.distance_local.at(e.index) + ".delta";
+        case Expr::Kind::scalar: return "*" + sample(context, e.index);
+        case Expr::Kind::distance:
+            return context.names.distance_local.at(e.index) + (context.boolean() ? "()" : "") + ".delta";
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
         case Expr::Kind::subtract: return apply("subtract");
@@ -164,8 +219,16 @@ private:
         const std::string& local = context_.names.distance_local.at(d);
         out_.gap();
         out_.line("// {}", context_.model.distances[d].text);
-        out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
-        print_distance(out_, context_, d, local);
+        if (!context_.boolean()) {
+            out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
+            print_distance(out_, context_, d, local);
+            return;
+        }
+        out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", local));
+        out_.line("etlmon::Measured measured = etlmon::kUnmeasured;");
+        print_distance(out_, context_, d, "measured");
+        out_.line("return measured;");
+        out_.close("});");
     }
 
     void print_predicate(Index p) {
@@ -173,35 +236,52 @@ private:
         const auto telemetry = context_.names.predicate_member.find(p);
         const bool kept = telemetry != context_.names.predicate_member.end();
         const std::string& variable = kept ? telemetry->second : context_.names.predicate_local.at(p);
+        const std::string& atom = context_.names.predicate_atom.at(p);
+        const std::string threshold =
+            kept ? fmt::format("threshold_{}()", predicate.name) : float_literal(predicate.threshold.value);
         out_.gap();
         out_.line("// {}", context_.place(predicate.span));
+        if (context_.boolean()) out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
         const std::string delta =
             predicate.plain_distance() ? plain(predicate, variable, kept) : general(predicate, variable, kept);
-        const std::string range =
-            value_literal({etlmon::key_of(predicate.robustness.low), etlmon::key_of(predicate.robustness.high)});
-        print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", context_.names.predicate_atom.at(p),
-                                        predicate.upper_bound() ? "at_most" : "at_least", delta,
-                                        kept ? fmt::format("threshold_{}()", predicate.name)
-                                             : float_literal(predicate.threshold.value),
-                                        range));
+        const std::string range = context_.literal(plan::unseen_range(predicate, context_.plan.values));
+        if (context_.boolean()) {
+            out_.line("missing |= etlmon::is_nan({});", delta);
+            const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
+            out_.line("return etlmon::{}({}, {}{});", comparison(predicate), delta, threshold, otherwise);
+            out_.close("});");
+            return;
+        }
+        print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
+                                        predicate.upper_bound() ? "at_most" : "at_least", delta, threshold, range));
         out_.line("missing |= etlmon::is_nan({});", delta);
+    }
+
+    static const char* comparison(const check::Predicate& predicate) {
+        if (predicate.upper_bound()) return predicate.strict() ? "is_below" : "is_at_most";
+        return predicate.strict() ? "is_above" : "is_at_least";
+    }
+
+    /// What stands for "not measured" in this step; where it is kept, step() of a Boolean class has said so.
+    void print_unmeasured(const std::string& variable, bool kept, const char* type, const char* nothing) {
+        if (!kept || !context_.boolean()) out_.line("{}{} = etlmon::{};", kept ? "" : type, variable, nothing);
     }
 
     /// AGG DIST(point, target): kept with its nearest row.
     std::string plain(const check::Predicate& predicate, const std::string& variable, bool kept) {
         const Index d = predicate.expression.index;
-        const std::string& shared = context_.names.distance_local.at(d);
         if (uses_[d] > 1) {
+            const std::string shared = context_.names.distance_local.at(d) + (context_.boolean() ? "()" : "");
             if (kept) out_.line("{} = {};", variable, shared);
             return (kept ? variable : shared) + ".delta";
         }
-        out_.line("{}{} = etlmon::kUnmeasured;", kept ? "" : "etlmon::Measured ", variable);
+        print_unmeasured(variable, kept, "etlmon::Measured ", "kUnmeasured");
         print_distance(out_, context_, d, variable);
         return variable + ".delta";
     }
 
     std::string general(const check::Predicate& predicate, const std::string& variable, bool kept) {
-        out_.line("{}{} = etlmon::kMissing;", kept ? "" : "float ", variable);
+        print_unmeasured(variable, kept, "float ", "kMissing");
         const std::string value = expression(context_, predicate.expression);
         const std::string assignment = fmt::format("{} = {};", variable, value);
         print_wrapped(out_, predicate.inputs.empty()
@@ -228,6 +308,10 @@ void print_measure(Printer& out, const Context& context) {
     out.line("if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;");
     out.line("return now;");
     out.close();
+}
+
+void print_atoms_on_demand(Printer& out, const Context& context) {
+    MeasurePrinter(out, context).print();
 }
 
 }  // namespace etlc::emit

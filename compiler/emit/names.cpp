@@ -62,20 +62,27 @@ std::string member(Scope& scope, const std::string& name) {
 
 class Naming {
 public:
-    Naming(const plan::Plan& plan, const ir::Graph& graph) : plan_(plan), model_(*plan.model), graph_(graph) {}
+    Naming(const plan::Plan& plan, const ir::Graph& graph)
+        : plan_(plan),
+          model_(*plan.model),
+          graph_(graph),
+          measure_(plan.values == check::Values::boolean ? judge_ : measure_scope_),
+          atoms_(plan.values == check::Values::boolean ? judge_ : atoms_scope_) {}
 
     Names name_all() {
         name_measurements();
         name_streams();
         name_readings();
         name_constants();
+        names_.verdicts_member = member(members_, "verdicts");
         return std::move(names_);
     }
 
 private:
     void name_measurements() {
         for (check::Index i : plan_.inputs) {
-            names_.input_local[i] = measure_.claim(model_.inputs[i].name);
+            const bool is_atom = &measure_ == &atoms_ && model_.inputs[i].type == check::InputType::boolean;
+            names_.input_local[i] = measure_.claim(model_.inputs[i].name + (is_atom ? "_sample" : ""));
             names_.input_buffer[i] = measure_.claim(model_.inputs[i].name + "_values");
             if (model_.inputs[i].hold > 0) names_.hold_member[i] = member(members_, model_.inputs[i].name + "_held");
         }
@@ -86,7 +93,7 @@ private:
                                          ? identifier(predicate.text + predicate.threshold.text, "comparison")
                                          : predicate.name;
             names_.predicate_atom[p] = atoms_.claim(name);
-            if (predicate.name.empty()) names_.predicate_local[p] = measure_.claim(name);
+            if (predicate.name.empty()) names_.predicate_local[p] = measure_.claim(name + "_delta");
         }
         for (check::Index d : plan_.distances)
             names_.distance_local[d] = measure_.claim(identifier(model_.distances[d].text, "distance"));
@@ -100,7 +107,8 @@ private:
             const plan::Stream& stream = plan_.streams[slot];
             const std::string name = stream_name(stream);
             names_.stream_local[slot] = judge_.claim(name);
-            if (plan::cost_of(stream).state_bytes > 0) names_.stream_member[slot] = member(members_, name);
+            if (plan::cost_of(stream, plan_.values).state_bytes > 0)
+                names_.stream_member[slot] = member(members_, name);
         }
     }
 
@@ -129,14 +137,17 @@ private:
         for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
             const plan::Monitor& monitor = plan_.monitors[m];
             if (!monitor.sliding) wanted.emplace(monitor.reading, monitor.name);
-            if (plan_.has_sliding && !monitor.sliding)
+            if (plan_.values == check::Values::boolean) {
+                if (!monitor.sliding) names_.open_local[m] = judge_.claim(monitor.name + "_open");
+            } else if (plan_.has_sliding && !monitor.sliding) {
                 names_.verdict_member[m] = member(members_, monitor.name + "_verdict");
+            }
         }
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;
             names_.reading_local[r] = judge_.claim(name);
-            if (plan::cost_of(plan_.readings[r]).state_bytes > 0) name_registers(r, name);
+            if (plan::cost_of(plan_.readings[r], plan_.values).state_bytes > 0) name_registers(r, name);
         }
     }
 
@@ -224,10 +235,12 @@ private:
     const check::Model& model_;
     const ir::Graph& graph_;
     Names names_;
-    Scope measure_{{"in", "now", "missing", "point", "Value", "Atoms"}};
-    Scope atoms_{{"Value", "Key", "Reading"}};
-    Scope judge_{{"now", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue", "kFalse", "guards",
-                  "weak", "strong", "measure", "judge", "advance"}};
+    Scope measure_scope_{{"in", "now", "missing", "point", "Value", "Atoms"}};
+    Scope atoms_scope_{{"Value", "Key", "Reading"}};
+    Scope judge_{{"in", "now", "missing", "point", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue",
+                  "kFalse", "guards", "weak", "strong", "measure", "judge", "advance"}};
+    Scope& measure_;  ///< a Boolean monitor is one function: all its locals differ
+    Scope& atoms_;
     Scope members_;
     Scope constants_;
 };

@@ -46,11 +46,10 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string end = fold.interval.bounded() ? fmt::format("{}", fold.interval.high) : "etlmon::kWithoutEnd";
     print_wrapped(
         out,
-        fmt::format(
-            "const Reading {} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, step_, {}, {}, {}, {});",
-            context.names.reading_local.at(r), max ? "Seeking" : "Guarding", context.names.reading_member.at(r),
-            context.names.guard_member.at(r), left, names.parts[fold.right], names.count, pending.horizon,
-            fold.interval.low, end, max ? context.high(fold.unseen) : context.low(fold.unseen)));
+        fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, step_, {}, {}, {}, {});",
+                    reading_declaration(context, r), max ? "Seeking" : "Guarding", context.names.reading_member.at(r),
+                    context.names.guard_member.at(r), left, names.parts[fold.right], names.count, pending.horizon,
+                    fold.interval.low, end, max ? context.high(fold.unseen) : context.low(fold.unseen)));
 }
 
 void print_machine(Printer& out, const Context& context, std::uint32_t r) {
@@ -64,15 +63,15 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
         for (std::uint32_t part : pending.guards[g])
             literals.push_back(fmt::format("{}[{}]", names.parts[part], names.position));
         print_wrapped(out, fmt::format("{}[{}][{}] = {};", locals.guards, names.position, g,
-                                       literals.empty() ? "etlmon::settled(etlmon::kTrue)" : call("min", literals)));
+                                       literals.empty() ? fmt::format("etlmon::settled({})", context.spelling.yes)
+                                                        : call("min", literals)));
     }
     out.close();
     print_machine_keys(out, context, r, pending.machine);
     const std::string tables = "tables::" + table_name(context, r);
-    print_wrapped(
-        out, fmt::format("const Reading {} = {}.read({}, {}, step_ >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
-                         context.names.reading_local.at(r), context.names.reading_member.at(r), locals.guards,
-                         names.count, pending.horizon, tables, tables, tables, locals.weak, locals.strong));
+    print_wrapped(out, fmt::format("{} = {}.read({}, {}, step_ >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
+                                   reading_declaration(context, r), context.names.reading_member.at(r), locals.guards,
+                                   names.count, pending.horizon, tables, tables, tables, locals.weak, locals.strong));
 }
 
 }  // namespace
@@ -107,9 +106,9 @@ std::vector<Member> pending_members(const Context& context, std::uint32_t r) {
     const bool max = ir::takes_max(pending.fold.op);
     const std::string& guard = context.names.guard_member.at(r);
     result.push_back({"Value", name, text + ", where it is settled",
-                      fmt::format("{} = {};", name, max ? "etlmon::kFalse" : "etlmon::kTrue")});
+                      fmt::format("{} = {};", name, max ? context.spelling.no : context.spelling.yes)});
     result.push_back({"Value", guard, "what its left side lets through there",
-                      fmt::format("{} = {};", guard, max ? "etlmon::kTrue" : "etlmon::kFalse")});
+                      fmt::format("{} = {};", guard, max ? context.spelling.yes : context.spelling.no)});
     return result;
 }
 

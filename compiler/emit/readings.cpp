@@ -16,16 +16,13 @@ using plan::Machine;
 using plan::Reading;
 using plan::Slot;
 
-std::string local(const Context& context, std::uint32_t r) {
-    return "const Reading " + context.names.reading_local.at(r);
-}
-
 /// A reading from its three parts: on one line where they fit.
 void print_parts(Printer& out, const Context& context, std::uint32_t r, const std::string& rho,
                  const std::string& lower, const std::string& upper) {
-    const std::string one_line = fmt::format("{} = {{{}, {}, {}}};", local(context, r), rho, lower, upper);
+    const std::string one_line =
+        fmt::format("{} = {{{}, {}, {}}};", reading_declaration(context, r), rho, lower, upper);
     if (out.column() + one_line.size() <= kLineWidth) return out.line(one_line);
-    out.line("{} = {{", local(context, r));
+    out.line("{} = {{", reading_declaration(context, r));
     out.indent();
     print_wrapped(out, rho + ",");
     print_wrapped(out, lower + ",");
@@ -34,9 +31,10 @@ void print_parts(Printer& out, const Context& context, std::uint32_t r, const st
 }
 
 /// max(a, key), or what it is where the key is an infinity; min likewise.
-std::string widened(bool takes_max, const std::string& value, const std::string& key) {
-    if (key == (takes_max ? "etlmon::kTop" : "etlmon::kBottom")) return key;
-    if (key == (takes_max ? "etlmon::kBottom" : "etlmon::kTop")) return value;
+std::string widened(const Context& context, bool takes_max, const std::string& value, const std::string& key) {
+    const Spelling& spelt = context.spelling;
+    if (key == (takes_max ? spelt.top : spelt.bottom)) return key;
+    if (key == (takes_max ? spelt.bottom : spelt.top)) return value;
     return fmt::format("{}({}, {})", takes_max ? "max" : "min", value, key);
 }
 
@@ -45,7 +43,7 @@ std::string widened(bool takes_max, const std::string& value, const std::string&
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
     const std::string& kept = context.names.reading_member.at(r);
     out.line("if (step_ == 0) {} = {};", kept, context.value(context.plan.readings[r].latch.operand));
-    out.line("{} = etlmon::settled({});", local(context, r), kept);
+    out.line("{} = etlmon::settled({});", reading_declaration(context, r), kept);
 }
 
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
@@ -63,11 +61,18 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
 
     print_wrapped(out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open), best, widen,
                                    best, step));
-    if (binary) print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard, context.value(fold.left)));
+    // Once the right side has decided, the left one matters no more: a Boolean monitor does not ask for it.
+    if (binary) {
+        const std::string left = context.value(fold.left);
+        const bool skips = context.lazy(fold.left);
+        print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard,
+                                       skips ? fmt::format("{}({}, {})", widen, best, left) : left));
+    }
 
     const std::string unseen_key = takes_max ? context.high(fold.unseen) : context.low(fold.unseen);
-    const std::string unseen = binary ? widened(!takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
-    std::string bound = widened(takes_max, fmt::format("{}.{}", best, end), unseen);
+    const std::string unseen =
+        binary ? widened(context, !takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
+    std::string bound = widened(context, takes_max, fmt::format("{}.{}", best, end), unseen);
     if (fold.interval.bounded()) bound = fmt::format("step_ < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
     const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
     print_parts(out, context, r, best, takes_max ? known : bound, takes_max ? bound : known);
@@ -105,7 +110,7 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     }
     print_wrapped(out, conditional(open_condition({response.inner.high, kUnbounded}),
                                    assign(settled, call(worst, {settled, passed}))));
-    if (response.hopeless_now()) now = response.of_always ? "etlmon::kFalse" : "etlmon::kTrue";
+    if (response.hopeless_now()) now = response.of_always ? context.spelling.no : context.spelling.yes;
     if (response.recent != kNone) {
         out.line("const Value {} = {};", context.names.recent_local.at(r),
                  call(worst, {now, context.value(response.recent)}));
@@ -118,12 +123,12 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const char* near_end = response.of_always ? "low" : "high";
     const std::vector<std::string> both = {settled + "." + near_end, now + "." + near_end};
     const std::string known = call(worst, both);
-    std::string near = widened(!response.of_always, known, unseen_body);
+    std::string near = widened(context, !response.of_always, known, unseen_body);
     if (near != known && near != unseen_body) near = call(worst, {both[0], both[1], unseen_body});
     if (response.outer.bounded() && near != known)
         near = fmt::format("step_ < {} ? {} : {}", response.outer.high, near, known);
-    const std::string hope = widened(response.of_always, now + "." + far_end, unseen_answer);
-    const std::string far = widened(!response.of_always, settled + "." + far_end, hope);
+    const std::string hope = widened(context, response.of_always, now + "." + far_end, unseen_answer);
+    const std::string far = widened(context, !response.of_always, settled + "." + far_end, hope);
     print_parts(out, context, r, call(worst, {settled, now}), response.of_always ? near : far,
                 response.of_always ? far : near);
 }
@@ -138,8 +143,8 @@ std::string term_text(const Context& context, std::uint32_t r, const plan::Term&
                                                       : context.names.register_member.at(r)[source.state]);
     std::vector<std::string> factors;
     if (!sources.empty()) factors.push_back(call("max", sources));
-    for (Slot slot : term.literals) factors.push_back(context.value(slot));
-    return factors.empty() ? "etlmon::kTrue" : call("min", factors);
+    for (Slot slot : context.by_work(term.literals)) factors.push_back(context.value(slot));
+    return factors.empty() ? context.spelling.yes : call("min", factors, context.boolean());
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
@@ -150,7 +155,8 @@ void print_registers(Printer& out, const Context& context, std::uint32_t r) {
         std::vector<std::string> terms;
         for (const plan::Term& term : update.terms) terms.push_back(term_text(context, r, term, program.in_place));
         const std::string target = program.in_place ? registers[update.state] : "const Value " + next[update.state];
-        print_wrapped(out, fmt::format("{} = {};", target, terms.empty() ? "etlmon::kFalse" : call("max", terms)));
+        print_wrapped(out, fmt::format("{} = {};", target,
+                                       terms.empty() ? context.spelling.no : call("max", terms, context.boolean())));
     }
     if (program.in_place) return;
     for (const plan::Update& update : program.updates)
@@ -158,7 +164,9 @@ void print_registers(Printer& out, const Context& context, std::uint32_t r) {
 }
 
 /// The max over states of min(register, key), states with the same key together.
-std::string best_of(const std::vector<std::pair<std::string, std::string>>& registers_and_keys) {
+std::string best_of(const Context& context,
+                    const std::vector<std::pair<std::string, std::string>>& registers_and_keys) {
+    const Spelling& spelt = context.spelling;
     std::vector<std::string> terms;
     std::vector<bool> done(registers_and_keys.size(), false);
     for (std::size_t i = 0; i < registers_and_keys.size(); ++i) {
@@ -173,13 +181,13 @@ std::string best_of(const std::vector<std::pair<std::string, std::string>>& regi
         const bool holds_true = std::any_of(registers_and_keys.begin(), registers_and_keys.end(),
                                             [&](const auto& e) { return e.second == key && e.first.empty(); });
         if (holds_true)
-            terms.push_back(key.empty() ? "etlmon::kTop" : key);
+            terms.push_back(key.empty() ? spelt.top : key);
         else
             terms.push_back(key.empty() ? call("max", same) : fmt::format("min({}, {})", call("max", same), key));
     }
-    if (terms.empty()) return "etlmon::kBottom";
-    const bool top = std::find(terms.begin(), terms.end(), "etlmon::kTop") != terms.end();
-    return top ? "etlmon::kTop" : call("max", terms);
+    if (terms.empty()) return spelt.bottom;
+    const bool top = std::find(terms.begin(), terms.end(), spelt.top) != terms.end();
+    return top ? spelt.top : call("max", terms);
 }
 
 void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
@@ -193,18 +201,20 @@ void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
         const Machine::State& owed = machine.states[q];
         const std::string strong = owed.strong_unseen == kNone ? "" : context.high(owed.strong_unseen);
         const std::string weak = owed.weak_unseen == kNone ? "" : context.low(owed.weak_unseen);
-        upper.emplace_back(owed.always_true ? "" : registers[q] + ".high", strong == "etlmon::kTop" ? "" : strong);
+        upper.emplace_back(owed.always_true ? "" : registers[q] + ".high",
+                           strong == context.spelling.top ? "" : strong);
         if (owed.strong) continue;
-        rho.push_back(owed.always_true ? "etlmon::kTrue" : registers[q]);
-        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == "etlmon::kTop" ? "" : weak);
+        rho.push_back(owed.always_true ? context.spelling.yes : registers[q]);
+        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == context.spelling.top ? "" : weak);
     }
-    print_parts(out, context, r, rho.empty() ? "etlmon::kFalse" : call("max", rho), best_of(lower), best_of(upper));
+    print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max", rho), best_of(context, lower),
+                best_of(context, upper));
 }
 
 // ---- machines as tables
 
 std::vector<std::string> keys(const Context& context, const std::vector<Slot>& slots, bool high) {
-    std::vector<std::string> result{"etlmon::kTop"};
+    std::vector<std::string> result{context.spelling.top};
     for (Slot slot : slots) result.push_back(high ? context.high(slot) : context.low(slot));
     return result;
 }
@@ -222,14 +232,15 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     std::vector<std::string> guards;
     for (const auto& literals : machine.guards) {
         std::vector<std::string> values;
-        for (Slot slot : literals) values.push_back(context.value(slot));
-        guards.push_back(values.empty() ? "etlmon::kTrue" : call("min", values));
+        for (Slot slot : context.by_work(literals)) values.push_back(context.value(slot));
+        guards.push_back(values.empty() ? context.spelling.yes : call("min", values, context.boolean()));
     }
     print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
     print_machine_keys(out, context, r, machine);
     const std::string tables = "tables::" + table_name(context, r);
     out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, locals.guards);
-    out.line("{} = {}.read({}_owed, {}, {});", local(context, r), kept, tables, locals.weak, locals.strong);
+    out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables, locals.weak,
+             locals.strong);
 }
 
 template <class Items, class Spell>
@@ -300,7 +311,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
     }
     std::vector<std::string> parts;
     for (std::uint32_t operand : reading.operands) parts.push_back(context.names.reading_local.at(operand));
-    print_wrapped(out, fmt::format("{} = {};", local(context, r),
+    print_wrapped(out, fmt::format("{} = {};", reading_declaration(context, r),
                                    call(reading.kind == Reading::Kind::conjunction ? "min" : "max", parts)));
 }
 
@@ -331,7 +342,7 @@ std::vector<Member> reading_members(const Context& context) {
                 if (reading.machine.states[q].always_true) continue;
                 const std::string& name = registers->second[q];
                 result.push_back({"Value", name, owed_text(context, reading.machine.automaton.states[q]),
-                                  fmt::format("{} = {};", name, q == 0 ? "etlmon::kTrue" : "etlmon::kFalse")});
+                                  fmt::format("{} = {};", name, q == 0 ? context.spelling.yes : context.spelling.no)});
             }
             continue;
         }
@@ -346,8 +357,8 @@ std::vector<Member> reading_members(const Context& context) {
         const bool response = reading.kind == Reading::Kind::response;
         const bool starts_true = response ? reading.response.of_always
                                           : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
-        const char* first = starts_true ? "etlmon::kTrue" : "etlmon::kFalse";
-        const char* second = starts_true ? "etlmon::kFalse" : "etlmon::kTrue";
+        const std::string first = starts_true ? context.spelling.yes : context.spelling.no;
+        const std::string second = starts_true ? context.spelling.no : context.spelling.yes;
         result.push_back({"Value", name, text + (response ? ": where the answer's time is over" : ""),
                           fmt::format("{} = {};", name, first)});
         if (response && reading.response.keeps_pending()) {

@@ -11,9 +11,10 @@ using plan::StreamOp;
 
 /// The operand where its position lies in the trace, else what counts as nothing.
 std::string guarded(const Context& context, const Stream& stream, std::size_t i, const std::string& where_none) {
-    const std::string value = context.value(stream.operands[i]);
+    std::string value = context.value(stream.operands[i]);
     const bool trace_may_end = context.plan.has_sliding;  // finish() moves on beyond the last position
     if (stream.operand_lag == 0 && (stream.lag == 0 || !trace_may_end)) return value;
+    if (context.lazy(stream.operands[i])) value = fmt::format("Value({})", value);
     return fmt::format("exists({}) ? {} : {}", stream.operand_lag, value, where_none);
 }
 
@@ -38,44 +39,72 @@ bool is_window(StreamOp op) {
            op == StreamOp::window_trigger || op == StreamOp::window_until || op == StreamOp::window_release;
 }
 
-constexpr const char* kTrue = "etlmon::kTrue";
-constexpr const char* kFalse = "etlmon::kFalse";
+/// The min or max of some streams.
+std::string combination(const Context& context, StreamOp op, const std::vector<Slot>& slots) {
+    std::vector<std::string> operands;
+    bool lazy = false;
+    for (Slot slot : context.by_work(slots)) {
+        operands.push_back(context.value(slot));
+        lazy = lazy || context.lazy(slot);
+    }
+    return call(op == StreamOp::conjunction ? "min" : "max", operands, lazy);
+}
+
+/// v = max(g, min(v, f)) or the dual; in a Boolean monitor the cheaper side is asked first.
+std::string since(const Context& context, const Stream& stream, const std::string& kept) {
+    const bool max = is_max(stream.op);
+    const std::string none = max ? context.spelling.no : context.spelling.yes;
+    const std::string other = max ? context.spelling.yes : context.spelling.no;
+    const char* outer = max ? "max" : "min";
+    const std::string right = guarded(context, stream, 1, none);
+    const std::string left = fmt::format("{}({}, {})", max ? "min" : "max", kept, guarded(context, stream, 0, other));
+    const bool left_first = context.work(stream.operands[0]) < context.work(stream.operands[1]);
+    return left_first ? fmt::format("{}({}, {})", outer, left, right) : fmt::format("{}({}, {})", outer, right, left);
+}
+
+std::string within(const Context& context, const Stream& stream, const std::string& local) {
+    const Slot operand = stream.operands[0];
+    const std::string value = context.value(operand);
+    const std::string condition = open_condition(stream.interval);
+    const std::string elsewhere = context.literal(stream.value);
+    if (!context.lazy(operand)) return fmt::format("{}{} ? {} : {};", local, condition, value, elsewhere);
+    const std::string name =
+        local.substr(0, local.size() - std::string(" = ").size()).substr(std::string("const auto ").size());
+    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {} ? Value({}) : {}; }});", name, condition,
+                       value, elsewhere);
+}
 
 /// What the stream's value is computed from; empty for atoms and constants, which need no statement.
-std::string statement(const Context& context, Slot slot) {
+std::string statement(const Context& context, Slot slot, const std::string& local) {
     const Stream& stream = context.plan.streams[slot];
-    const std::string local = "const Value " + context.names.stream_local.at(slot) + " = ";
     const auto at = [&](std::size_t i) { return context.value(stream.operands[i]); };
     const auto kept = [&] { return context.names.stream_member.at(slot); };
     const bool max = is_max(stream.op);
-    const char* none = max ? kFalse : kTrue;
-    const char* other = max ? kTrue : kFalse;
+    const std::string none = max ? context.spelling.no : context.spelling.yes;
+    const std::string other = max ? context.spelling.yes : context.spelling.no;
     switch (stream.op) {
         case StreamOp::constant:
         case StreamOp::predicate:
         case StreamOp::flag: return "";
         case StreamOp::negation: return fmt::format("{}negate({});", local, at(0));
         case StreamOp::conjunction:
-        case StreamOp::disjunction: {
-            std::vector<std::string> operands;
-            for (std::size_t i = 0; i < stream.operands.size(); ++i) operands.push_back(at(i));
-            return fmt::format("{}{};", local, call(stream.op == StreamOp::conjunction ? "min" : "max", operands));
+        case StreamOp::disjunction: return local + combination(context, stream.op, stream.operands) + ";";
+        case StreamOp::within: return within(context, stream, local);
+        case StreamOp::delay: {
+            // In a Boolean monitor a delayed atom is measured: not where the trace has ended.
+            const bool lazy = context.lazy(stream.operands[0]) && context.plan.has_sliding;
+            return fmt::format(
+                "{}{}.push({});", local, kept(),
+                lazy ? fmt::format("exists({}) ? Value({}) : {}", stream.operand_lag, at(0), none) : at(0));
         }
-        case StreamOp::within:
-            return fmt::format("{}{} ? {} : {};", local, open_condition(stream.interval), at(0),
-                               value_literal(stream.value));
-        case StreamOp::delay: return fmt::format("{}{}.push({});", local, kept(), at(0));
         case StreamOp::shift:
             return fmt::format("{}{}.push({});", local, kept(),
-                               guarded(context, stream, 0, value_literal(stream.value)));
+                               guarded(context, stream, 0, context.literal(stream.value)));
         case StreamOp::running_max:
         case StreamOp::running_min:
             return fmt::format("{0} = {1}({0}, {2});", kept(), max ? "max" : "min", guarded(context, stream, 0, none));
         case StreamOp::since:
-        case StreamOp::trigger:
-            return fmt::format("{0} = {1}({2}, {3}({0}, {4}));", kept(), max ? "max" : "min",
-                               guarded(context, stream, 1, none), max ? "min" : "max",
-                               guarded(context, stream, 0, other));
+        case StreamOp::trigger: return fmt::format("{} = {};", kept(), since(context, stream, kept()));
         case StreamOp::window_max:
         case StreamOp::window_min:
             if (stream.length == 1) return fmt::format("{}{};", local, guarded(context, stream, 0, none));
@@ -94,25 +123,40 @@ std::string type_of(const Stream& stream) {
     return "Value";
 }
 
-std::string reset_of(const Stream& stream, const std::string& name) {
-    if (stream.op == StreamOp::delay) return fmt::format("{}.reset({});", name, kFalse);
-    if (stream.op == StreamOp::shift) return fmt::format("{}.reset({});", name, value_literal(stream.value));
+std::string reset_of(const Context& context, const Stream& stream, const std::string& name) {
+    if (stream.op == StreamOp::delay) return fmt::format("{}.reset({});", name, context.spelling.no);
+    if (stream.op == StreamOp::shift) return fmt::format("{}.reset({});", name, context.literal(stream.value));
     if (is_window(stream.op)) return fmt::format("{}.reset();", name);
-    return fmt::format("{} = {};", name, is_max(stream.op) ? kFalse : kTrue);
+    return fmt::format("{} = {};", name, is_max(stream.op) ? context.spelling.no : context.spelling.yes);
+}
+
+/// The statement with what it declares. In a Boolean monitor, what must remember is only kept up while some verdict
+/// depends on it, and what need not is found out when it is asked for.
+std::string whole_statement(const Context& context, Slot slot) {
+    const std::string& name = context.names.stream_local.at(slot);
+    if (context.lazy(slot)) return statement(context, slot, "const auto " + name + " = ");
+    const std::string condition = open_monitors(context, context.dependents.of_stream[slot]);
+    const bool remembers = context.names.stream_member.count(slot) > 0;
+    if (!remembers || condition.empty()) return statement(context, slot, "const Value " + name + " = ");
+    const std::string text = statement(context, slot, name + " = ");
+    const bool is_local = text.compare(0, name.size() + 1, name + " ") == 0;
+    return fmt::format("{}if ({}) {}", is_local ? fmt::format("Value {}{{}};\n", name) : "", condition, text);
 }
 
 }  // namespace
 
 void print_streams(Printer& out, const Context& context) {
     for (Slot slot = 0; slot < context.plan.streams.size(); ++slot) {
-        const std::string text = statement(context, slot);
+        const std::string text = whole_statement(context, slot);
         if (text.empty()) continue;
         const plan::NodeId node = context.plan.streams[slot].node;
         if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
             out.gap();
             out.line("// {}", context.place(node));
         }
-        print_wrapped(out, text);
+        const std::size_t line = text.find('\n');
+        if (line != std::string::npos) out.line(text.substr(0, line));
+        print_wrapped(out, line == std::string::npos ? text : text.substr(line + 1));
     }
 }
 
@@ -121,7 +165,7 @@ std::vector<Member> stream_members(const Context& context) {
     for (const auto& [slot, name] : context.names.stream_member) {
         const Stream& stream = context.plan.streams[slot];
         const std::string comment = stream.node == plan::kNone ? "" : context.graph.text(stream.node);
-        result.push_back({type_of(stream), name, comment, reset_of(stream, name)});
+        result.push_back({type_of(stream), name, comment, reset_of(context, stream, name)});
     }
     return result;
 }

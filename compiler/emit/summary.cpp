@@ -142,7 +142,7 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {
-        const plan::Cost cost = plan::cost_of(reading);
+        const plan::Cost cost = plan::cost_of(reading, plan.values);
         std::string as = "fold";
         if (reading.kind == plan::Reading::Kind::latch) as = "latch";
         if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
@@ -159,7 +159,7 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
                         number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {
-        const plan::Cost cost = plan::cost_of(stream);
+        const plan::Cost cost = plan::cost_of(stream, plan.values);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
         rows.push_back({stream.node == plan::kNone ? "(in between)" : shortened(graph.text(stream.node)), "stream",
                         number(cost.state_bytes), number(cost.code_bytes), number(cost.operations)});

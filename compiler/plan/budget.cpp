@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "etlmon/boolean_window.hpp"
 #include "etlmon/delay.hpp"
 #include "etlmon/machine.hpp"
 #include "etlmon/verdict.hpp"
@@ -13,7 +14,8 @@ namespace etlc::plan {
 
 namespace {
 
-constexpr std::uint64_t kValue = sizeof(Value);
+using check::Values;
+
 constexpr std::uint64_t kWord = sizeof(std::uint32_t);
 constexpr std::uint64_t kKeysPerValue = 2;
 
@@ -35,39 +37,57 @@ Cost operator+(Cost a, const Cost& b) {
     return a;
 }
 
-Cost values(std::uint64_t kept, std::uint64_t combined) {
-    return {.state_bytes = kept * kValue,
+/// What a value type takes to keep.
+struct Footprint {
+    std::uint64_t value;
+    std::uint32_t (*ring)(std::uint32_t length);
+    std::uint32_t (*window)(std::uint32_t length);  ///< of one side
+    std::uint32_t (*since)(std::uint32_t length);   ///< of two, towards the past
+    std::uint32_t (*until)(std::uint32_t length);   ///< towards the future
+};
+
+template <class V>
+constexpr Footprint footprint() {
+    return {sizeof(V), etlmon::delay_bytes<V>, etlmon::window_bytes<etlmon::Greatest<V>>,
+            etlmon::window_bytes<etlmon::Since<V>>, etlmon::window_bytes<etlmon::Until<V>>};
+}
+
+const Footprint& footprint_of(Values values) {
+    static constexpr Footprint kRobustness = footprint<Value>();
+    static constexpr Footprint kTruth = footprint<etlmon::Truth>();
+    return values == Values::boolean ? kTruth : kRobustness;
+}
+
+/// `kept` values and `combined` minima or maxima of two.
+Cost values(const Footprint& of, std::uint64_t kept, std::uint64_t combined) {
+    return {.state_bytes = kept * of.value,
             .code_bytes = (kept + combined) * kCodePerValueOperation,
             .operations = combined * kKeysPerValue};
 }
 
-Cost window_cost(std::uint32_t length, bool pairs) {
+Cost window_cost(std::uint32_t (*bytes)(std::uint32_t), std::uint32_t length, std::uint64_t sides) {
     if (length == 1) return {};
-    using One = etlmon::Greatest<Value>;
-    using Two = etlmon::Since<Value>;
-    const std::uint64_t combined = etlmon::window_operations(length) * (pairs ? 3 : 1);
-    return {.state_bytes = pairs ? etlmon::window_bytes<Two>(length) : etlmon::window_bytes<One>(length),
-            .code_bytes = kCodePerWindow * (pairs ? 2 : 1),
-            .operations = combined * kKeysPerValue};
+    const std::uint64_t combined = etlmon::window_operations(length) * (2 * sides - 1);
+    return {.state_bytes = bytes(length), .code_bytes = kCodePerWindow * sides, .operations = combined * kKeysPerValue};
 }
 
-Cost ring_cost(std::uint32_t length) {
-    return {.state_bytes = etlmon::delay_bytes<Value>(length), .code_bytes = kCodePerRing};
+Cost ring_cost(const Footprint& of, std::uint32_t length) {
+    return {.state_bytes = of.ring(length), .code_bytes = kCodePerRing};
 }
 
-Cost fold_cost(const Fold& fold) {
+Cost fold_cost(const Footprint& of, const Fold& fold) {
     const bool binary = fold.left != kNone;
-    Cost cost = values(binary ? 2 : 1, binary ? 3 : 1);
+    Cost cost = values(of, binary ? 2 : 1, binary ? 3 : 1);
     cost.operations += 2 + 3;  // is the window open, does it reach past this step; the bounds
     cost.code_bytes += kCodePerFold;
     return cost;
 }
 
-Cost response_cost(const Response& response) {
-    Cost cost = values(response.keeps_pending() ? 2 : 1, 4 + (response.recent != kNone ? 1 : 0));
+Cost response_cost(const Footprint& of, const Response& response) {
+    Cost cost = values(of, response.keeps_pending() ? 2 : 1, 4 + (response.recent != kNone ? 1 : 0));
     cost.operations += 2 + 3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
     cost.code_bytes += 2 * kCodePerFold;
-    return response.keeps_pending() ? cost + window_cost(response.patience(), false) : cost;
+    return response.keeps_pending() ? cost + window_cost(of.window, response.patience(), 1) : cost;
 }
 
 /// Operations on values or readings at one position, in units of the temporal loops of etlmon/pending.hpp.
@@ -85,14 +105,14 @@ std::uint64_t pending_steps(const Pending& pending) {
     return steps;
 }
 
-Cost pending_cost(const Pending& pending) {
+Cost pending_cost(const Footprint& of, const Pending& pending) {
     constexpr std::uint64_t kKeysPerReading = 4;
     const std::uint64_t positions = pending.horizon + std::uint64_t{1};
     Cost cost;
     std::uint64_t leaves = 0;
     for (const Pending::Part& part : pending.parts) leaves += part.leaf != kNone ? 1 : 0;
-    cost.state_bytes = leaves * (positions * kValue + kWord);
-    cost.state_bytes += kValue * (pending.is_fold ? 2 : pending.machine.states.size());
+    cost.state_bytes = leaves * etlmon::storage_bytes(static_cast<std::uint32_t>(positions * of.value));
+    cost.state_bytes += of.value * (pending.is_fold ? 2 : pending.machine.states.size());
     cost.operations = positions * pending_steps(pending) * kKeysPerReading;
     cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
     if (!pending.is_fold)
@@ -102,13 +122,13 @@ Cost pending_cost(const Pending& pending) {
 }
 
 /// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of values.
-Cost machine_cost(const Machine& machine) {
+Cost machine_cost(const Footprint& of, const Machine& machine) {
     const std::size_t read = 3 * machine.states.size();
-    if (unrolled(machine)) return values(registers(machine), operations(make_register_program(machine)) + read);
+    if (unrolled(machine)) return values(of, registers(machine), operations(make_register_program(machine)) + read);
     std::uint64_t combined = read + 2 * machine.automaton.transitions.size();
     for (const auto& guard : machine.guards) combined += guard.empty() ? 0 : guard.size() - 1;
     Cost cost{.operations = combined * kKeysPerValue};
-    cost.state_bytes = 2 * machine.states.size() * kValue + kWord;
+    cost.state_bytes = etlmon::storage_bytes(static_cast<std::uint32_t>(2 * machine.states.size() * of.value));
     cost.code_bytes = kCodePerTable + machine.automaton.transitions.size() * kTransitionBytes +
                       machine.states.size() * kStateBytes + machine.guards.size() * kCodePerValueOperation;
     return cost;
@@ -153,8 +173,8 @@ public:
     Cost cost() const {
         const check::Model& model = *plan_.model;
         Cost sum;
-        for (Slot slot : streams_) sum = sum + cost_of(plan_.streams[slot]);
-        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_.readings[index]);
+        for (Slot slot : streams_) sum = sum + cost_of(plan_.streams[slot], plan_.values);
+        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
         for (Index d : distances_) sum = sum + distance_cost(model, model.distances[d]);
         for (Index t : targets_) sum.constant_bytes += model.targets[t].values.size() * sizeof(float);
@@ -194,6 +214,17 @@ private:
 
 }  // namespace
 
+std::uint64_t measured_elements(const check::Model& model, Index predicate) {
+    std::uint64_t sum = 0;
+    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
+        if (e.kind == check::Expr::Kind::distance)
+            sum += distance_cost(model, model.distances[e.index]).distance_operations;
+        for (const check::Expr& argument : e.arguments) self(self, argument);
+    };
+    visit(visit, model.predicates[predicate].expression);
+    return sum;
+}
+
 std::size_t registers(const Machine& machine) {
     return static_cast<std::size_t>(std::count_if(machine.states.begin(), machine.states.end(),
                                                   [](const Machine::State& state) { return !state.always_true; }));
@@ -204,7 +235,8 @@ bool unrolled(const Machine& machine) {
            machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
 }
 
-Cost cost_of(const Stream& stream) {
+Cost cost_of(const Stream& stream, Values kind) {
+    const Footprint& of = footprint_of(kind);
     const std::size_t operands = stream.operands.size();
     switch (stream.op) {
         case StreamOp::constant:
@@ -212,33 +244,34 @@ Cost cost_of(const Stream& stream) {
         case StreamOp::flag:
         case StreamOp::negation: return {.code_bytes = kCodePerValueOperation};
         case StreamOp::conjunction:
-        case StreamOp::disjunction: return values(0, operands - 1);
+        case StreamOp::disjunction: return values(of, 0, operands - 1);
         case StreamOp::within: return {.code_bytes = kCodePerValueOperation, .operations = 2};
         case StreamOp::delay:
-        case StreamOp::shift: return ring_cost(stream.length);
+        case StreamOp::shift: return ring_cost(of, stream.length);
         case StreamOp::running_max:
-        case StreamOp::running_min: return values(1, 1);
+        case StreamOp::running_min: return values(of, 1, 1);
         case StreamOp::since:
-        case StreamOp::trigger: return values(1, 2);
+        case StreamOp::trigger: return values(of, 1, 2);
         case StreamOp::window_max:
-        case StreamOp::window_min: return window_cost(stream.length, false);
+        case StreamOp::window_min: return window_cost(of.window, stream.length, 1);
         case StreamOp::window_since:
-        case StreamOp::window_trigger:
+        case StreamOp::window_trigger: return window_cost(of.since, stream.length, 2);
         case StreamOp::window_until:
-        case StreamOp::window_release: return window_cost(stream.length, true);
+        case StreamOp::window_release: return window_cost(of.until, stream.length, 2);
     }
     return {};
 }
 
-Cost cost_of(const Reading& reading) {
+Cost cost_of(const Reading& reading, Values kind) {
+    const Footprint& of = footprint_of(kind);
     switch (reading.kind) {
-        case Reading::Kind::latch: return values(1, 0);
-        case Reading::Kind::fold: return fold_cost(reading.fold);
-        case Reading::Kind::pending: return pending_cost(reading.pending);
-        case Reading::Kind::response: return response_cost(reading.response);
-        case Reading::Kind::machine: return machine_cost(reading.machine);
+        case Reading::Kind::latch: return values(of, 1, 0);
+        case Reading::Kind::fold: return fold_cost(of, reading.fold);
+        case Reading::Kind::pending: return pending_cost(of, reading.pending);
+        case Reading::Kind::response: return response_cost(of, reading.response);
+        case Reading::Kind::machine: return machine_cost(of, reading.machine);
         case Reading::Kind::conjunction:
-        case Reading::Kind::disjunction: return values(0, 2 * (reading.operands.size() - 1));
+        case Reading::Kind::disjunction: return values(of, 0, 2 * (reading.operands.size() - 1));
     }
     return {};
 }
@@ -253,9 +286,13 @@ void add_costs(Plan& plan) {
         own.monitor(monitor);
         all.monitor(monitor);
         plan.monitor_costs.push_back(own.cost());
-        if (plan.has_sliding && !monitor.sliding) fixed.state_bytes += sizeof(etlmon::Verdict);
+        if (plan.values == Values::boolean)
+            fixed.state_bytes += sizeof(etlmon::BooleanVerdict);  // the last one: a final verdict stops computing
+        else if (plan.has_sliding && !monitor.sliding)
+            fixed.state_bytes += sizeof(etlmon::Verdict);
     }
     plan.cost = all.cost() + fixed;
+    plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;
 }
 
 }  // namespace etlc::plan

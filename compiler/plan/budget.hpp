@@ -13,8 +13,10 @@ inline constexpr std::size_t kMaxUnrolledStates = 32;
 inline constexpr std::size_t kMaxUnrolledTransitions = 160;
 bool unrolled(const Machine& machine);
 
-Cost cost_of(const Stream& stream);
-Cost cost_of(const Reading& reading);
+Cost cost_of(const Stream& stream, check::Values values);
+Cost cost_of(const Reading& reading, check::Values values);
+/// Target elements that a predicate measures.
+std::uint64_t measured_elements(const check::Model& model, Index predicate);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
 

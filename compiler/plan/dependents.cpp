@@ -1,0 +1,47 @@
+#include "plan/dependents.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+class Walk {
+public:
+    Walk(const Plan& plan, std::size_t monitor, Dependents& result) : plan_(plan), monitor_(monitor), result_(result) {}
+
+    void stream(Slot slot) {
+        if (slot == kNone || !add(result_.of_stream[slot])) return;
+        for (Slot operand : plan_.streams[slot].operands) stream(operand);
+    }
+
+    void reading(std::uint32_t index) {
+        if (!add(result_.of_reading[index])) return;
+        Reading copy = plan_.readings[index];  // slots_of lends places that may be changed
+        for (std::uint32_t operand : copy.operands) reading(operand);
+        for (const Slot* slot : slots_of(copy)) stream(*slot);
+    }
+
+private:
+    bool add(std::vector<std::size_t>& monitors) const {
+        const bool is_new = monitors.empty() || monitors.back() != monitor_;
+        if (is_new) monitors.push_back(monitor_);
+        return is_new;
+    }
+
+    const Plan& plan_;
+    std::size_t monitor_;
+    Dependents& result_;
+};
+
+}  // namespace
+
+Dependents dependents(const Plan& plan) {
+    Dependents result{std::vector<std::vector<std::size_t>>(plan.streams.size()),
+                      std::vector<std::vector<std::size_t>>(plan.readings.size())};
+    for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
+        Walk walk(plan, m, result);
+        plan.monitors[m].sliding ? walk.stream(plan.monitors[m].stream) : walk.reading(plan.monitors[m].reading);
+    }
+    return result;
+}
+
+}  // namespace etlc::plan
