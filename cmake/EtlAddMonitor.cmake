@@ -1,9 +1,10 @@
-# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [NAMESPACE name] [STANDALONE])
+# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name] [STANDALONE])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of TARGET then include by that name.
 #   TARGET      an executable or a library made in this directory; it may have several monitors
 #   SPEC        the .etl file
 #   THRESHOLDS  the thresholds file (default: SPEC.thresholds.json beside the spec, where it exists)
+#   VALUES      what the monitors compute with (default: robustness); boolean: truth values, and only the distances that matter
 #   NAMESPACE   of the generated code (default: the name after `spec`)
 #   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon. No source includes both kinds.
 # Relative paths are relative to the current source directory. The header lies in the build folder and is made anew when the spec,
@@ -13,7 +14,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;NAMESPACE" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;VALUES;NAMESPACE" "")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -29,6 +30,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_NAMESPACE AND NOT arg_NAMESPACE MATCHES "^[A-Za-z_][A-Za-z0-9_]*(::[A-Za-z_][A-Za-z0-9_]*)*$")
     message(FATAL_ERROR "${call}: NAMESPACE ${arg_NAMESPACE} is not a C++ namespace")
+  endif()
+  if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
+    message(FATAL_ERROR "${call}: VALUES ${arg_VALUES}: expected robustness or boolean")
   endif()
   __etlc_check_target("${call}" "${target}")
   __etlc_input("${call}" SPEC "${arg_SPEC}" spec)
@@ -48,6 +52,9 @@ function(etlc_add_monitor target)
     __etlc_input("${call}" THRESHOLDS "${arg_THRESHOLDS}" thresholds)
     list(APPEND options --thresholds "${thresholds}")
     list(APPEND depends "${thresholds}")
+  endif()
+  if(arg_VALUES)
+    list(APPEND options --values ${arg_VALUES})
   endif()
   if(arg_NAMESPACE)
     list(APPEND options --namespace ${arg_NAMESPACE})

@@ -30,15 +30,20 @@ std::string show(const Verdict& v) {
 
 class Judge {
 public:
-    Judge(const check::Model& model, const reference::Run& expected, const Observed& observed, double rounding)
-        : model_(model), expected_(expected), observed_(observed), rounding_(rounding) {}
+    Judge(const check::Model& model, const reference::Run& expected, const Observed& observed, Comparison comparison)
+        : model_(model),
+          expected_(expected),
+          observed_(observed),
+          rounding_(comparison.rounding),
+          on_demand_(comparison.on_demand) {}
 
     std::optional<std::string> judge() {
         if (auto bad = rows("step", expected_.verdicts, observed_.verdicts)) return bad;
         if (auto bad = rows("finish call", expected_.finish, observed_.finish)) return bad;
         if (auto bad = later_values()) return bad;
         if (auto bad = telemetry()) return bad;
-        if (const std::uint32_t expected = missing_steps(); expected != observed_.missing_steps)
+        const std::uint32_t expected = missing_steps();
+        if (on_demand_ ? observed_.missing_steps > expected : observed_.missing_steps != expected)
             return fmt::format("missing_steps {}, expected {}", observed_.missing_steps, expected);
         return {};
     }
@@ -55,6 +60,7 @@ private:
     const reference::Run& expected_;
     const Observed& observed_;
     double rounding_;
+    bool on_demand_;
 
     double slack(double value) const { return std::isfinite(value) ? rounding_ * std::max(1.0, std::abs(value)) : 0; }
     bool equal(double a, double b) const { return a == b || std::abs(a - b) <= slack(b); }
@@ -127,7 +133,7 @@ private:
             for (std::size_t p = 0; p < model_.predicates.size(); ++p) {
                 const Observed::Predicate& o = observed_.telemetry[step][p];
                 const reference::Telemetry& e = expected_.telemetry[step][p];
-                if (!o.computed) continue;
+                if (!o.computed || (on_demand_ && std::isnan(o.delta))) continue;
                 const std::string at = fmt::format("step {} of predicate {}", step, model_.predicates[p].name);
                 if (std::isnan(o.delta) != std::isnan(e.delta) || (!std::isnan(e.delta) && !equal(o.delta, e.delta)))
                     return fmt::format("{}: distance {:.9g}, expected {:.9g}", at, o.delta, e.delta);
@@ -143,7 +149,7 @@ private:
 
 std::optional<std::string> first_mismatch(const check::Model& model, const reference::Run& expected,
                                           const Observed& observed, const Comparison& comparison) {
-    return Judge(model, expected, observed, comparison.rounding).judge();
+    return Judge(model, expected, observed, comparison).judge();
 }
 
 }  // namespace etlc::tests

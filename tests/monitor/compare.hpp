@@ -37,6 +37,9 @@ struct Observed {
 struct Comparison {
     /// Bound on |observed - expected| / max(1, |expected|). 0 where all arithmetic is exact in float32.
     double rounding = 0;
+    /// Predicates are measured on demand: telemetry may be NaN where the reference has a number, and of the steps that
+    /// lack something only those count on which it was asked for.
+    bool on_demand = false;
 };
 
 std::optional<std::string> first_mismatch(const check::Model& model, const reference::Run& expected,

@@ -138,24 +138,24 @@ std::string spec(const std::string& name, const std::string& kind, const Formula
 
 }  // namespace
 
-std::string exhaustive_spec() {
+std::string exhaustive_spec(const std::string& name) {
     Formulas formulas = kConnectives;
     append(formulas, kWithoutInterval);
     for (const Formulas* intervals : {&kBounded, &kUnbounded})
         append_operators(formulas, *intervals, {"F", "G", "O", "H"}, {"U", "R", "S"});
     for (const Formulas* more : {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
         append(formulas, *more);
-    return spec("exhaustive", "monitor", formulas);
+    return spec(name, "monitor", formulas);
 }
 
-std::string exhaustive_sliding_spec() {
+std::string exhaustive_sliding_spec(const std::string& name) {
     Formulas formulas = kConnectives;
     append(formulas, kWithoutInterval);
     append_operators(formulas, kBounded, {"F", "G", "O", "H"}, {"U", "R", "S"});
     append_operators(formulas, kUnbounded, {"O", "H"}, {"S"});
     append(formulas, kOverConstants);
     append(formulas, kSlidingNestings);
-    return spec("exhaustive_sliding", "sliding monitor", formulas);
+    return spec(name, "sliding monitor", formulas);
 }
 
 AllTraces::AllTraces(std::size_t steps, bool gaps) : steps_(steps), values_(gaps ? 3 : 2) {

@@ -13,9 +13,9 @@
 namespace etlc::tests {
 
 /// Prefix monitors m0, m1, ... over p = x >= 0 and q = y > 0.
-std::string exhaustive_spec();
+std::string exhaustive_spec(const std::string& name = "exhaustive");
 /// Sliding monitors, with bounded futures and past operators over them.
-std::string exhaustive_sliding_spec();
+std::string exhaustive_sliding_spec(const std::string& name = "exhaustive_sliding");
 
 /// All traces of `steps` steps over x in {-1, 2} and y in {-2, 1}: 4^steps; with `gaps` either may be missing: 9^steps.
 class AllTraces {

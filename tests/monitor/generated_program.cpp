@@ -39,10 +39,11 @@ bool GeneratedProgram::command(const std::string& line) {
     return status == 0;
 }
 
-bool GeneratedProgram::add(const check::Model& model) {
+bool GeneratedProgram::add(const check::Model& model, check::Values values) {
     models_.push_back(model);
     write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
-    return command(fmt::format("'{}' {}.etl -o {}.hpp {}", ETLC_COMMAND, model.name, model.name, kLimits));
+    return command(fmt::format("'{}' {}.etl -o {}.hpp {} --values {}", ETLC_COMMAND, model.name, model.name, kLimits,
+                               values == check::Values::boolean ? "boolean" : "robustness"));
 }
 
 bool GeneratedProgram::compile(const Build& build) {

@@ -34,6 +34,7 @@ struct Subject {
     std::string spec;
     bool exact = true;
     bool exhaustive = false;
+    check::Values values = check::Values::robustness;
 };
 
 std::vector<Subject> subjects() {
@@ -52,6 +53,11 @@ std::vector<Subject> subjects() {
         const SpecShape& shape = shapes[n % shapes.size()];
         result.push_back({random_spec(9000 + n, shape), shape.exact});
     }
+    // Truth values need exact comparisons: numbers on a grid.
+    result.push_back({exhaustive_spec("boolean_prefix"), true, true, check::Values::boolean});
+    result.push_back({exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});
+    for (std::size_t n = 0; n < shapes.size(); ++n)
+        if (shapes[n].exact) result.push_back({random_spec(9100 + n, shapes[n]), true, false, check::Values::boolean});
     return result;
 }
 
@@ -83,10 +89,12 @@ struct Expectation {
     const check::Model& model;
     Dependencies dependencies;  ///< as the plan has them, from which the class was made
     double rounding;
+    check::Values values;
 
     std::optional<std::string> mismatch(const reference::Trace& trace, Observed observed, const char* run) const {
         observed.dependencies = dependencies;
-        const auto found = first_mismatch(model, reference::evaluate(model, trace), observed, {rounding});
+        const Comparison comparison{rounding, values == check::Values::boolean};
+        const auto found = first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
         if (!found) return {};
         return fmt::format("{}: {}\n{}\n{}", run, *found, model.file.text(), to_csv(model, trace));
     }
@@ -116,7 +124,7 @@ TEST_P(Generated, AgreesWithTheReference) {
     for (const Subject& subject : all) {
         const auto model = load(subject.spec);
         ASSERT_TRUE(model);
-        ASSERT_TRUE(program.add(*model));
+        ASSERT_TRUE(program.add(*model, subject.values));
         const auto more = requests_for(*model, static_cast<std::uint32_t>(program.size() - 1), subject);
         requests.insert(requests.end(), more.begin(), more.end());
     }
@@ -125,8 +133,8 @@ TEST_P(Generated, AgreesWithTheReference) {
     ASSERT_EQ(result.answers.size(), requests.size());
     std::vector<Expectation> expected;
     for (std::size_t n = 0; n < all.size(); ++n)
-        expected.push_back(
-            {program.model(n), PlanRunner(program.model(n), kRoomy).dependencies(), all[n].exact ? 0 : kRounding});
+        expected.push_back({program.model(n), PlanRunner(program.model(n), kRoomy).dependencies(),
+                            all[n].exact ? 0 : kRounding, all[n].values});
     std::vector<bool> failed(all.size());  // one mismatch is told per spec
     for (std::size_t n = 0; n < requests.size(); ++n) {
         const std::uint32_t spec = requests[n].spec;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "etlmon/boolean_window.hpp"
 #include "etlmon/window.hpp"
 
 namespace temporal {
@@ -38,6 +39,7 @@ using etlmon::Lattice;
 using etlmon::max;
 using etlmon::min;
 using etlmon::Span;
+using etlmon::Truth;
 using etlmon::Value;
 
 /// How a typed test calls its value type.
@@ -51,6 +53,8 @@ template <>
 inline constexpr const char* kNameOf<Value> = "Value";
 template <>
 inline constexpr const char* kNameOf<Bits> = "Bits";
+template <>
+inline constexpr const char* kNameOf<Truth> = "Truth";
 
 inline bool same(Key a, Key b) {
     return a == b;
@@ -59,6 +63,9 @@ inline bool same(float a, float b) {
     return etlmon::key_of(a) == etlmon::key_of(b);
 }
 inline bool same(Value a, Value b) {
+    return a.low == b.low && a.high == b.high;
+}
+inline bool same(Truth a, Truth b) {
     return a.low == b.low && a.high == b.high;
 }
 inline bool same(Bits a, Bits b) {
@@ -86,6 +93,11 @@ inline Value random_value<Value>(std::mt19937& random) {
     const Key a = random_value<Key>(random);
     const Key b = random() % 2 != 0 ? a : random_value<Key>(random);
     return a < b ? Value{a, b} : Value{b, a};
+}
+template <>
+inline Truth random_value<Truth>(std::mt19937& random) {
+    const uint32_t kind = random() % 8;  // seldom true: windows run empty
+    return kind == 0 ? etlmon::kYes : kind == 1 ? etlmon::kPerhaps : etlmon::kNo;
 }
 template <>
 inline Bits random_value<Bits>(std::mt19937& random) {
@@ -151,7 +163,10 @@ template <class V>
 struct BinaryCase {
     using Value = V;
     static Span<V> element(const Streams<V>& s, size_t at) { return {s.g[at], s.f[at]}; }
-    static V result(Span<V> element) { return element.value; }
+    template <class Element>
+    static V result(Element element) {
+        return element.value;
+    }
 };
 
 template <class V>

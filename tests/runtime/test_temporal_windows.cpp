@@ -1,5 +1,5 @@
 // Delays and windows against loops written from the operators' definitions: every length up to 70, long ones sampled,
-// all Boolean streams of length 9, over keys, floats, pairs of keys and packed Booleans.
+// all Boolean streams of length 9, over keys, floats, pairs of keys, truth values and packed Booleans.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -15,6 +15,7 @@ using temporal::Bits;
 using temporal::random_streams;
 using temporal::same;
 using temporal::Streams;
+using temporal::Truth;
 
 /// The window functions on storage of their own, as an interpreter uses them.
 template <class Monoid>
@@ -55,12 +56,13 @@ template <class V>
 using CasesOf = testing::Types<temporal::GreatestCase<V>, temporal::LeastCase<V>, temporal::SinceCase<V>,
                                temporal::TriggerCase<V>, temporal::UntilCase<V>, temporal::ReleaseCase<V>>;
 
-using AllCases = testing::Types<temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>,
-                                temporal::TriggerCase<Key>, temporal::UntilCase<Key>, temporal::ReleaseCase<Key>,
-                                temporal::GreatestCase<Value>, temporal::LeastCase<Value>, temporal::SinceCase<Value>,
-                                temporal::TriggerCase<Value>, temporal::UntilCase<Value>, temporal::ReleaseCase<Value>,
-                                temporal::GreatestCase<float>, temporal::LeastCase<float>, temporal::TriggerCase<float>,
-                                temporal::UntilCase<float>, temporal::LeastCase<Bits>, temporal::SinceCase<Bits>>;
+using AllCases = testing::Types<
+    temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>, temporal::TriggerCase<Key>,
+    temporal::UntilCase<Key>, temporal::ReleaseCase<Key>, temporal::GreatestCase<Value>, temporal::LeastCase<Value>,
+    temporal::SinceCase<Value>, temporal::TriggerCase<Value>, temporal::UntilCase<Value>, temporal::ReleaseCase<Value>,
+    temporal::GreatestCase<float>, temporal::LeastCase<float>, temporal::TriggerCase<float>, temporal::UntilCase<float>,
+    temporal::LeastCase<Bits>, temporal::SinceCase<Bits>, temporal::GreatestCase<Truth>, temporal::LeastCase<Truth>,
+    temporal::SinceCase<Truth>, temporal::TriggerCase<Truth>, temporal::UntilCase<Truth>, temporal::ReleaseCase<Truth>>;
 TYPED_TEST_SUITE(TemporalWindow, AllCases, temporal::CaseNames);
 
 TYPED_TEST(TemporalWindow, EveryLengthTo70) {
@@ -190,6 +192,10 @@ TEST(TemporalDelay, ClassesAndReset) {
     expect_delay<Value, 2>(etlmon::kFalse);
     expect_delay<float, 3>(1.5f);
     expect_delay<Bits, 64>({7});
+    expect_delay<Truth, 1>(etlmon::kYes);
+    expect_delay<Truth, 16>(etlmon::kPerhaps);
+    expect_delay<Truth, 17>(etlmon::kNo);
+    expect_delay<Truth, 100>(etlmon::kYes);
     expect_delay<Value, 100000>(etlmon::kTrue);
 }
 

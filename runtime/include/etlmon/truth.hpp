@@ -20,8 +20,6 @@ constexpr Truth kYes{true, true};
 constexpr Truth kNo{false, false};
 constexpr Truth kPerhaps{false, true};  ///< a sample is missing
 
-constexpr bool min(bool a, bool b) noexcept { return a && b; }
-constexpr bool max(bool a, bool b) noexcept { return a || b; }
 constexpr Truth min(Truth a, Truth b) noexcept { return {a.low && b.low, a.high && b.high}; }
 constexpr Truth max(Truth a, Truth b) noexcept { return {a.low || b.low, a.high || b.high}; }
 constexpr Truth negate(Truth a) noexcept { return {!a.high, !a.low}; }

@@ -35,6 +35,10 @@ constexpr Key kBottom = -0x7f800000;  ///< -inf: false
 constexpr Key min(Key a, Key b) noexcept { return b < a ? b : a; }
 constexpr Key max(Key a, Key b) noexcept { return a < b ? b : a; }
 
+/// Of truth values: "and" and "or".
+constexpr bool min(bool a, bool b) noexcept { return a && b; }
+constexpr bool max(bool a, bool b) noexcept { return a || b; }
+
 /// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the flags. Of two zeros,
 /// a.
 ETLMON_INLINE float min(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }

@@ -61,6 +61,16 @@ inline void write_verdict(const etlmon::Verdict& verdict) {
   write(verdict.upper);
 }
 
+/// What a verdict without numbers says about them: -inf is false and +inf true.
+inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
+  etlmon::Verdict numbers;
+  numbers.status = verdict.status;
+  numbers.robustness = etlmon::float_of(verdict.satisfied() ? etlmon::kTop : etlmon::kBottom);
+  numbers.lower = etlmon::float_of(verdict.final() && verdict.satisfied() ? etlmon::kTop : etlmon::kBottom);
+  numbers.upper = etlmon::float_of(verdict.final() && verdict.violated() ? etlmon::kBottom : etlmon::kTop);
+  write_verdict(numbers);
+}
+
 // Where the class has no such input or predicate, because no monitor depends on it, the overloads for `long` are taken.
 // Each is instantiated for the members of one spec by the macros below.
 #define HARNESS_INPUT(name)                                                             \
