@@ -91,11 +91,12 @@ class Flag {
 
 #if defined(ETLMON_HAS_PACKS)
 namespace detail {
-/// Bits that have their sign set where one of four floats is not finite: adding one to the exponent carries there.
+/// Bits that have their sign set where one of four floats is not finite: where its exponent is beyond the greatest
+/// finite.
 ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
   PackBits bits;
   copy_bytes(&bits, x, sizeof bits);
-  return (bits & 0x7f800000) + 0x00800000;
+  return 0x7f000000 - (bits & 0x7f800000);
 }
 }  // namespace detail
 #endif
