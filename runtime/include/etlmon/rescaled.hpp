@@ -185,5 +185,31 @@ Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float
   }
 }
 
+/// z is row k of the set, element by element.
+template <bool InColumns>
+ETLMON_INLINE bool is_row(const float* z, const Set<InColumns>& set, uint32_t k) noexcept {
+  typename Set<InColumns>::Buffer buffer;
+  const float* row = set.row(k, buffer);
+  if ((observe(z[0] - row[0]) & ~kSignBit) != 0) return false;  // most rows end here
+  return observe(baseline::one_row<Linf>({}, z, row, z, set.dimension)) == 0;
+}
+
+template <class Metric, class Aggregation, class Size, bool InColumns>
+Measured measure_again(const float* z, const float* targets, const float* weights, Size size,
+                       Aggregation aggregation) noexcept {
+  const Set<InColumns> set{targets, size.rows(), size.dimension()};
+  if constexpr (Metric::kRescales && Aggregation::kNearest) {
+    for (uint32_t row = 0; row < set.rows; ++row) {
+      if (is_row(z, set, row)) return {0.0f, row};
+    }
+  }
+  return measure_rescaled<Metric>(z, set, weights, aggregation);
+}
+
+template <bool InColumns>
+bool is_equal(const float* z, const float* targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept {
+  return is_row(z, Set<InColumns>{targets, rows, dimension}, row);
+}
+
 }  // namespace detail
 }  // namespace etlmon

@@ -80,41 +80,15 @@ struct Tally {
   }
 };
 
-/// The measurement with scaled differences.
-template <class Metric, class Aggregation, bool InColumns>
-Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float* weights,
-                          Aggregation aggregation) noexcept;
-
-/// z is row k of the set, element by element.
-template <bool InColumns>
-bool is_row(const float* z, const Set<InColumns>& set, uint32_t k) noexcept {
-  typename Set<InColumns>::Buffer buffer;
-  const float* row = set.row(k, buffer);
-  for (uint32_t i = 0; i < set.dimension; ++i) {
-    if ((observe(z[i] - row[i]) & ~kSignBit) != 0) return false;
-  }
-  return true;
-}
-
 /// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form.
 template <class Metric, class Aggregation, class Size, bool InColumns>
 ETLMON_COLD Measured measure_again(const float* z, const float* targets, const float* weights, Size size,
-                                   Aggregation aggregation) noexcept {
-  const Set<InColumns> set{targets, size.rows(), size.dimension()};
-  if constexpr (Metric::kRescales && Aggregation::kNearest) {
-    for (uint32_t row = 0; row < set.rows; ++row) {
-      if (is_row(z, set, row)) return {0.0f, row};
-    }
-  }
-  return measure_rescaled<Metric>(z, set, weights, aggregation);
-}
+                                   Aggregation aggregation) noexcept;
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
 template <bool InColumns>
 ETLMON_COLD bool is_equal(const float* z, const float* targets, uint32_t rows, uint32_t dimension,
-                          uint32_t row) noexcept {
-  return is_row(z, Set<InColumns>{targets, rows, dimension}, row);
-}
+                          uint32_t row) noexcept;
 
 /// What the values say together. `aggregation`: as it was before it saw any.
 template <bool InColumns, class Metric, class Aggregation, class Size>
