@@ -1,0 +1,403 @@
+// The formulas that are measured: the generated class beside what one would write by hand.
+// A case has a title, the generated Monitor, the longest window, how its inputs are filled from signals, how many
+// monitors it has and how their verdicts are visited, and Plain: robustness alone, by hand; where there is a window,
+// Rescanning too, the same with each window gone through anew at each step, as straightforward monitors do.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+
+#include "always_1000.hpp"
+#include "always_eventually_50.hpp"
+#include "always_until_100.hpp"
+#include "eventually_100000.hpp"
+#include "eventually_50.hpp"
+#include "eventually_always_1000.hpp"
+#include "invariant.hpp"
+#include "machine.hpp"
+#include "machine_small.hpp"
+#include "nested.hpp"
+#include "nested_bounds.hpp"
+#include "one.hpp"
+#include "plain.hpp"
+#include "response_50.hpp"
+#include "responses.hpp"
+#include "sequence.hpp"
+#include "signals.hpp"
+#include "three.hpp"
+#include "two.hpp"
+#include "until_100.hpp"
+#include "until_10000.hpp"
+
+namespace bench {
+
+/// Spec NAME, over one, two or three signals, whose only monitor is m.
+#define BENCH_GENERATED(NAME, ...)                                         \
+    using Monitor = NAME::Monitor;                                         \
+    static NAME::Inputs inputs(const Signals& signals, std::size_t i) {    \
+        return {__VA_ARGS__};                                              \
+    }                                                                      \
+    static constexpr std::size_t kMonitors = 1;                            \
+    template <class Visit>                                                 \
+    static void visit(const NAME::Verdicts& verdicts, const Visit& take) { \
+        take(0, verdicts.m);                                               \
+    }
+#define BENCH_P signals.p[i]
+#define BENCH_PQ signals.p[i], signals.q[i]
+#define BENCH_PQR signals.p[i], signals.q[i], signals.r[i]
+
+struct NoRescanning {};
+
+/// No operator that remembers anything: what the samples, the predicates and the verdict cost alone.
+struct One {
+    static constexpr const char* kTitle = "p, sliding";
+    static constexpr uint32_t kWindow = 1;
+    BENCH_GENERATED(one, BENCH_P)
+    struct Plain {
+        void reset() {}
+        void step(const Signals& s, std::size_t i, float* rho) { *rho = s.p[i]; }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Two {
+    static constexpr const char* kTitle = "p && q, sliding";
+    static constexpr uint32_t kWindow = 1;
+    BENCH_GENERATED(two, BENCH_PQ)
+    struct Plain {
+        void reset() {}
+        void step(const Signals& s, std::size_t i, float* rho) { *rho = smaller(s.p[i], s.q[i]); }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Three {
+    static constexpr const char* kTitle = "p && q && r, sliding";
+    static constexpr uint32_t kWindow = 1;
+    BENCH_GENERATED(three, BENCH_PQR)
+    struct Plain {
+        void reset() {}
+        void step(const Signals& s, std::size_t i, float* rho) { *rho = smaller(smaller(s.p[i], s.q[i]), s.r[i]); }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Invariant {
+    static constexpr const char* kTitle = "G p";
+    static constexpr uint32_t kWindow = 1;
+    BENCH_GENERATED(invariant, BENCH_P)
+    struct Plain {
+        float worst;
+        void reset() { worst = kInfinity; }
+        void step(const Signals& s, std::size_t i, float* rho) { *rho = worst = smaller(worst, s.p[i]); }
+    };
+    using Rescanning = NoRescanning;
+};
+
+struct Sequence {
+    static constexpr const char* kTitle = "F (p && F (q && F r))";
+    static constexpr uint32_t kWindow = 1;
+    BENCH_GENERATED(sequence, BENCH_PQR)
+    struct Plain {
+        float first, second, third;
+        void reset() { first = second = third = -kInfinity; }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            first = larger(first, s.p[i]);
+            second = larger(second, smaller(first, s.q[i]));
+            *rho = third = larger(third, smaller(second, s.r[i]));
+        }
+    };
+    using Rescanning = NoRescanning;
+};
+
+/// A window about every position.
+template <template <class, uint32_t> class Window, class Monoid, uint32_t N>
+struct Sliding {
+    Window<Monoid, N> window;
+    void reset() { window.reset(); }
+    void step(const Signals& s, std::size_t i, float* rho) { *rho = window.push(s.p[i]); }
+};
+
+template <template <class, uint32_t> class Window, uint32_t N>
+struct SlidingUntil {
+    Window<PlainUntil, N> window;
+    void reset() { window.reset(); }
+    void step(const Signals& s, std::size_t i, float* rho) { *rho = window.push({s.q[i], s.p[i]}).value; }
+};
+
+struct Eventually50 {
+    static constexpr const char* kTitle = "F[0,50] p, sliding";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(eventually_50, BENCH_P)
+    using Plain = Sliding<PlainWindow, PlainMax, 51>;
+    using Rescanning = Sliding<Rescan, PlainMax, 51>;
+};
+
+struct Always1000 {
+    static constexpr const char* kTitle = "G[0,1000] p, sliding";
+    static constexpr uint32_t kWindow = 1000;
+    BENCH_GENERATED(always_1000, BENCH_P)
+    using Plain = Sliding<PlainWindow, PlainMin, 1001>;
+    using Rescanning = Sliding<Rescan, PlainMin, 1001>;
+};
+
+struct Eventually100000 {
+    static constexpr const char* kTitle = "F[0,100000] p, sliding";
+    static constexpr uint32_t kWindow = 100000;
+    BENCH_GENERATED(eventually_100000, BENCH_P)
+    using Plain = Sliding<PlainWindow, PlainMax, 100001>;
+    using Rescanning = NoRescanning;
+};
+
+struct Until100 {
+    static constexpr const char* kTitle = "p U[0,100] q, sliding";
+    static constexpr uint32_t kWindow = 100;
+    BENCH_GENERATED(until_100, BENCH_PQ)
+    using Plain = SlidingUntil<PlainWindow, 101>;
+    using Rescanning = SlidingUntil<Rescan, 101>;
+};
+
+struct Until10000 {
+    static constexpr const char* kTitle = "p U[0,10000] q, sliding";
+    static constexpr uint32_t kWindow = 10000;
+    BENCH_GENERATED(until_10000, BENCH_PQ)
+    using Plain = SlidingUntil<PlainWindow, 10001>;
+    using Rescanning = NoRescanning;
+};
+
+struct AlwaysEventually50 {
+    static constexpr const char* kTitle = "G F[0,50] p";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(always_eventually_50, BENCH_P)
+    template <template <class, uint32_t> class Window>
+    struct ByHand {
+        Window<PlainMax, 51> window;
+        float settled;
+        uint32_t steps;
+        void reset() {
+            window.reset();
+            settled = kInfinity;
+            steps = 0;
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            const float seen = window.push(s.p[i]);
+            if (steps >= 50)
+                settled = smaller(settled, seen);
+            else
+                ++steps;
+            *rho = smaller(settled, s.p[i]);
+        }
+    };
+    using Plain = ByHand<PlainWindow>;
+    using Rescanning = ByHand<Rescan>;
+};
+
+struct EventuallyAlways1000 {
+    static constexpr const char* kTitle = "F G[0,1000] p";
+    static constexpr uint32_t kWindow = 1000;
+    BENCH_GENERATED(eventually_always_1000, BENCH_P)
+    template <template <class, uint32_t> class Window>
+    struct ByHand {
+        Window<PlainMin, 1001> window;
+        float settled;
+        uint32_t steps;
+        void reset() {
+            window.reset();
+            settled = -kInfinity;
+            steps = 0;
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            const float seen = window.push(s.p[i]);
+            if (steps >= 1000)
+                settled = larger(settled, seen);
+            else
+                ++steps;
+            *rho = larger(settled, s.p[i]);
+        }
+    };
+    using Plain = ByHand<PlainWindow>;
+    using Rescanning = ByHand<Rescan>;
+};
+
+/// On a prefix p U[0,100] q holds everywhere where q is met in time everywhere, and p or q holds everywhere.
+struct AlwaysUntil100 {
+    static constexpr const char* kTitle = "G (p U[0,100] q)";
+    static constexpr uint32_t kWindow = 100;
+    BENCH_GENERATED(always_until_100, BENCH_PQ)
+    template <template <class, uint32_t> class Window>
+    struct ByHand {
+        Window<PlainMax, 101> window;
+        float settled, held;
+        uint32_t steps;
+        void reset() {
+            window.reset();
+            settled = held = kInfinity;
+            steps = 0;
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            const float seen = window.push(s.q[i]);
+            if (steps >= 100)
+                settled = smaller(settled, seen);
+            else
+                ++steps;
+            held = smaller(held, larger(s.p[i], s.q[i]));
+            *rho = smaller(smaller(settled, s.q[i]), held);
+        }
+    };
+    using Plain = ByHand<PlainWindow>;
+    using Rescanning = ByHand<Rescan>;
+};
+
+/// G[0,Outer] (p -> F[0,W] q) on the prefix: settled requests, and pending ones, which a q answers all at once.
+template <template <class, uint32_t> class Window, uint32_t W, uint32_t Outer>
+struct Responding {
+    Window<PlainMax, W + 1> answers;
+    PlainDelay<W> excuses;
+    float settled, pending;
+    uint32_t steps;
+    void reset() {
+        answers.reset();
+        excuses.reset(kInfinity);
+        settled = pending = kInfinity;
+        steps = 0;
+    }
+    void step(const Signals& s, std::size_t i, float* rho) {
+        const float excuse = -s.p[i];
+        const float value = larger(answers.push(s.q[i]), excuses.push(excuse));
+        if (steps >= W && (Outer == kForever || steps <= Outer + W)) settled = smaller(settled, value);
+        if (Outer == kForever || steps <= Outer) pending = smaller(pending, excuse);
+        pending = larger(pending, s.q[i]);
+        if (Outer != kForever || steps < W) ++steps;
+        *rho = smaller(settled, pending);
+    }
+    static constexpr uint32_t kForever = 0xffffffff;
+};
+
+struct Response50 {
+    static constexpr const char* kTitle = "G (p -> F[0,50] q)";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(response_50, BENCH_PQ)
+    using Plain = Responding<PlainWindow, 50, 0xffffffff>;
+    using Rescanning = Responding<Rescan, 50, 0xffffffff>;
+};
+
+struct NestedBounds {
+    static constexpr const char* kTitle = "G[0,1000] (p -> F[0,100] q)";
+    static constexpr uint32_t kWindow = 1100;
+    BENCH_GENERATED(nested_bounds, BENCH_PQ)
+    using Plain = Responding<PlainWindow, 100, 1000>;
+    using Rescanning = Responding<Rescan, 100, 1000>;
+};
+
+struct Nested {
+    static constexpr const char* kTitle = "G[0,1000] (p -> F[0,100] q), sliding";
+    static constexpr uint32_t kWindow = 1100;
+    BENCH_GENERATED(nested, BENCH_PQ)
+    template <template <class, uint32_t> class Window>
+    struct ByHand {
+        Window<PlainMax, 101> answers;
+        PlainDelay<100> excuses;
+        Window<PlainMin, 1001> all;
+        void reset() {
+            answers.reset();
+            excuses.reset(kInfinity);
+            all.reset();
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            *rho = all.push(larger(answers.push(s.q[i]), excuses.push(-s.p[i])));
+        }
+    };
+    using Plain = ByHand<PlainWindow>;
+    using Rescanning = ByHand<Rescan>;
+};
+
+/// Ten windows over one signal: each the larger of the one before and of what that was ten steps ago.
+struct Responses {
+    static constexpr const char* kTitle = "ten of G (p -> F[0,w] q)";
+    static constexpr uint32_t kWindow = 100;
+    using Monitor = responses::Monitor;
+    static responses::Inputs inputs(const Signals& signals, std::size_t i) { return {BENCH_PQ}; }
+    static constexpr std::size_t kMonitors = 10;
+    template <class Visit>
+    static void visit(const responses::Verdicts& verdicts, const Visit& take) {
+        const etlmon::Verdict* const all[] = {&verdicts.m10, &verdicts.m20, &verdicts.m30, &verdicts.m40,
+                                              &verdicts.m50, &verdicts.m60, &verdicts.m70, &verdicts.m80,
+                                              &verdicts.m90, &verdicts.m100};
+        for (std::size_t m = 0; m < kMonitors; ++m) take(m, *all[m]);
+    }
+    struct Plain {
+        PlainWindow<PlainMax, 11> window;
+        PlainDelay<10> answers[9], excuses[10];
+        float settled[10], pending;
+        uint32_t steps;
+        void reset() {
+            window.reset();
+            for (auto& delay : answers) delay.reset(-kInfinity);
+            for (auto& delay : excuses) delay.reset(kInfinity);
+            for (float& value : settled) value = kInfinity;
+            pending = kInfinity;
+            steps = 0;
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            float excuse = -s.p[i];
+            float answer = window.push(s.q[i]);
+            pending = larger(smaller(pending, excuse), s.q[i]);
+            for (uint32_t m = 0; m < 10; ++m) {
+                excuse = excuses[m].push(excuse);
+                if (m > 0) answer = larger(answer, answers[m - 1].push(answer));
+                if (steps >= 10 * (m + 1)) settled[m] = smaller(settled[m], larger(answer, excuse));
+                rho[m] = smaller(settled[m], pending);
+            }
+            if (steps < 100) ++steps;
+        }
+    };
+    template <template <class, uint32_t> class Window>
+    struct EachOnItsOwn {
+        Responding<Window, 10, 0xffffffff> w10;
+        Responding<Window, 20, 0xffffffff> w20;
+        Responding<Window, 30, 0xffffffff> w30;
+        Responding<Window, 40, 0xffffffff> w40;
+        Responding<Window, 50, 0xffffffff> w50;
+        Responding<Window, 60, 0xffffffff> w60;
+        Responding<Window, 70, 0xffffffff> w70;
+        Responding<Window, 80, 0xffffffff> w80;
+        Responding<Window, 90, 0xffffffff> w90;
+        Responding<Window, 100, 0xffffffff> w100;
+        template <class Visit>
+        void each(const Visit& take) {
+            take(w10), take(w20), take(w30), take(w40), take(w50), take(w60), take(w70), take(w80), take(w90),
+                take(w100);
+        }
+        void reset() {
+            each([](auto& response) { response.reset(); });
+        }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            each([&](auto& response) { response.step(s, i, rho++); });
+        }
+    };
+    using Rescanning = EachOnItsOwn<Rescan>;
+};
+
+/// A general state machine: no loop by hand is known to be cheaper than the definition over the horizon.
+struct SmallMachine {
+    static constexpr const char* kTitle = "G (p -> F[0,4] (q && X r))";
+    static constexpr uint32_t kWindow = 5;
+    BENCH_GENERATED(machine_small, BENCH_PQR)
+    using Plain = NoRescanning;
+    using Rescanning = NoRescanning;
+};
+
+struct LargeMachine {
+    static constexpr const char* kTitle = "G (p U[2,20] (q && F[0,30] r))";
+    static constexpr uint32_t kWindow = 50;
+    BENCH_GENERATED(machine, BENCH_PQR)
+    using Plain = NoRescanning;
+    using Rescanning = NoRescanning;
+};
+
+#undef BENCH_GENERATED
+#undef BENCH_P
+#undef BENCH_PQ
+#undef BENCH_PQR
+
+}  // namespace bench

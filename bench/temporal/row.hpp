@@ -1,0 +1,142 @@
+// One formula of cases.hpp as routines to be timed and compared.
+// Takes: a case and signals. Gives: what to run, and what the monitor holds. Keeps true: all routines of a row go over
+// the same samples, write what they find to memory, and were seen to agree on every robustness.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "cases.hpp"
+#include "etlmon/verdict.hpp"
+#include "timing.hpp"
+
+namespace bench {
+
+constexpr std::size_t kSteps = 1 << 15;
+constexpr std::size_t kChunk = 512;  ///< results are written over again, so that they stay in the first-level cache
+
+struct Row {
+    std::string title;
+    std::size_t state_bytes = 0;
+    std::uint32_t operations = 0;
+    std::optional<Routine> plain, rescan;  ///< robustness by hand
+    std::optional<Routine> plain_called;   ///< the same, its state in memory between steps
+    Routine rho;                           ///< the monitor; its user reads `robustness` alone
+    Routine verdict;                       ///< its user reads all of the verdict
+    Routine called;                        ///< the same, its state in memory between steps
+    std::function<double()> worst;         ///< nanoseconds of its slowest step
+};
+
+/// The monitor's user, in a loop: a chunk of steps, robustness alone.
+template <class Case>
+[[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
+                                       float* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i)
+        Case::visit(monitor.step(Case::inputs(signals, from + i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
+            out[i * Case::kMonitors + m] = verdict.robustness;
+        });
+}
+
+/// A chunk of steps, all of every verdict. Called: each step finds the state in memory and leaves it there.
+template <class Case, bool kCalled>
+[[gnu::noinline]] void read_verdict(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
+                                    etlmon::Verdict* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i) {
+        Case::visit(monitor.step(Case::inputs(signals, from + i)),
+                    [&](std::size_t m, const etlmon::Verdict& verdict) { out[i * Case::kMonitors + m] = verdict; });
+        if (kCalled) settle_memory();
+    }
+}
+
+template <class ByHand, std::size_t kMonitors, bool kCalled>
+[[gnu::noinline]] void by_hand(ByHand& monitor, const Signals& signals, std::size_t from, float* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i) {
+        monitor.step(signals, from + i, out + i * kMonitors);
+        if (kCalled) settle_memory();
+    }
+}
+
+/// Goes over all steps, chunk by chunk, with something that takes a chunk.
+template <class Result, class State, class Chunk>
+Routine routine(const std::string& name, std::size_t monitors, const std::shared_ptr<const Signals>& signals,
+                const Chunk& chunk) {
+    const auto state = std::make_shared<State>();
+    const auto results = std::make_shared<std::vector<Result>>(kChunk * monitors);
+    state->reset();
+    return {name,
+            [=] {
+                for (std::size_t from = 0; from < kSteps; from += kChunk) {
+                    chunk(*state, *signals, from, results->data());
+                    settle_memory();
+                }
+            },
+            kSteps};
+}
+
+/// Stops where two that are compared do not compute the same.
+template <class Case, class ByHand>
+void check(const Signals& signals) {
+    const auto monitor = std::make_unique<typename Case::Monitor>();
+    const auto by_hand = std::make_unique<ByHand>();
+    monitor->reset();
+    by_hand->reset();
+    float rho[Case::kMonitors];
+    for (std::size_t i = 0; i < signals.size(); ++i) {
+        by_hand->step(signals, i, rho);
+        Case::visit(monitor->step(Case::inputs(signals, i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
+            if (verdict.decided() && verdict.robustness != rho[m])
+                throw std::logic_error(std::string(Case::kTitle) + ": the loop by hand disagrees at step " +
+                                       std::to_string(i));
+        });
+    }
+}
+
+template <class Case>
+double slowest_step() {
+    const Signals signals = saws(std::max<std::size_t>(Case::kWindow, 1024));
+    const auto monitor = std::make_unique<typename Case::Monitor>();
+    std::vector<etlmon::Verdict> verdicts(Case::kMonitors);
+    return worst_step(
+        signals.size(), [&] { monitor->reset(); },
+        [&](std::size_t i) {
+            Case::visit(monitor->step(Case::inputs(signals, i)),
+                        [&](std::size_t m, const etlmon::Verdict& verdict) { verdicts[m] = verdict; });
+        });
+}
+
+template <class Case>
+Row row() {
+    using Monitor = typename Case::Monitor;
+    constexpr std::size_t kMonitors = Case::kMonitors;
+    const auto signals = std::make_shared<const Signals>(walks(kSteps));
+    Row result;
+    result.title = Case::kTitle;
+    result.state_bytes = Monitor::kStateBytes;
+    result.operations = Monitor::kOperations;
+    if constexpr (!std::is_same_v<typename Case::Plain, NoRescanning>) {
+        using Plain = typename Case::Plain;
+        check<Case, Plain>(*signals);
+        result.plain = routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>);
+        result.plain_called =
+            routine<float, Plain>("plain, called", kMonitors, signals, by_hand<Plain, kMonitors, true>);
+    }
+    if constexpr (!std::is_same_v<typename Case::Rescanning, NoRescanning>) {
+        using Rescanning = typename Case::Rescanning;
+        check<Case, Rescanning>(*signals);
+        result.rescan = routine<float, Rescanning>("rescan", kMonitors, signals, by_hand<Rescanning, kMonitors, false>);
+    }
+    result.rho = routine<float, Monitor>("robustness", kMonitors, signals, read_robustness<Case>);
+    result.verdict = routine<etlmon::Verdict, Monitor>("verdict", kMonitors, signals, read_verdict<Case, false>);
+    result.called = routine<etlmon::Verdict, Monitor>("verdict, called", kMonitors, signals, read_verdict<Case, true>);
+    result.worst = slowest_step<Case>;
+    return result;
+}
+
+}  // namespace bench
