@@ -3,11 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <map>
-#include <mutex>
-#include <thread>
 
+#include "calibrate/parallel.hpp"
 #include "calibrate/rank.hpp"
 #include "check/provenance.hpp"
 #include "data/episodes.hpp"
@@ -19,8 +17,6 @@ namespace {
 
 using check::ThresholdOrigin;
 using diag::Code;
-
-constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
 
 std::string counted(std::uint64_t n, const std::string& noun) {
     return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
@@ -159,49 +155,17 @@ thresholds::Entry entry_of(const check::Model& model, Index predicate, const std
 
 }  // namespace
 
-std::optional<std::vector<Demonstration>> score_all(const check::Model& model, const std::vector<Index>& predicates,
-                                                    const std::vector<std::string>& paths, const Request& request,
-                                                    diag::Sink& sink) {
-    std::vector<std::optional<diag::Result<Demonstration>>> results(paths.size());
-    std::atomic<std::size_t> next = 0;
-    std::size_t done = 0;
-    std::mutex reporting;
-    const auto work = [&] {
-        Scorer scorer(model, predicates, request.names);
-        for (std::size_t i = next++; i < paths.size(); i = next++) {
-            results[i].emplace(scorer.score(paths[i]));
-            const std::lock_guard lock(reporting);
-            ++done;
-            if (request.progress) request.progress(done, paths.size());
-        }
-    };
-    const std::size_t cores = std::max(1U, request.jobs > 0 ? request.jobs : std::thread::hardware_concurrency());
-    std::vector<std::thread> others;
-    for (std::size_t i = 1; i < std::min(cores, paths.size()); ++i) others.emplace_back(work);
-    work();
-    for (std::thread& other : others) other.join();
-    std::vector<Demonstration> demonstrations;
-    std::size_t failed = 0;
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (*results[i])
-            demonstrations.push_back(std::move(**results[i]));
-        else if (++failed <= kMostReported)
-            sink.report(data::in_file(results[i]->failure(), paths[i]));
-    }
-    if (failed > 0) return std::nullopt;
-    return demonstrations;
-}
-
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink) {
     const std::vector<Index> predicates = calibrated_predicates(model);
     if (predicates.empty()) {
-        sink.report(Code::nothing_to_calibrate, model.monitors.front().span, "no threshold of this spec is calibrated")
+        sink.report(Code::nothing_to_calibrate, model.monitors.front().span, "nothing in this spec is calibrated")
             .note("a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, alpha = 0.1);");
         return std::nullopt;
     }
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
-    const auto demonstrations = score_all(model, predicates, paths, request, sink);
+    const auto demonstrations = over_episodes<Demonstration>(
+        paths, request, sink, [&] { return std::make_unique<Scorer>(model, predicates, request.names); });
     if (!demonstrations) return std::nullopt;
     refuse_duplicates(*demonstrations, sink);
     refuse_leaks(model, *demonstrations, sink);

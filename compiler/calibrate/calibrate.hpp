@@ -35,11 +35,6 @@ struct Calibration {
 /// Nothing where the sink now says why.
 std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink);
 
-/// Scores all episodes, on several threads, in the order of `paths`; nothing where some cannot be read.
-std::optional<std::vector<Demonstration>> score_all(const check::Model& model, const std::vector<Index>& predicates,
-                                                    const std::vector<std::string>& paths, const Request& request,
-                                                    diag::Sink& sink);
-
 /// What the thresholds are, what they were taken from, and what they guarantee. `model` has them already.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
                    const std::vector<Demonstration>& demonstrations, const std::vector<Fitted>& fitted);

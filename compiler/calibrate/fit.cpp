@@ -12,7 +12,18 @@ namespace {
 
 using check::ThresholdOrigin;
 
-/// The first float32 strictly beyond the k-th smallest reach.
+/// true positives / (positives + found): half of F1, compared without rounding.
+struct HalfF1 {
+    std::uint64_t true_positives = 0;
+    std::uint64_t of = 1;
+
+    double value() const { return 2 * static_cast<double>(true_positives) / static_cast<double>(of); }
+    /// Frames are fewer than 2^32 in any memory, so the products fit.
+    bool operator<(const HalfF1& other) const { return true_positives * other.of < other.true_positives * of; }
+};
+
+}  // namespace
+
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
     Fitted result;
     result.n = reaches.size();
@@ -26,18 +37,6 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
     if (std::isinf(result.epsilon)) return Refusal::not_finite;
     return result;
 }
-
-/// true positives / (positives + found): half of F1, compared without rounding.
-struct HalfF1 {
-    std::uint64_t true_positives = 0;
-    std::uint64_t of = 1;
-
-    double value() const { return 2 * static_cast<double>(true_positives) / static_cast<double>(of); }
-    /// Frames are fewer than 2^32 in any memory, so the products fit.
-    bool operator<(const HalfF1& other) const { return true_positives * other.of < other.true_positives * of; }
-};
-
-}  // namespace
 
 Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
     std::sort(labelled.begin(), labelled.end(), [](const auto& a, const auto& b) { return a.score < b.score; });

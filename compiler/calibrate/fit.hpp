@@ -34,6 +34,9 @@ using Fit = std::variant<Fitted, Refusal>;
 /// `of`: which of the demonstrations' scores are this predicate's.
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of);
 
+/// The first float32 strictly beyond the k-th smallest, k the rank of alpha. `scores` stays empty.
+Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
+
 /// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1; of equals the
 /// least. Scores are those of all labelled frames.
 Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict);

@@ -90,6 +90,7 @@ std::string monitor_report(const check::Model& model) {
     for (const check::Monitor& monitor : model.monitors) widest = std::max(widest, monitor.name.size());
     std::string text = "\nguarantees\n";
     for (const check::Monitor& monitor : model.monitors) {
+        if (monitor.calibration) continue;  // its own calibration comes later
         for (const Claim& claim : check::claims(model, monitor)) {
             if (claim.part.empty())
                 text += fmt::format("    {:<{}}  {}\n", monitor.name, widest, check::text(claim));

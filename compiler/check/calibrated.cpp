@@ -79,22 +79,72 @@ std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, 
     return alpha;
 }
 
+Threshold uncalibrated(const ast::Calibrated& written, const Method& method, const std::string& alpha) {
+    Threshold threshold;
+    threshold.origin = method.origin;
+    threshold.alpha = alpha;
+    threshold.text = method.has_alpha ? fmt::format("calibrated({}, alpha = {})", method.name, alpha)
+                                      : fmt::format("calibrated({})", method.name);
+    threshold.value64 = std::numeric_limits<double>::quiet_NaN();
+    threshold.value = std::numeric_limits<float>::quiet_NaN();
+    threshold.span = written.span;
+    return threshold;
+}
+
+constexpr std::string_view kMonitorForm = "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
+
+/// The value of `against`, where it is one.
+std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
+    const auto* name = std::get_if<ast::Name>(&argument.value);
+    for (const Against against : {Against::missed_alarm, Against::missed_success})
+        if (name != nullptr && name->text == word(against)) return against;
+    const Span span = name != nullptr ? name->span : std::get<ast::Number>(argument.value).span;
+    c.report(Code::calibration_argument, span, "expected against = missed_alarm or against = missed_success");
+    return std::nullopt;
+}
+
 }  // namespace
+
+std::string_view word(Against against) {
+    return against == Against::missed_alarm ? "missed_alarm" : "missed_success";
+}
+
+std::optional<MonitorCalibration> check_monitor_calibrated(Context& c, const ast::Calibrated& written) {
+    const Method* method = find_method(c, written.method);
+    if (method == nullptr) return std::nullopt;
+    if (method->origin != ThresholdOrigin::conformal) {
+        c.report(Code::unknown_method, written.method.span,
+                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates", method->name))
+            .note(fmt::format("expected {}", kMonitorForm));
+        return std::nullopt;
+    }
+    std::optional<Against> against;
+    ast::Calibrated rest = written;
+    std::erase_if(rest.arguments, [](const auto& argument) { return argument.key.text == "against"; });
+    const std::size_t errors = c.sink.errors();
+    for (const ast::Calibrated::Argument& argument : written.arguments) {
+        if (argument.key.text != "against") continue;
+        if (against) c.report(Code::calibration_argument, argument.key.span, "against is given twice");
+        against = against_of(c, argument);
+    }
+    const auto alpha = alpha_of(c, rest, *method);
+    if (!alpha || c.sink.errors() > errors) return std::nullopt;
+    if (!against) {
+        c.report(Code::calibration_argument, written.span,
+                 fmt::format("a monitor is calibrated against one kind of error; expected {}", kMonitorForm));
+        return std::nullopt;
+    }
+    MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
+    result.threshold.text = fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));
+    return result;
+}
 
 std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;
     const auto alpha = alpha_of(c, written, *method);
     if (!alpha) return std::nullopt;
-    Threshold threshold;
-    threshold.origin = method->origin;
-    threshold.alpha = *alpha;
-    threshold.text = method->has_alpha ? fmt::format("calibrated({}, alpha = {})", method->name, *alpha)
-                                       : fmt::format("calibrated({})", method->name);
-    threshold.value64 = std::numeric_limits<double>::quiet_NaN();
-    threshold.value = std::numeric_limits<float>::quiet_NaN();
-    threshold.span = written.span;
-    return threshold;
+    return uncalibrated(written, *method, *alpha);
 }
 
 }  // namespace etlc::check

@@ -15,4 +15,9 @@ namespace etlc::check {
 /// The threshold with its method and alpha, epsilon still NaN; nothing where the words had an error, which is reported.
 std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrated& written);
 
+/// The same of a whole monitor, whose arguments are alpha and against.
+std::optional<MonitorCalibration> check_monitor_calibrated(Context& context, const ast::Calibrated& written);
+
+std::string_view word(Against against);  ///< "missed_alarm"
+
 }  // namespace etlc::check

@@ -18,6 +18,8 @@ struct Options {
     std::string thresholds_path;
     /// `etlc calibrate` reads a spec before it has thresholds: epsilon is then NaN and no file is looked for.
     bool allow_uncalibrated = false;
+    /// Or before it has those of its monitors: their shift is then NaN.
+    bool allow_uncalibrated_monitors = false;
 };
 
 /// Where the thresholds of a spec are looked for: SPEC.thresholds.json beside SPEC.etl.

@@ -147,6 +147,7 @@ private:
     }
 
     void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
+        if (monitor.calibration) return;  // shifted, each by its own
         const auto [first, is_new] = monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &entity);
         if (is_new) return;
         c_.report(Code::same_definition, entity.span,

@@ -161,6 +161,12 @@ bool is_own_truth(const Model& model, Index predicate) {
 }
 
 std::vector<Claim> claims(const Model& model, const Monitor& monitor) {
+    if (monitor.calibration) {
+        const bool alarms = monitor.calibration->against == Against::missed_alarm;
+        Claim whole{alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success, {}, {}, {}};
+        whole.bound = Decimal::parse(monitor.calibration->threshold.alpha).text();
+        return {whole};
+    }
     std::vector<Claim> result{claim(model, {monitor.formula, false})};
     if (result.front().kind != Claim::Kind::nothing) return result;
     std::vector<Literal> conjuncts;

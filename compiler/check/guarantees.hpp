@@ -27,7 +27,8 @@ struct Claim {
     std::string why;    ///< nothing: what is in the way
 };
 
-/// The claim about the whole; where that is nothing because polarities mix, the claims about its conjuncts follow.
+/// Of a monitor that is calibrated as a whole, what that guarantees; else the claim about the whole and, where that is
+/// nothing, about its conjuncts.
 std::vector<Claim> claims(const Model& model, const Monitor& monitor);
 
 /// In words: "P(some verdict of a new episode misses a success) <= 0.1", "nothing: 'p' is f1-calibrated".

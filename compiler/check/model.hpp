@@ -174,11 +174,22 @@ struct Formula {
     Span span;
 };
 
+/// Which error a calibrated monitor is guaranteed against.
+enum class Against : std::uint8_t { missed_alarm, missed_success };
+
+/// `calibrated(conformal, alpha = 0.1, against = missed_alarm)` behind a formula: rho, lower and upper are less by
+/// threshold.value.
+struct MonitorCalibration {
+    Threshold threshold;
+    Against against = Against::missed_alarm;
+};
+
 struct Monitor {
     std::string name;
     Index formula = 0;
     bool sliding = false;
     std::uint32_t horizon = 0;  ///< sliding: steps of delay; 0 otherwise
+    std::optional<MonitorCalibration> calibration{};
     Span span;
 };
 

@@ -1,6 +1,7 @@
 // Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
 #include <fmt/format.h>
 
+#include "check/calibrated.hpp"
 #include "check/formulas.hpp"
 #include "check/horizons.hpp"
 #include "check/steps.hpp"
@@ -165,10 +166,7 @@ void check_monitors(Context& c) {
         monitor.span = declaration.span;
         monitor.sliding = declaration.sliding;
         monitor.formula = check_formula(c, *declaration.formula);
-        if (declaration.calibrated)
-            c.report(Code::calibration_not_available, declaration.calibrated->span,
-                     "calibration of a whole monitor is not available in this version")
-                .note("calibrate its predicates: predicate p = min l2(z, t) <= calibrated(conformal, alpha = 0.1);");
+        if (declaration.calibrated) monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
         if (monitor.formula == kNone) c.scope.entity(NameKind::monitor, index).broken = true;
         c.model.monitors.push_back(std::move(monitor));
     });

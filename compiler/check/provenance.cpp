@@ -1,5 +1,7 @@
 #include "check/provenance.hpp"
 
+#include <fmt/format.h>
+
 #include <set>
 
 #include "data/array.hpp"
@@ -47,6 +49,10 @@ std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen)
 std::string text_with_definitions(const Model& model, Index formula, const std::vector<bool>& seen) {
     std::string text = print(model, formula);
     std::string_view separator = " where ";
+    const auto epsilon = [](const Threshold& threshold) {
+        const bool literal = threshold.origin == ThresholdOrigin::literal;
+        return literal ? threshold.text : fmt::format("{:.9g} from {}", threshold.value, threshold.text);
+    };
     const auto define = [&](const std::string& name, const std::string& definition) {
         text += separator;
         text += name + " = " + definition;
@@ -54,7 +60,7 @@ std::string text_with_definitions(const Model& model, Index formula, const std::
     };
     for (const Index index : predicates_in(model, seen)) {
         const Predicate& predicate = model.predicates[index];
-        if (!predicate.name.empty()) define(predicate.name, predicate.text + predicate.threshold.text);
+        if (!predicate.name.empty()) define(predicate.name, predicate.text + epsilon(predicate.threshold));
     }
     if (lets_are_written_out(model, formula)) return text;
     for (const Let& let : model.lets) {
@@ -76,6 +82,25 @@ Provenance provenance(const Model& model, Index predicate) {
         result.truth = text_with_definitions(model, truth.formula, seen);
         for (const Index index : predicates_in(model, seen))
             add_distances(model, model.predicates[index].expression, result.truth_targets);
+    }
+    return result;
+}
+
+std::vector<Index> predicates_of(const Model& model, Index formula) {
+    const std::set<Index> found = predicates_in(model, reachable(model, formula));
+    return {found.begin(), found.end()};
+}
+
+Provenance provenance(const Model& model, const Monitor& monitor) {
+    Provenance result;
+    result.predicate = text_with_definitions(model, monitor.formula, reachable(model, monitor.formula));
+    for (const Index predicate : predicates_of(model, monitor.formula)) {
+        Provenance of = provenance(model, predicate);
+        result.targets.merge(of.targets);
+        result.targets.merge(of.truth_targets);
+        if (of.truth.empty()) continue;
+        if (!result.truth.empty()) result.truth += "; ";
+        result.truth += model.predicates[predicate].name + ": " + of.truth;
     }
     return result;
 }

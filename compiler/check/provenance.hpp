@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "check/model.hpp"
 
@@ -22,5 +23,12 @@ struct Provenance {
 };
 
 Provenance provenance(const Model& model, Index predicate);
+
+/// The same of a calibrated monitor: `predicate` is its formula with the predicates and their thresholds written out,
+/// `truth` the truths of those that have one, `targets` all that either measures.
+Provenance provenance(const Model& model, const Monitor& monitor);
+
+/// The predicates in a formula, ascending.
+std::vector<Index> predicates_of(const Model& model, Index formula);
 
 }  // namespace etlc::check

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "check/calibrated.hpp"
 #include "check/check.hpp"
 #include "check/decimal.hpp"
 #include "check/provenance.hpp"
@@ -28,19 +29,19 @@ std::vector<Index> calibrated_predicates(Context& c) {
 }
 
 /// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
-std::optional<thresholds::File> read_thresholds(Context& c, const Predicate& first) {
+std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name, const Threshold& first) {
     const bool is_default = c.options.thresholds_path.empty();
     const std::string path = is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
     if (is_default && !std::filesystem::exists(path)) {
-        c.report(Code::thresholds_missing, first.threshold.span,
-                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", first.name, path))
+        c.report(Code::thresholds_missing, first.span,
+                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name, path))
             .note("'etlc calibrate' makes one from labelled demonstrations; --thresholds names another");
         return std::nullopt;
     }
     auto file = thresholds::read(path);
     if (!file) {
         c.sink.report(data::in_file(file.failure(), path))
-            .note(first.threshold.span, fmt::format("the threshold of '{}' is calibrated", first.name));
+            .note(first.span, fmt::format("the threshold of '{}' is calibrated", name));
         return std::nullopt;
     }
     c.dependencies.insert(path);
@@ -64,16 +65,18 @@ std::string_view method_word(ThresholdOrigin origin) {
 /// What differs between the spec and what the entry was calibrated for, a sentence each.
 class Differences {
 public:
-    Differences(const Model& model, Index predicate, const thresholds::Entry& entry)
-        : model_(model), predicate_(model.predicates[predicate]), entry_(entry), now_(provenance(model, predicate)) {}
+    /// `what`: predicate or formula.
+    Differences(const Model& model, const Threshold& threshold, std::string_view what, Provenance now,
+                const thresholds::Entry& entry)
+        : model_(model), threshold_(threshold), what_(what), entry_(entry), now_(std::move(now)) {}
 
     std::vector<std::string> find() && {
-        const std::string_view method = method_word(predicate_.threshold.origin);
+        const std::string_view method = method_word(threshold_.origin);
         if (entry_.method != method)
             add("method", entry_.method, method);
-        else if (!same_number(entry_.alpha, predicate_.threshold.alpha))
-            add("alpha", entry_.alpha, predicate_.threshold.alpha);
-        if (entry_.predicate != now_.predicate) add("predicate", entry_.predicate, now_.predicate);
+        else if (!same_number(entry_.alpha, threshold_.alpha))
+            add("alpha", entry_.alpha, threshold_.alpha);
+        if (entry_.predicate != now_.predicate) add(what_, entry_.predicate, now_.predicate);
         add_changed(now_.targets);
         if (entry_.truth != "array") {
             if (entry_.truth != now_.truth)
@@ -112,34 +115,60 @@ private:
     }
 
     const Model& model_;
-    const Predicate& predicate_;
+    const Threshold& threshold_;
+    std::string_view what_;
     const thresholds::Entry& entry_;
     Provenance now_;
     std::vector<std::string> found_;
 };
 
-void take_threshold(Context& c, Index index, const thresholds::File& file) {
-    Predicate& predicate = c.model.predicates[index];
-    const auto found = file.predicates.find(predicate.name);
-    if (found == file.predicates.end()) {
-        c.report(Code::threshold_missing, predicate.threshold.span,
-                 fmt::format("{} has no threshold for '{}'", file.path, predicate.name))
+/// Takes epsilon from the entry of that name, where it was calibrated for what `differences` compares it with.
+template <class Compare>
+void take(Context& c, const std::string& name, Threshold& threshold, const std::string& path,
+          const std::map<std::string, thresholds::Entry>& entries, Compare differences) {
+    const auto found = entries.find(name);
+    if (found == entries.end()) {
+        c.report(Code::threshold_missing, threshold.span, fmt::format("{} has no threshold for '{}'", path, name))
             .note("calibrate again with 'etlc calibrate'");
         return;
     }
-    const std::vector<std::string> differences = Differences(c.model, index, found->second).find();
-    if (!differences.empty()) {
-        auto& error = c.report(
-            Code::threshold_stale, predicate.threshold.span,
-            fmt::format("the threshold of '{}' in {} was calibrated for something else", predicate.name, file.path));
-        for (const std::string& difference : differences) error.note(difference);
+    const std::vector<std::string> all = differences(found->second);
+    if (!all.empty()) {
+        auto& error =
+            c.report(Code::threshold_stale, threshold.span,
+                     fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
+        for (const std::string& difference : all) error.note(difference);
         error.note("calibrate again with 'etlc calibrate'");
         return;
     }
-    predicate.threshold.value = found->second.epsilon;
-    predicate.threshold.value64 = static_cast<double>(found->second.epsilon);
-    predicate.threshold.n = found->second.n;
-    predicate.threshold.k = found->second.k;
+    threshold.value = found->second.epsilon;
+    threshold.value64 = static_cast<double>(found->second.epsilon);
+    threshold.n = found->second.n;
+    threshold.k = found->second.k;
+}
+
+void take_threshold(Context& c, Index index, const thresholds::File& file) {
+    Predicate& predicate = c.model.predicates[index];
+    take(c, predicate.name, predicate.threshold, file.path, file.predicates, [&](const thresholds::Entry& entry) {
+        return Differences(c.model, predicate.threshold, "predicate", provenance(c.model, index), entry).find();
+    });
+}
+
+void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
+    MonitorCalibration& calibration = *monitor.calibration;
+    take(c, monitor.name, calibration.threshold, file.path, file.monitors, [&](const thresholds::Entry& entry) {
+        auto found = Differences(c.model, calibration.threshold, "formula", provenance(c.model, monitor), entry).find();
+        if (entry.against != word(calibration.against))
+            found.push_back(fmt::format("it was against: {}; it is: {}", entry.against, word(calibration.against)));
+        return found;
+    });
+}
+
+std::vector<Monitor*> calibrated_monitors(Context& c) {
+    std::vector<Monitor*> found;
+    for (Monitor& monitor : c.model.monitors)
+        if (monitor.calibration && monitor.formula != kNone) found.push_back(&monitor);
+    return found;
 }
 
 }  // namespace
@@ -152,11 +181,19 @@ std::string default_thresholds_path(const std::string& spec_path) {
 }
 
 void check_thresholds(Context& c) {
-    const std::vector<Index> calibrated = calibrated_predicates(c);
-    if (calibrated.empty() || c.options.allow_uncalibrated) return;
-    const auto file = read_thresholds(c, c.model.predicates[calibrated[0]]);
+    if (c.options.allow_uncalibrated) return;
+    const std::vector<Index> predicates = calibrated_predicates(c);
+    const std::vector<Monitor*> monitors =
+        c.options.allow_uncalibrated_monitors ? std::vector<Monitor*>{} : calibrated_monitors(c);
+    if (predicates.empty() && monitors.empty()) return;
+    const auto file = predicates.empty() ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration->threshold)
+                                         : read_thresholds(c, c.model.predicates[predicates[0]].name,
+                                                           c.model.predicates[predicates[0]].threshold);
     if (!file) return;
-    for (const Index index : calibrated) take_threshold(c, index, *file);
+    const std::size_t errors = c.sink.errors();
+    for (const Index index : predicates) take_threshold(c, index, *file);
+    if (c.sink.errors() > errors) return;  // a monitor's shift is for the thresholds in it
+    for (Monitor* monitor : monitors) take_shift(c, *monitor, *file);
 }
 
 }  // namespace etlc::check

@@ -4,8 +4,10 @@
 
 #include <cstdio>
 
+#include "calibrate/shift.hpp"
 #include "check/check.hpp"
 #include "data/file.hpp"
+#include "driver/compile.hpp"
 #include "driver/names.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
@@ -14,9 +16,50 @@ namespace etlc::driver {
 
 namespace {
 
+using calibrate::Calibration;
+
 void show_progress(std::size_t done, std::size_t total) {
     fmt::print(stderr, "\r{} of {} episodes", done, total);
     if (done == total) fmt::print(stderr, "\r{:40}\r", "");
+}
+
+std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
+                                              const calibrate::Request& request, diag::Sink& sink) {
+    const auto labelled = calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model));
+    const check::Model unshifted = calibrate::unshifted(model);
+    const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, labelled);
+    const auto monitors = compile(unshifted, {}, sink);
+    const auto truths = compile(truth.model, {}, sink);
+    if (!monitors || !truths) return std::nullopt;
+    return calibrate::calibrate_monitors(model, {monitors->plan, truths->plan, truth}, std::move(before), request,
+                                         sink);
+}
+
+/// Predicates first; then, on other episodes, the monitors with these thresholds in them.
+std::optional<Calibration> calibrate_model(const check::Model& model, const CalibrateRequest& request,
+                                           const calibrate::Request& calibration, diag::Sink& sink) {
+    const bool has_monitors = !calibrate::calibrated_monitors(model).empty();
+    const bool has_predicates = !calibrate::calibrated_predicates(model).empty();
+    if (request.thresholds.empty()) {
+        if (has_monitors && !has_predicates) return calibrate_monitors(model, {}, calibration, sink);
+        auto result = calibrate::calibrate(model, calibration, sink);
+        if (result && has_monitors)
+            result->report +=
+                "\nMonitors that are calibrated as a whole come next, on other episodes: etlc calibrate --thresholds "
+                "FILE\n";
+        return result;
+    }
+    if (!has_monitors) {
+        sink.report(diag::Code::nothing_to_calibrate, model.monitors.front().span,
+                    "no monitor of this spec is calibrated as a whole, which is what --thresholds is for");
+        return std::nullopt;
+    }
+    auto before = thresholds::read(request.thresholds);
+    if (!before) {
+        sink.report(data::in_file(before.failure(), request.thresholds));
+        return std::nullopt;
+    }
+    return calibrate_monitors(model, std::move(*before), calibration, sink);
 }
 
 }  // namespace
@@ -24,7 +67,9 @@ void show_progress(std::size_t done, std::size_t total) {
 bool calibrate(const source::File& file, const CalibrateRequest& request, diag::Sink& sink) {
     const ast::Spec spec = parse::parse(file, sink);
     check::Options options;
-    options.allow_uncalibrated = true;
+    options.thresholds_path = request.thresholds;
+    options.allow_uncalibrated = request.thresholds.empty();
+    options.allow_uncalibrated_monitors = true;
     const auto model = check::check(spec, file, options, sink);
     if (!model || sink.has_errors() || (request.warnings_are_errors && sink.warnings() > 0)) return false;
 
@@ -32,7 +77,7 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     if (!check_names(*model, calibration.names, sink)) return false;
     calibration.version = kVersion;
     if (request.progress) calibration.progress = show_progress;
-    const auto result = calibrate::calibrate(*model, calibration, sink);
+    const auto result = calibrate_model(*model, request, calibration, sink);
     if (!result) return false;
 
     const std::string output = request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;

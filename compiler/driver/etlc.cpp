@@ -274,6 +274,11 @@ int calibrate_command(int argc, char** argv) {
            "-o,--output", call.calibrate.output,
            "where to write the thresholds (default: SPEC.thresholds.json beside the spec); - is standard output")
         ->type_name("FILE");
+    app.add_option(
+           "--thresholds", call.calibrate.thresholds,
+           "the thresholds of the predicates: then the monitors that are calibrated as a whole are, on episodes "
+           "that these thresholds have not seen")
+        ->type_name("FILE");
     app.add_option("-j,--jobs", call.calibrate.calibration.jobs, "threads (default: as many as the machine has)")
         ->type_name("N")
         ->check(CLI::Range(1U, 1024U));

@@ -46,6 +46,8 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (input.hold > 0) headers.insert("hold");
     }
     if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert(boolean ? "boolean_window" : "delay");
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
+        headers.insert("shift");
     if (any_stream(plan, {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since, StreamOp::window_trigger,
                           StreamOp::window_until, StreamOp::window_release}) ||
         std::any_of(plan.readings.begin(), plan.readings.end(), waits))

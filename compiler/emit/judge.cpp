@@ -5,13 +5,22 @@ namespace etlc::emit {
 
 namespace {
 
+/// What was calibrated as a whole is shifted, bounds and all.
+std::string shifted(const plan::Monitor& monitor, const std::string& value) {
+    return monitor.shifted ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift)) : value;
+}
+
+std::string prefix_verdict(const Context& context, const plan::Monitor& monitor) {
+    return fmt::format("etlmon::prefix_verdict({})", shifted(monitor, context.names.reading_local.at(monitor.reading)));
+}
+
 std::string verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
     if (monitor.sliding)
         return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : etlmon::Verdict()", monitor.horizon,
-                           context.value(monitor.stream));
+                           shifted(monitor, context.value(monitor.stream)));
     if (context.plan.has_sliding) return context.names.verdict_member.at(m);
-    return fmt::format("etlmon::prefix_verdict({})", context.names.reading_local.at(monitor.reading));
+    return prefix_verdict(context, monitor);
 }
 
 /// In a Boolean monitor: computed while some verdict can still change.
@@ -40,7 +49,7 @@ void print_readings(Printer& out, const Context& context) {
     }
     if (!ends) return;
     for (const auto& [m, name] : context.names.verdict_member)
-        out.line("{} = etlmon::prefix_verdict({});", name, context.names.reading_local.at(plan.monitors[m].reading));
+        out.line("{} = {};", name, prefix_verdict(context, plan.monitors[m]));
     out.close();
 }
 

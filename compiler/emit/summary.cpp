@@ -80,6 +80,8 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
 }
 
 bool is_calibrated(const plan::Plan& plan) {
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
+        return true;
     return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
         return plan.model->predicates[p].threshold.origin != check::ThresholdOrigin::literal;
     });
@@ -91,6 +93,14 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     for (const plan::Monitor& monitor : plan.monitors)
         for (const check::Claim& claim : check::claims(*plan.model, plan.model->monitors[monitor.index])) {
             const bool whole = claim.part.empty();
+            if (monitor.shifted) {
+                const check::Threshold& shift = plan.model->monitors[monitor.index].calibration->threshold;
+                rows.push_back({monitor.name, fmt::format("{}; rho less {}, score {} of {}, coverage {:.3f} to {:.3f}",
+                                                          check::text(claim), shift.value, shift.k, shift.n,
+                                                          check::coverage_quantile(shift.n, shift.k, 0.05),
+                                                          check::coverage_quantile(shift.n, shift.k, 0.95))});
+                continue;
+            }
             rows.push_back({whole ? monitor.name : "",
                             (whole ? "" : "of its part " + shortened(claim.part) + ": ") + check::text(claim)});
         }

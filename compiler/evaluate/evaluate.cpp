@@ -62,7 +62,8 @@ std::optional<std::vector<EpisodeResult>> unpack(Results results, const Request&
 /// A threshold looks better on the episodes that it was taken from, and what it promises is about others.
 bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request, const thresholds::File& file,
                  diag::Sink& sink) {
-    const std::set<std::string> known(file.episodes.begin(), file.episodes.end());
+    const std::vector<std::string> calibrated_on = thresholds::all_episodes(file);
+    const std::set<std::string> known(calibrated_on.begin(), calibrated_on.end());
     std::vector<std::string> seen;
     for (std::size_t i = 0; i < episodes.size(); ++i)
         if (known.contains(episodes[i].hash)) seen.push_back(request.episodes[i]);

@@ -6,6 +6,7 @@
 
 #include "etlmon/delay.hpp"
 #include "etlmon/predicate.hpp"
+#include "etlmon/shift.hpp"
 #include "etlmon/window.hpp"
 #include "plan/literals.hpp"
 
@@ -118,6 +119,7 @@ void Evaluator::measure_predicates() {
         if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         literals_[p] = literal(predicate, measured.delta, plan_.values);
+        if (literal_ && !std::isnan(measured.delta)) literals_[p] = literal_(p);
         missing |= std::isnan(measured.delta);
     }
     if (missing) missing_steps_ = saturating_increment(missing_steps_);
@@ -360,11 +362,15 @@ etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState&
 void Evaluator::judge() {
     for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
         const Monitor& monitor = plan_.monitors[m];
-        if (monitor.sliding)
-            verdicts_[m] =
-                exists(monitor.horizon) ? etlmon::sliding_verdict(streams_[monitor.stream]) : etlmon::Verdict{};
-        else if (finished_ == 0)
-            verdicts_[m] = etlmon::prefix_verdict(readings_[monitor.reading]);
+        if (monitor.sliding && !exists(monitor.horizon)) {
+            verdicts_[m] = etlmon::Verdict{};
+        } else if (monitor.sliding) {
+            const Value value = streams_[monitor.stream];
+            verdicts_[m] = etlmon::sliding_verdict(monitor.shifted ? etlmon::shifted(value, monitor.shift) : value);
+        } else if (finished_ == 0) {
+            const etlmon::Reading& reading = readings_[monitor.reading];
+            verdicts_[m] = etlmon::prefix_verdict(monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
+        }
     }
 }
 

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -40,6 +41,11 @@ public:
     /// missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+
+    /// From now on formulas see, of predicates that are measured, this instead of their robustness: calibration reckons
+    /// with what other builds measure. Both ends go through formulas independently; a negation exchanges them.
+    using Literal = std::function<Value(Index predicate)>;
+    void replace_literals(Literal literal) { literal_ = std::move(literal); }
 
 private:
     struct Held {
@@ -92,7 +98,8 @@ private:
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<Value> literals_;  ///< per predicate
-    std::vector<Value> flags_;     ///< per input
+    Literal literal_;
+    std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;
     std::vector<StreamState> stream_states_;
     std::vector<etlmon::Reading> readings_;

@@ -61,6 +61,10 @@ public:
                         .horizon = source.horizon,
                         .index = index,
                         .node = program_.monitors[index]};
+        if (source.calibration) {
+            monitor.shifted = true;
+            monitor.shift = source.calibration->threshold.value;
+        }
         if (source.sliding) {
             plan_.has_sliding = true;
             const Slot slot = streams_.of(program_.monitors[index]);

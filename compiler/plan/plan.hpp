@@ -160,6 +160,8 @@ struct Monitor {
     Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon
     Index index = 0;                ///< of the model's monitors
     NodeId node = 0;                ///< its formula
+    bool shifted = false;           ///< calibrated as a whole: all its numbers are less by `shift`
+    float shift = 0;
 };
 
 /// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).

@@ -40,7 +40,7 @@ public:
         file.etlc = text(root, "", "etlc");
         entries(root, "predicates", "predicate", file.predicates);
         if (root.find("monitors") != nullptr) entries(root, "monitors", "formula", file.monitors);
-        if (root.find("episodes") != nullptr) file.episodes = episodes(root);
+        if (root.find("episodes") != nullptr) file.episodes = episodes(root, "");
         if (failure_) return *failure_;
         return file;
     }
@@ -72,7 +72,10 @@ private:
         }
         result.method = method(json, path);
         const bool ranked = result.method != "f1";
-        check_keys(json, path, {"method", "alpha", "epsilon", "n", "k", "scores", what, "truth", "targets"});
+        const bool of_monitor = what == "formula";
+        std::vector<std::string> keys{"method", "alpha", "epsilon", "n", "k", "scores", what, "truth", "targets"};
+        if (of_monitor) keys.insert(keys.end(), {"against", "episodes"});
+        check_keys(json, path, keys);
         if (ranked || json.find("alpha") != nullptr) result.alpha = alpha(json, path, ranked);
         result.epsilon = epsilon(json, path);
         result.n = count(json, path, "n");
@@ -84,6 +87,9 @@ private:
         result.predicate = text(json, path, what);
         result.truth = text(json, path, "truth");
         result.targets = targets(json, path);
+        if (!of_monitor) return result;
+        result.against = against(json, path);
+        result.episodes = episodes(json, path);
         return result;
     }
 
@@ -148,11 +154,18 @@ private:
         return result;
     }
 
-    std::vector<std::string> episodes(const Json& root) {
-        const Json* array = member(root, "", "episodes", Json::Kind::array, "an array of content hashes");
+    std::string against(const Json& json, const std::string& path) {
+        std::string value = text(json, path, "against");
+        if (!failure_ && value != "missed_alarm" && value != "missed_success")
+            fail(path + ".against", *json.find("against"), "'missed_alarm' or 'missed_success'");
+        return value;
+    }
+
+    std::vector<std::string> episodes(const Json& object, const std::string& path) {
+        const Json* array = member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
         std::vector<std::string> result;
         for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i)
-            result.push_back(hash(array->items[i], fmt::format("episodes[{}]", i)));
+            result.push_back(hash(array->items[i], fmt::format("{}{}episodes[{}]", path, path.empty() ? "" : ".", i)));
         return result;
     }
 
@@ -205,6 +218,13 @@ private:
 };
 
 }  // namespace
+
+std::vector<std::string> all_episodes(const File& file) {
+    std::vector<std::string> result = file.episodes;
+    for (const auto& [name, entry] : file.monitors)
+        result.insert(result.end(), entry.episodes.begin(), entry.episodes.end());
+    return result;
+}
 
 diag::Result<File> read(const std::string& path) {
     auto bytes = data::read_file(path, kMaxFileBytes, Code::unreadable_thresholds);

@@ -27,6 +27,8 @@ struct Entry {
     std::string predicate;       ///< canonical text, check::Predicate::text; of a monitor the text of its formula
     std::string truth;           ///< canonical text of the truth formula, or "array"
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
+    std::string against;                         ///< monitors: missed_alarm or missed_success
+    std::vector<std::string> episodes;           ///< monitors: hashes of the episodes that it was calibrated on
 };
 
 struct File {
@@ -35,8 +37,11 @@ struct File {
     std::string etlc;  ///< version that wrote it
     std::map<std::string, Entry> predicates;
     std::map<std::string, Entry> monitors;
-    std::vector<std::string> episodes;  ///< content hashes of the calibration episodes, 16 hex digits each
+    std::vector<std::string> episodes;  ///< content hashes of the episodes behind `predicates`, 16 hex digits each
 };
+
+/// Of all episodes that some threshold was calibrated on.
+std::vector<std::string> all_episodes(const File& file);
 
 /// Failures are E06; their messages name the key, not the path: `data::in_file` (data/file.hpp) adds it.
 diag::Result<File> read(const std::string& path);

@@ -42,6 +42,14 @@ std::string object(const std::map<std::string, std::string>& members, std::size_
     return result + fmt::format("\n{:{}}}}", "", indent);
 }
 
+std::string episodes(const std::vector<std::string>& hashes, std::size_t indent) {
+    if (hashes.empty()) return "[]";
+    std::string result = "[";
+    for (const std::string& hash : hashes)
+        result += fmt::format("{}\n{:{}}{}", result.size() > 1 ? "," : "", "", indent + 2, text(hash));
+    return result + fmt::format("\n{:{}}]", "", indent);
+}
+
 std::string entry(const Entry& entry, const std::string& what) {
     std::map<std::string, std::string> targets;
     for (const auto& [name, hash] : entry.targets) targets[name] = text(hash);
@@ -57,7 +65,12 @@ std::string entry(const Entry& entry, const std::string& what) {
     line("scores", scores(entry.scores), ",");
     line(what, text(entry.predicate), ",");
     line("truth", text(entry.truth), ",");
-    line("targets", object(targets, 6), "");
+    const bool of_monitor = !entry.against.empty();
+    line("targets", object(targets, 6), of_monitor ? "," : "");
+    if (of_monitor) {
+        line("against", text(entry.against), ",");
+        line("episodes", episodes(entry.episodes, 6), "");
+    }
     return result + "    }";
 }
 
@@ -67,14 +80,6 @@ std::string entries(const std::map<std::string, Entry>& all, const std::string& 
     return object(members, 2);
 }
 
-std::string episodes(const std::vector<std::string>& hashes) {
-    if (hashes.empty()) return "[]";
-    std::string result = "[";
-    for (const std::string& hash : hashes)
-        result += fmt::format("{}\n    {}", result.size() > 1 ? "," : "", text(hash));
-    return result + "\n  ]";
-}
-
 }  // namespace
 
 std::string write(const File& file) {
@@ -82,7 +87,7 @@ std::string write(const File& file) {
         "{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": {},\n  \"monitors\": {},\n  \"episodes\": {},\n"
         "  \"etlc\": {}\n}}\n",
         text(file.spec), entries(file.predicates, "predicate"), entries(file.monitors, "formula"),
-        episodes(file.episodes), text(file.etlc));
+        episodes(file.episodes, 2), text(file.etlc));
 }
 
 }  // namespace etlc::thresholds

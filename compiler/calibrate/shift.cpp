@@ -1,0 +1,200 @@
+#include "calibrate/shift.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <set>
+
+#include "calibrate/parallel.hpp"
+#include "calibrate/rank.hpp"
+#include "calibrate/shift_scores.hpp"
+#include "check/calibrated.hpp"
+#include "check/guarantees.hpp"
+#include "check/provenance.hpp"
+#include "data/episodes.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using check::Against;
+using diag::Code;
+
+std::string counted(std::uint64_t n, const std::string& noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+bool against_alarms(const check::Monitor& monitor) {
+    return monitor.calibration->against == Against::missed_alarm;
+}
+
+/// What the ground truth does at the steps that give a score.
+std::string_view truth_word(const check::Monitor& monitor) {
+    return against_alarms(monitor) ? "violated" : "satisfied";
+}
+
+void refuse_seen(const std::vector<MonitorEpisode>& episodes, const thresholds::File& before, diag::Sink& sink) {
+    const std::set<std::string> known(before.episodes.begin(), before.episodes.end());
+    std::map<std::string, std::string> first;
+    std::size_t reported = 0;
+    for (const MonitorEpisode& episode : episodes) {
+        const auto [at, is_new] = first.try_emplace(episode.hash, episode.path);
+        const bool seen = known.contains(episode.hash);
+        if ((is_new && !seen) || ++reported > kMostReported) continue;
+        if (seen)
+            sink.report(data::in_file(
+                            {Code::not_disjoint, "is an episode that thresholds of predicates were calibrated on"},
+                            episode.path))
+                .note(
+                    "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better there "
+                    "than they will be");
+        else
+            sink.report(data::in_file({Code::duplicate_episode, fmt::format("is the same episode as {}", at->second)},
+                                      episode.path))
+                .note("demonstrations have to be independent recordings: one that counts twice voids the guarantee");
+    }
+}
+
+struct Totals {
+    std::uint64_t with_score = 0;
+    std::uint64_t steps = 0;
+    std::uint64_t unknown = 0;
+    std::vector<double> scores;
+
+    Totals(const std::vector<MonitorEpisode>& episodes, std::size_t of) {
+        for (const MonitorEpisode& episode : episodes) {
+            const MonitorScore& score = episode.scores[of];
+            steps += score.steps;
+            unknown += score.unknown;
+            if (score.steps == 0) continue;
+            ++with_score;
+            scores.push_back(score.worst);
+        }
+    }
+};
+
+void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t episodes, Refusal refusal,
+            diag::Sink& sink) {
+    const check::Threshold& threshold = monitor.calibration->threshold;
+    if (refusal == Refusal::no_positives) {
+        sink.report(
+            Code::no_positive_frame, threshold.span,
+            fmt::format("the ground truth of '{}' is {} at no step of {}, so there is nothing to learn its shift from",
+                        monitor.name, truth_word(monitor), counted(episodes, "episode")));
+    } else if (refusal == Refusal::too_few) {
+        auto& error = sink.report(
+            Code::too_few_scores, threshold.span,
+            fmt::format(
+                "alpha = {} needs at least {} in which the ground truth of '{}' is {} at some step; there {} {}",
+                threshold.alpha, counted(scores_needed(threshold.alpha), "episode"), monitor.name, truth_word(monitor),
+                totals.with_score == 1 ? "is" : "are", totals.with_score));
+        if (totals.with_score < episodes)
+            error.note(fmt::format("of {}, {} without such a step {} left out", counted(episodes, "episode"),
+                                   episodes - totals.with_score, episodes - totals.with_score == 1 ? "is" : "are"));
+    } else {
+        sink.report(Code::no_threshold, threshold.span,
+                    fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no shift lies beyond it",
+                                monitor.name, threshold.alpha));
+    }
+}
+
+thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor, const Fitted& fitted,
+                           const std::vector<MonitorEpisode>& episodes) {
+    check::Provenance provenance = check::provenance(model, monitor);
+    thresholds::Entry entry;
+    entry.method = "conformal";
+    entry.alpha = monitor.calibration->threshold.alpha;
+    entry.epsilon = fitted.epsilon;
+    entry.n = fitted.n;
+    entry.k = fitted.k;
+    entry.scores = fitted.scores;
+    entry.predicate = std::move(provenance.predicate);
+    entry.truth = std::move(provenance.truth);
+    entry.targets = std::move(provenance.targets);
+    entry.against = check::word(monitor.calibration->against);
+    for (const MonitorEpisode& episode : episodes) entry.episodes.push_back(episode.hash);
+    return entry;
+}
+
+std::string monitor_report(const check::Model& model, const check::Monitor& monitor, const Totals& totals,
+                           const Fitted& fitted, std::size_t episodes) {
+    std::string text = fmt::format(
+        "\n{}: rho of {} less {:.9g}\n"
+        "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose ground truth is {} "
+        "at "
+        "some step\n"
+        "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % quantile, without ties)\n",
+        monitor.name, check::print(model, monitor.formula), fitted.epsilon, monitor.calibration->threshold.alpha,
+        fitted.k, fitted.n, against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
+        check::text(check::claims(model, monitor)[0]), fitted.n, 1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
+        1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
+    if (totals.with_score < episodes)
+        text += fmt::format("    {} without such a step left out\n", counted(episodes - totals.with_score, "episode"));
+    if (totals.unknown > 0)
+        text += fmt::format("    {} at which a missing label leaves the ground truth open skipped\n",
+                            counted(totals.unknown, "step"));
+    return text;
+}
+
+}  // namespace
+
+std::vector<Index> calibrated_monitors(const check::Model& model) {
+    std::vector<Index> found;
+    for (Index m = 0; m < model.monitors.size(); ++m)
+        if (model.monitors[m].calibration) found.push_back(m);
+    return found;
+}
+
+std::vector<Index> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors) {
+    std::set<Index> found;
+    for (const Index monitor : monitors)
+        for (const Index predicate : check::predicates_of(model, model.monitors[monitor].formula))
+            if (!check::is_own_truth(model, predicate) && !model.predicates[predicate].name.empty())
+                found.insert(predicate);
+    return {found.begin(), found.end()};
+}
+
+check::Model unshifted(check::Model model) {
+    for (check::Monitor& monitor : model.monitors) monitor.calibration.reset();
+    return model;
+}
+
+std::optional<Calibration> calibrate_monitors(const check::Model& model, const MonitorPlans& plans,
+                                              thresholds::File before, const Request& request, diag::Sink& sink) {
+    const std::vector<Index> monitors = calibrated_monitors(model);
+    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
+    if (sink.has_errors()) return std::nullopt;
+    const auto episodes = over_episodes<MonitorEpisode>(
+        paths, request, sink, [&] { return std::make_unique<MonitorScorer>(model, plans, monitors, request.names); });
+    if (!episodes) return std::nullopt;
+    refuse_seen(*episodes, before, sink);
+    if (sink.has_errors()) return std::nullopt;
+
+    Calibration result{std::move(before), {}};
+    result.file.spec = model.name;
+    result.file.etlc = request.version;
+    std::uint64_t frames = 0;
+    for (const MonitorEpisode& episode : *episodes) frames += episode.frames;
+    result.report = fmt::format("{}, {}\n", counted(episodes->size(), "episode"), counted(frames, "frame"));
+    for (std::size_t i = 0; i < monitors.size(); ++i) {
+        const check::Monitor& monitor = model.monitors[monitors[i]];
+        const Totals totals(*episodes, i);
+        Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
+        if (const auto* refusal = std::get_if<Refusal>(&fit)) {
+            refuse(monitor, totals, episodes->size(), *refusal, sink);
+            continue;
+        }
+        auto& fitted = std::get<Fitted>(fit);
+        const bool alarms = against_alarms(monitor);
+        if (!alarms) fitted.epsilon = 0.0F - fitted.epsilon;
+        for (const double score : totals.scores) fitted.scores.push_back(alarms ? score : -score);
+        std::sort(fitted.scores.begin(), fitted.scores.end());
+        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *episodes);
+        result.report += monitor_report(model, monitor, totals, fitted, episodes->size());
+    }
+    if (sink.has_errors()) return std::nullopt;
+    return result;
+}
+
+}  // namespace etlc::calibrate
