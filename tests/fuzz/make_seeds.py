@@ -57,7 +57,7 @@ ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1
 for name, text in {
     "whole.json": f"""{{"format": 1, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, "monitors": {{}},
  "episodes": ["0123456789abcdef"], "etlc": "0.1.0"}}""",
-    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": {{{ENTRY.replace('"predicate"', '"formula"')}}}}},
+    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": {{{ENTRY.replace('"predicate"', '"formula"')}, "against": "missed_alarm", "episodes": []}}}},
  "etlc": "0.1.0"}}""",
     "f1.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "f1", "epsilon": -0.0, "n": 1, "k": 0,
  "scores": [], "predicate": "g > ", "truth": "g > 0.5", "targets": {}}}, "etlc": "0.1.0"}""",

@@ -56,7 +56,11 @@ const std::string kWhole = R"({
       "targets": {
         "corner": "0123456789abcdef",
         "goal_a": "b08b72ea4df23cb1"
-      }
+      },
+      "against": "missed_success",
+      "episodes": [
+        "00000000000000aa"
+      ]
     }
   },
   "episodes": [
@@ -89,6 +93,9 @@ TEST(Thresholds, ReadsWhatIsThere) {
     EXPECT_EQ(file->predicates.at("held").epsilon, -5e-05F);
     EXPECT_EQ(file->monitors.at("reach").predicate, "F at_a");
     EXPECT_EQ(file->monitors.at("reach").alpha, "5e-2");
+    EXPECT_EQ(file->monitors.at("reach").against, "missed_success");
+    EXPECT_EQ(all_episodes(*file),
+              (std::vector<std::string>{"0000000000000001", "ffffffffffffffff", "00000000000000aa"}));
 }
 
 TEST(Thresholds, WritingWhatWasReadChangesNothing) {
@@ -240,6 +247,10 @@ std::vector<Broken> content() {
         broken("\"inf\"", "\"nan\"", at_a + "scores[2]' is the text 'nan', expected a number, 'inf' or '-inf'"),
         broken("\"predicate\"", "\"formula\"", "unknown key 'predicates.at_a.formula'"),
         broken("\"formula\"", "\"predicate\"", "unknown key 'monitors.reach.predicate'"),
+        broken("\"missed_success\"", "\"error\"",
+               "'monitors.reach.against' is the text 'error', expected 'missed_alarm' or 'missed_success'"),
+        broken("\"00000000000000aa\"", "1",
+               "'monitors.reach.episodes[0]' is '1', expected a content hash of 16 hex digits"),
         broken("\"truth\": \"array\"", "\"truth\": []", "'predicates.held.truth' is an array, expected a text"),
         broken("\"targets\": {}", "\"targets\": \"b08b72ea4df23cb1\"",
                "'predicates.held.targets' is the text 'b08b72ea4df23cb1', expected an object"),

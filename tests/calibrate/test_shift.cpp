@@ -1,0 +1,175 @@
+// Monitors calibrated as a whole: the shift, and that it covers drawn episodes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <optional>
+
+#include "calibrate/shift.hpp"
+#include "check/check.hpp"
+#include "ir/lower.hpp"
+#include "npy_bytes.hpp"
+#include "parse/parse.hpp"
+#include "plan/evaluator.hpp"
+#include "random.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using calibrate::Index;
+
+constexpr int kSteps = 6;
+constexpr int kDraws = 2000;
+
+/// Literal thresholds: the shift alone is calibrated. It reads a, which is noisy, and the label px.
+std::string spec_text(const std::string& against) {
+    return fmt::format(
+        "spec t; input x, px : f32; predicate a = x <= 0.5; truth a = px > 0.5;\n"
+        "monitor m = F[0, 2] (a && F[0, 2] !a) calibrated(conformal, alpha = 0.2, against = {});",
+        against);
+}
+
+check::Model model_of(const std::string& against, float shift) {
+    diag::Sink sink;
+    const source::File file("t.etl", spec_text(against));
+    check::Options options;
+    options.allow_uncalibrated_monitors = true;
+    auto model = *check::check(parse::parse(file, sink), file, options, sink);
+    model.monitors[0].calibration->threshold.value = shift;
+    return model;
+}
+
+struct Planned {
+    check::Model model;
+    ir::Program program;
+    plan::Plan plan;
+
+    explicit Planned(check::Model of) : model(std::move(of)), program(ir::lower(model)) {
+        diag::Sink sink;
+        plan = *plan::plan(program, {}, sink);
+    }
+    Planned(const Planned&) = delete;
+};
+
+struct Episode {
+    std::vector<float> x;
+    std::vector<bool> label;
+};
+
+Episode random_episode(Random& random) {
+    Episode episode;
+    for (int t = 0; t < kSteps; ++t) {
+        episode.label.push_back(random.chance(0.4));
+        episode.x.push_back(static_cast<float>((episode.label.back() ? 0.0 : 1.0) + 2 * (random.uniform() - 0.5)));
+    }
+    return episode;
+}
+
+struct Runs {
+    std::vector<etlmon::Verdict> said, truth;
+};
+
+Runs run(plan::Evaluator& said, plan::Evaluator& truth, const Episode& episode) {
+    Runs runs;
+    said.reset();
+    truth.reset();
+    for (std::size_t t = 0; t < kSteps; ++t) {
+        const plan::Sample x{true, {episode.x[t]}};
+        const plan::Sample px{true, {episode.label[t] ? 1.0F : 0.0F}};
+        runs.said.push_back(said.step({x, px})[0]);
+        runs.truth.push_back(truth.step({x, px, px})[0]);
+    }
+    return runs;
+}
+
+/// The worst rho where the truth is what must not be missed, by hand.
+std::optional<double> score(const Runs& runs, bool alarms) {
+    std::optional<double> worst;
+    for (std::size_t t = 0; t < runs.said.size(); ++t) {
+        if (alarms ? !runs.truth[t].violated() : !runs.truth[t].satisfied()) continue;
+        const double rho = (alarms ? 1 : -1) * static_cast<double>(runs.said[t].robustness);
+        worst = std::max(worst.value_or(rho), rho);
+    }
+    return worst;
+}
+
+TEST(Shift, CoversDrawnEpisodes) {
+    for (const std::string against : {"missed_alarm", "missed_success"}) {
+        const bool alarms = against == "missed_alarm";
+        const Planned unshifted(calibrate::unshifted(model_of(against, 0)));
+        const Planned truths(calibrate::ground_truth(unshifted.model, {0}).model);
+        plan::Evaluator said(unshifted.plan);
+        plan::Evaluator truth(truths.plan);
+        Random random(77);
+        int covered = 0;
+        for (int draw = 0; draw < kDraws; ++draw) {
+            std::vector<double> scores;
+            while (scores.size() < 9)
+                if (const auto one = score(run(said, truth, random_episode(random)), alarms)) scores.push_back(*one);
+            const auto fit = std::get<calibrate::Fitted>(calibrate::fit_rank(scores, "0.2"));
+            ASSERT_EQ(fit.k, 8U);
+            const Episode test = random_episode(random);
+            const Planned shifted(model_of(against, alarms ? fit.epsilon : -fit.epsilon));
+            plan::Evaluator calibrated(shifted.plan);
+            const Runs before = run(said, truth, test);
+            const Runs after = run(calibrated, truth, test);
+            bool missed = false;
+            for (std::size_t t = 0; t < after.said.size(); ++t) {
+                const float shift = alarms ? fit.epsilon : -fit.epsilon;
+                ASSERT_EQ(after.said[t].robustness, before.said[t].robustness - shift);
+                ASSERT_EQ(after.said[t].lower, before.said[t].lower - shift);
+                ASSERT_EQ(after.said[t].upper, before.said[t].upper - shift);
+                missed = missed || (alarms ? after.truth[t].violated() && after.said[t].satisfied()
+                                           : after.truth[t].satisfied() && after.said[t].violated());
+            }
+            covered += missed ? 0 : 1;
+            const auto own = score(before, alarms);
+            ASSERT_FALSE(missed && (!own || *own < static_cast<double>(fit.epsilon)));
+        }
+        EXPECT_GE(static_cast<double>(covered) / kDraws, 0.8 - 3 * std::sqrt(0.2 * 0.8 / kDraws)) << against;
+    }
+}
+
+/// The whole way from files gives the score computed by hand.
+TEST(Shift, IsBeyondTheScoreAtTheRank) {
+    for (const std::string against : {"missed_alarm", "missed_success"}) {
+        const bool alarms = against == "missed_alarm";
+        const check::Model model = model_of(against, 0);
+        const Planned unshifted(calibrate::unshifted(model));
+        const calibrate::GroundTruth ground_truth = calibrate::ground_truth(unshifted.model, {0});
+        const Planned truths(ground_truth.model);
+        plan::Evaluator said(unshifted.plan);
+        plan::Evaluator truth(truths.plan);
+        Random random(78);
+        std::vector<double> scores;
+        std::vector<std::unique_ptr<TemporaryPath>> files;
+        calibrate::Request request;
+        for (int i = 0; i < 15; ++i) {
+            const Episode episode = random_episode(random);
+            std::string text = "x,px\n";
+            for (std::size_t t = 0; t < kSteps; ++t)
+                text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
+            files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
+            request.data.push_back(files.back()->path());
+            if (const auto one = score(run(said, truth, episode), alarms)) scores.push_back(*one);
+        }
+        std::sort(scores.begin(), scores.end());
+        diag::Sink sink;
+        const auto result =
+            calibrate::calibrate_monitors(model, {unshifted.plan, truths.plan, ground_truth}, {}, request, sink);
+        ASSERT_TRUE(result);
+        const thresholds::Entry& entry = result->file.monitors.at("m");
+        ASSERT_EQ(entry.n, scores.size());
+        const auto expected = std::nextafter(static_cast<float>(scores[entry.k - 1]), INFINITY);
+        EXPECT_EQ(entry.epsilon, alarms ? expected : -expected) << against;
+        EXPECT_EQ(entry.against, against);
+        EXPECT_EQ(entry.episodes.size(), 15U);
+        EXPECT_EQ(entry.predicate, "F[0, 2] (a && F[0, 2] !a) where a = x <= 0.5");
+        EXPECT_EQ(entry.truth, "a: px > 0.5");
+    }
+}
+
+}  // namespace
+}  // namespace etlc::tests
