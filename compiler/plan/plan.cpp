@@ -62,6 +62,13 @@ public:
                         .index = index,
                         .node = program_.monitors[index]};
         if (source.calibration) {
+            if (plan_.values == check::Values::boolean) {
+                sink.report(diag::Code::calibration_not_available, source.calibration->threshold.span,
+                            fmt::format("'{}' is calibrated as a whole, which shifts its robustness; with --values "
+                                        "boolean it has none",
+                                        source.name));
+                return false;
+            }
             monitor.shifted = true;
             monitor.shift = source.calibration->threshold.value;
         }

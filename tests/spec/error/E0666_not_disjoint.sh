@@ -14,6 +14,7 @@ echo "exit status $?"
 "$ETLC" calibrate hand.etl --data 3.csv 4.csv 3.csv --thresholds predicates.json
 echo "exit status $?"
 "$ETLC" hand.etl --check && "$ETLC" run hand.etl --trace 1.csv
+"$ETLC" hand.etl --values boolean -o hand.hpp
 sed -i 's/missed_alarm/missed_success/' hand.etl
 "$ETLC" hand.etl --check
 sed -i 's/ calibrated(conformal, alpha = 0.5, against = missed_success)//' hand.etl
