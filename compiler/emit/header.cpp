@@ -157,6 +157,9 @@ void print_boolean_step(Printer& out, const Context& context) {
 void print_public_part(Printer& out, const Context& context, const std::vector<Member>& all) {
     const plan::Cost& cost = context.plan.cost;
     out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)", cost.state_bytes);
+    if (cost.stack_bytes > 0)
+        out.line("static constexpr size_t kStackBytes = {};  ///< of a step, for positions evaluated anew",
+                 cost.stack_bytes);
     out.line(
         "static constexpr uint32_t kOperations = {};  ///< of the temporal part in the worst step: min, max, compare",
         cost.operations);

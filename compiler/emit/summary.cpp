@@ -149,6 +149,8 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
     print_tables(out, "  ", plan);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
+    if (plan.cost.stack_bytes > 0)
+        out.line("stack of a step: {} bytes, for positions that are evaluated anew", plan.cost.stack_bytes);
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {

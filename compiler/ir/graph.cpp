@@ -135,7 +135,8 @@ NodeId Graph::binary(Op op, Interval interval, NodeId left, NodeId right, Span s
     const NodeId empty = constant(!max);
     if (right == empty) return empty;
     if (interval.low == 0 && (interval.high == 0 || right == constant(max) || left == empty)) return right;
-    if (left == empty) return empty;  // the left side breaks before the window opens
+    if (interval.low == 0 && left == right) return right;  // f U f: f now is all it takes, and it takes f now
+    if (left == empty) return empty;                       // the left side breaks before the window opens
     if (left == constant(max)) {
         const Op one = future ? (max ? Op::eventually : Op::always) : (max ? Op::once : Op::historically);
         return unary(one, interval, right, span);

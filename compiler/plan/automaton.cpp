@@ -78,7 +78,9 @@ private:
                all_implied(kept.next, dropped.next);
     }
 
-    void add(Clauses& clauses, Clause clause) const {
+    void add(Clauses& clauses, Clause clause) {
+        effort_ += kEffortPerClause + clauses.size();
+        if (effort_ > kEffortPerTransition * limits_.transitions) throw TooLarge{};
         for (const Clause& other : clauses)
             if (absorbs(other, clause)) return;
         std::erase_if(clauses, [&](const Clause& other) { return absorbs(clause, other); });
@@ -126,7 +128,7 @@ private:
 
     // ---- expansion
 
-    Clauses either(const Clauses& a, const Clauses& b) const {
+    Clauses either(const Clauses& a, const Clauses& b) {
         Clauses result = a;
         for (const Clause& clause : b) add(result, clause);
         return result;
@@ -224,12 +226,16 @@ private:
     }
 
     static constexpr std::size_t kMaxClauses = 4096;  // absorption compares pairs
+    // Where most clauses turn out to be idle, work and not size is what ends a construction.
+    static constexpr std::uint64_t kEffortPerClause = 16;
+    static constexpr std::uint64_t kEffortPerTransition = 256;
 
     ir::Graph& graph_;
     Literals literals_;
     const AutomatonLimits& limits_;
     AutomatonSize& reached_;
     Automaton automaton_;
+    std::uint64_t effort_ = 0;
     std::unordered_map<NodeId, Clauses> expansions_;
     std::map<Set, std::uint32_t> guards_;
     std::map<Set, std::uint32_t> states_;

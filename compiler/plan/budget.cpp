@@ -6,6 +6,7 @@
 #include "etlmon/boolean_window.hpp"
 #include "etlmon/delay.hpp"
 #include "etlmon/machine.hpp"
+#include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
 #include "etlmon/window.hpp"
 #include "plan/register_program.hpp"
@@ -28,18 +29,10 @@ constexpr std::uint64_t kCodePerFold = 96;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
 constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
-Cost operator+(Cost a, const Cost& b) {
-    a.state_bytes += b.state_bytes;
-    a.constant_bytes += b.constant_bytes;
-    a.code_bytes += b.code_bytes;
-    a.operations += b.operations;
-    a.distance_operations += b.distance_operations;
-    return a;
-}
-
 /// What a value type takes to keep.
 struct Footprint {
     std::uint64_t value;
+    std::uint64_t reading;
     std::uint32_t (*ring)(std::uint32_t length);
     std::uint32_t (*window)(std::uint32_t length);  ///< of one side
     std::uint32_t (*since)(std::uint32_t length);   ///< of two, towards the past
@@ -48,8 +41,12 @@ struct Footprint {
 
 template <class V>
 constexpr Footprint footprint() {
-    return {sizeof(V), etlmon::delay_bytes<V>, etlmon::window_bytes<etlmon::Greatest<V>>,
-            etlmon::window_bytes<etlmon::Since<V>>, etlmon::window_bytes<etlmon::Until<V>>};
+    return {sizeof(V),
+            sizeof(etlmon::BasicReading<V>),
+            etlmon::delay_bytes<V>,
+            etlmon::window_bytes<etlmon::Greatest<V>>,
+            etlmon::window_bytes<etlmon::Since<V>>,
+            etlmon::window_bytes<etlmon::Until<V>>};
 }
 
 const Footprint& footprint_of(Values values) {
@@ -113,6 +110,10 @@ Cost pending_cost(const Footprint& of, const Pending& pending) {
     for (const Pending::Part& part : pending.parts) leaves += part.leaf != kNone ? 1 : 0;
     cost.state_bytes = leaves * etlmon::storage_bytes(static_cast<std::uint32_t>(positions * of.value));
     cost.state_bytes += of.value * (pending.is_fold ? 2 : pending.machine.states.size());
+    cost.stack_bytes = pending.parts.size() * positions * of.reading;
+    if (!pending.is_fold)  // the guards at each position, and what PendingMachine::read works with
+        cost.stack_bytes += (pending.guards.size() * positions + 2 * pending.machine.states.size()) * of.reading +
+                            (pending.guards.size() + pending.machine.states.size()) * of.value;
     cost.operations = positions * pending_steps(pending) * kKeysPerReading;
     cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
     if (!pending.is_fold)
@@ -121,16 +122,19 @@ Cost pending_cost(const Footprint& of, const Pending& pending) {
     return cost;
 }
 
+Cost table_cost(const Footprint& of, const AutomatonSize& size) {
+    return {.state_bytes = etlmon::storage_bytes(static_cast<std::uint32_t>(2 * size.states * of.value)),
+            .code_bytes = kCodePerTable + size.transitions * kTransitionBytes + size.states * kStateBytes,
+            .operations = (3 * size.states + 2 * size.transitions) * kKeysPerValue};
+}
+
 /// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of values.
 Cost machine_cost(const Footprint& of, const Machine& machine) {
     const std::size_t read = 3 * machine.states.size();
     if (unrolled(machine)) return values(of, registers(machine), operations(make_register_program(machine)) + read);
-    std::uint64_t combined = read + 2 * machine.automaton.transitions.size();
-    for (const auto& guard : machine.guards) combined += guard.empty() ? 0 : guard.size() - 1;
-    Cost cost{.operations = combined * kKeysPerValue};
-    cost.state_bytes = etlmon::storage_bytes(static_cast<std::uint32_t>(2 * machine.states.size() * of.value));
-    cost.code_bytes = kCodePerTable + machine.automaton.transitions.size() * kTransitionBytes +
-                      machine.states.size() * kStateBytes + machine.guards.size() * kCodePerValueOperation;
+    Cost cost = table_cost(of, {machine.states.size(), machine.automaton.transitions.size()});
+    cost.code_bytes += machine.guards.size() * kCodePerValueOperation;
+    for (const auto& guard : machine.guards) cost.operations += guard.empty() ? 0 : (guard.size() - 1) * kKeysPerValue;
     return cost;
 }
 
@@ -225,6 +229,21 @@ std::uint64_t measured_elements(const check::Model& model, Index predicate) {
     return sum;
 }
 
+Cost operator+(Cost a, const Cost& b) {
+    a.state_bytes += b.state_bytes;
+    a.stack_bytes += b.stack_bytes;
+    a.constant_bytes += b.constant_bytes;
+    a.code_bytes += b.code_bytes;
+    a.operations += b.operations;
+    a.distance_operations += b.distance_operations;
+    return a;
+}
+
+bool within(const Cost& cost, const Limits& limits) {
+    return cost.state_bytes + cost.stack_bytes <= limits.state_bytes && cost.code_bytes <= limits.code_bytes &&
+           cost.operations <= limits.operations;
+}
+
 std::size_t registers(const Machine& machine) {
     return static_cast<std::size_t>(std::count_if(machine.states.begin(), machine.states.end(),
                                                   [](const Machine::State& state) { return !state.always_true; }));
@@ -274,6 +293,10 @@ Cost cost_of(const Reading& reading, Values kind) {
         case Reading::Kind::disjunction: return values(of, 0, 2 * (reading.operands.size() - 1));
     }
     return {};
+}
+
+Cost cost_of(const AutomatonSize& size, Values values) {
+    return table_cost(footprint_of(values), size);
 }
 
 void add_costs(Plan& plan) {

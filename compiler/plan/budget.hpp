@@ -1,7 +1,8 @@
 // What a plan costs: bytes of state and constants, estimated code, operations of the worst step.
 // Takes: a plan. Gives: the figures of `--emit report` and of the generated header's table.
-// Keeps true: state_bytes is exactly the size of the generated class; operations count every min, max and comparison of
-// two keys that the worst step performs (a Value has two keys); code_bytes is an estimate.
+// Keeps true: state_bytes is exactly the size of the generated class; stack_bytes the arrays of its step; operations
+// count every min, max and comparison of two keys that the worst step performs (a Value has two keys); code_bytes is an
+// estimate.
 #pragma once
 
 #include "plan/plan.hpp"
@@ -13,10 +14,14 @@ inline constexpr std::size_t kMaxUnrolledStates = 32;
 inline constexpr std::size_t kMaxUnrolledTransitions = 160;
 bool unrolled(const Machine& machine);
 
+Cost operator+(Cost a, const Cost& b);
+bool within(const Cost& cost, const Limits& limits);
 Cost cost_of(const Stream& stream, check::Values values);
 Cost cost_of(const Reading& reading, check::Values values);
 /// Target elements that a predicate measures.
 std::uint64_t measured_elements(const check::Model& model, Index predicate);
+/// Of a state machine of this size, as a table.
+Cost cost_of(const AutomatonSize& size, check::Values values);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
 

@@ -1,26 +1,16 @@
 #include "plan/plan.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <set>
 
 #include "plan/budget.hpp"
 #include "plan/readings.hpp"
+#include "plan/refusal.hpp"
 #include "plan/streams.hpp"
 
 namespace etlc::plan {
 
 namespace {
-
-/// What the limits allow a single automaton; the whole plan is weighed afterwards.
-AutomatonLimits automaton_limits(const Limits& limits) {
-    constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
-    AutomatonLimits result;
-    result.states = static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
-    result.transitions = static_cast<std::size_t>(std::min({limits.code_bytes / 4, limits.operations, kNumbered}) + 1);
-    return result;
-}
 
 void collect_distances(const check::Expr& e, std::set<Index>& distances) {
     if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
@@ -47,8 +37,9 @@ class Planning {
 public:
     Planning(ir::Program& program, const Limits& limits, check::Values values)
         : program_(program),
+          limits_(limits),
           streams_(program.graph, plan_.streams, values),
-          readings_(program.graph, streams_, plan_.readings, automaton_limits(limits)) {
+          readings_(program.graph, streams_, plan_.readings, limits, values) {
         plan_.model = &program.graph.model();
         plan_.values = values;
     }
@@ -80,7 +71,7 @@ public:
             const std::size_t known = readings_.oversize().size();
             const auto reading = readings_.of(program_.monitors[index]);
             for (std::size_t i = known; i < readings_.oversize().size(); ++i)
-                report(source, readings_.oversize()[i], sink);
+                refuse_part(source, readings_.oversize()[i], program_.graph, limits_, plan_.values, sink);
             if (!reading) return false;
             monitor.reading = *reading;
         }
@@ -104,18 +95,6 @@ private:
                                  reading.kind == Reading::Kind::pending;
         if (by_position) return true;
         return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
-    }
-
-    void report(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, diag::Sink& sink) const {
-        const ir::Node& node = program_.graph[part.node];
-        sink.report(diag::Code::formula_too_large, node.span,
-                    fmt::format(
-                        "monitor '{}' needs a state machine larger than the limits for '{}': building it stopped "
-                        "at {} states and {} transitions",
-                        monitor.name, program_.graph.text(part.node), part.reached.states, part.reached.transitions))
-            .note(
-                "shorter windows or fewer nested operators make it smaller; --max-state and --max-code move the "
-                "limits");
     }
 
     /// Folding leaves streams behind that nothing reads.
@@ -159,33 +138,11 @@ private:
     }
 
     ir::Program& program_;
+    const Limits& limits_;
     Plan plan_;
     StreamBuilder streams_;
     ReadingBuilder readings_;
 };
-
-std::string figures(const Cost& cost) {
-    return fmt::format("{} bytes of state, {} bytes of code (estimated), {} operations a step", cost.state_bytes,
-                       cost.code_bytes, cost.operations);
-}
-
-bool exceeds(const Cost& cost, const Limits& limits) {
-    return cost.state_bytes > limits.state_bytes || cost.code_bytes > limits.code_bytes ||
-           cost.operations > limits.operations;
-}
-
-void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
-    if (!exceeds(plan.cost, limits)) return;
-    const check::Model& model = *plan.model;
-    auto& error =
-        sink.report(diag::Code::over_budget, model.monitors.front().span,
-                    fmt::format("the monitor class needs {}; the limits are {}, {} and {}", figures(plan.cost),
-                                limits.state_bytes, limits.code_bytes, limits.operations));
-    for (std::size_t m = 0; m < plan.monitors.size(); ++m)
-        error.note(model.monitors[plan.monitors[m].index].span,
-                   fmt::format("'{}' alone needs {}", plan.monitors[m].name, figures(plan.monitor_costs[m])));
-    error.note("--max-state, --max-code and --max-work move the limits");
-}
 
 }  // namespace
 
@@ -195,7 +152,7 @@ std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink&
     for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;
     Plan result = planning.finish();
-    check_budget(result, limits, sink);
+    check_budget(result, program.graph, limits, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
 }

@@ -167,6 +167,7 @@ struct Monitor {
 /// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
+    std::uint64_t stack_bytes = 0;          ///< arrays of a step: positions that are evaluated anew
     std::uint64_t constant_bytes = 0;       ///< targets, weights and transition tables
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part
@@ -190,7 +191,7 @@ struct Plan {
 };
 
 struct Limits {
-    std::uint64_t state_bytes = 1U << 20U;
+    std::uint64_t state_bytes = 1U << 20U;  ///< and the stack of a step with it
     std::uint64_t code_bytes = 64U << 10U;
     std::uint64_t operations = 1U << 20U;
 };

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 
+#include "plan/budget.hpp"
+#include "plan/split_windows.hpp"
+
 namespace etlc::plan {
 
 using ir::Node;
@@ -11,6 +14,21 @@ namespace {
 
 /// Machines up to this size are preferred to anything else.
 constexpr AutomatonLimits kSmallMachine{256, 2048};
+/// Operations from which on it is worth to look for another way.
+constexpr std::uint64_t kMuchWork = 20'000;
+
+/// What the limits allow a single automaton; the whole plan is weighed afterwards.
+AutomatonLimits automaton_limits(const Limits& limits) {
+    constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
+    AutomatonLimits result;
+    result.states = static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
+    result.transitions = static_cast<std::size_t>(std::min({limits.code_bytes / 4, limits.operations, kNumbered}) + 1);
+    return result;
+}
+
+AutomatonLimits smaller(const AutomatonLimits& a, const AutomatonLimits& b) {
+    return {std::min(a.states, b.states), std::min(a.transitions, b.transitions)};
+}
 
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
 bool loops_freely(const Automaton& automaton, std::uint32_t state) {
@@ -106,6 +124,7 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
         }
         const auto part = of(operand);
         complete = complete && part;
+        if (!complete && splitting_) return std::nullopt;
         if (part) parts.push_back(*part);
     }
     if (!present.empty()) parts.push_back(*of(graph_.combine(node.op, std::move(present), node.span)));
@@ -183,7 +202,7 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
         return reading;
     }
     AutomatonSize reached;
-    auto automaton = build_automaton(graph_, id, Literals::with_bounded_future, limits_, reached);
+    auto automaton = build_automaton(graph_, id, Literals::with_bounded_future, automaton_limits(limits_), reached);
     if (!automaton) return std::nullopt;
     pending.machine = machine_of(std::move(*automaton));
     for (const auto& literals : pending.machine.automaton.guards) {
@@ -194,20 +213,52 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     return reading;
 }
 
-/// A small machine where there is one, else pending positions, else a machine up to the limits.
-std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
+/// The formula with its windows split, where that can be read with fewer operations; else nothing is added.
+std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id, std::uint64_t operations) {
+    const NodeId split = split_windows(graph_, id);
+    if (split == id || splitting_) return std::nullopt;
+    const std::size_t before = readings_.size();
     const std::size_t failures = oversize_.size();
-    const AutomatonLimits small{std::min(limits_.states, kSmallMachine.states),
-                                std::min(limits_.transitions, kSmallMachine.transitions)};
-    auto direct = machine(id, small);
-    if (!direct) {
-        auto reading = pending(node, id);
-        oversize_.resize(failures);
-        if (reading && reading->pending.horizon > 0) return add(std::move(*reading));
-        direct = machine(id, limits_);
-    }
-    if (!direct) return std::nullopt;
-    return add({.kind = Reading::Kind::machine, .node = id, .machine = std::move(*direct)});
+    splitting_ = true;  // a part that is too large is not split again
+    const auto reading = of(split);
+    splitting_ = false;
+    oversize_.resize(failures);
+    Cost cost;
+    for (std::size_t r = before; r < readings_.size(); ++r) cost = cost + cost_of(readings_[r], values_);
+    if (reading && within(cost, limits_) && cost.operations < operations) return reading;
+    readings_.resize(before);
+    std::erase_if(known_, [&](const auto& entry) { return entry.second >= before; });
+    return std::nullopt;
+}
+
+/// A small machine where there is one, else what takes the fewest operations: pending positions, the formula with its
+/// windows split, a machine up to the limits.
+std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
+    const auto as_reading = [&](Machine machine) {
+        return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
+    };
+    const std::size_t failures = oversize_.size();
+    if (auto small = machine(id, smaller(automaton_limits(limits_), kSmallMachine)))
+        return add(as_reading(std::move(*small)));
+    std::optional<Reading> best = pending(node, id);
+    if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_))) best.reset();
+    oversize_.resize(failures);
+    if (splitting_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
+    if (!best || cost_of(*best, values_).operations > kMuchWork)
+        if (auto large = machine(id, automaton_limits(limits_))) {
+            Reading reading = as_reading(std::move(*large));
+            if (!best || cost_of(reading, values_).operations < cost_of(*best, values_).operations)
+                best = std::move(reading);
+        }
+    const std::uint64_t operations = best ? cost_of(*best, values_).operations : limits_.operations + 1;
+    if (operations > kMuchWork)
+        if (const auto split = with_split_windows(id, operations)) {
+            oversize_.resize(failures);
+            return split;
+        }
+    if (!best) return std::nullopt;
+    oversize_.resize(failures);
+    return add(std::move(*best));
 }
 
 std::vector<Slot*> slots_of(Reading& reading) {

@@ -13,9 +13,9 @@ namespace etlc::plan {
 
 class ReadingBuilder {
 public:
-    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
-                   const AutomatonLimits& limits)
-        : graph_(graph), streams_(streams), readings_(readings), limits_(limits) {}
+    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings, const Limits& limits,
+                   check::Values values)
+        : graph_(graph), streams_(streams), readings_(readings), limits_(limits), values_(values) {}
 
     /// A sub-formula whose automaton would exceed the limits.
     struct Oversize {
@@ -33,6 +33,7 @@ private:
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
+    std::optional<std::uint32_t> with_split_windows(NodeId id, std::uint64_t operations);
     std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
     std::uint32_t latch(NodeId id);
     std::uint32_t fold(const ir::Node& node, NodeId id);
@@ -44,7 +45,9 @@ private:
     ir::Graph& graph_;
     StreamBuilder& streams_;
     std::vector<Reading>& readings_;
-    AutomatonLimits limits_;
+    Limits limits_;
+    check::Values values_;
+    bool splitting_ = false;
     std::map<NodeId, std::uint32_t> known_;
     std::vector<Oversize> oversize_;
 };
