@@ -7,7 +7,7 @@ install(TARGETS etlc EXPORT etlcTargets RUNTIME)
 install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)  # where etlc looks for it, from bin/
 install(TARGETS etlmon EXPORT etlmonTargets)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
-  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.def")
+  FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc" PATTERN "*.def")
 
 install(EXPORT etlcTargets NAMESPACE etlc:: DESTINATION "${package_dir}")
 install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
