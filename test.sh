@@ -7,7 +7,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")"
 # The folders of tests/ that a preset builds and runs. The release build runs all. The tests of the runtime and of generated code compile what
 # they test themselves, with g++ and clang++ and with sanitizers; so the other builds run those of etlc.
 declare -A folders=(
-    [release]="unit spec runtime firmware monitor calibrate fuzz house package examples"
+    [release]="unit spec runtime firmware monitor calibrate evaluate fuzz house package examples"
     [debug]="unit spec calibrate fuzz"
     [clang]="unit spec"
     [fuzz]="fuzz"
