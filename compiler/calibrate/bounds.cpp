@@ -133,10 +133,13 @@ public:
             case Expr::Kind::scalar: return flushed(*measured_.input(e.index));
             case Expr::Kind::distance: return distance(e.index);
             case Expr::Kind::negate: return check::negate(a[0]);
-            case Expr::Kind::add: return binary(etlmon::add, check::add);
-            case Expr::Kind::subtract: return binary(etlmon::subtract, check::subtract);
-            case Expr::Kind::multiply: return binary(etlmon::multiply, check::multiply);
-            case Expr::Kind::divide: return binary(etlmon::divide, check::divide);
+            case Expr::Kind::add: return binary([](float x, float y) { return etlmon::add(x, y); }, check::add);
+            case Expr::Kind::subtract:
+                return binary([](float x, float y) { return etlmon::subtract(x, y); }, check::subtract);
+            case Expr::Kind::multiply:
+                return binary([](float x, float y) { return etlmon::multiply(x, y); }, check::multiply);
+            case Expr::Kind::divide:
+                return binary([](float x, float y) { return etlmon::divide(x, y); }, check::divide);
             case Expr::Kind::abs: return check::abs(a[0]);
             case Expr::Kind::sqrt: return widened(check::sqrt(a[0]));  // may differ in the last place
             case Expr::Kind::min: return check::min(a);
