@@ -13,6 +13,18 @@
 
 namespace etlc::calibrate {
 
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
+
+float down(double x) {
+    const auto nearest = static_cast<float>(x);
+    return static_cast<double>(nearest) > x ? std::nextafter(nearest, -kFloatInfinity) : nearest;
+}
+
+float up(double x) {
+    const auto nearest = static_cast<float>(x);
+    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kFloatInfinity) : nearest;
+}
+
 namespace {
 
 using check::Aggregation;
@@ -21,7 +33,6 @@ using check::Expr;
 using check::Range;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 /// Covers the rounding of what is computed here in double.
 constexpr double kSlack = 1 + 1e-12;
@@ -103,16 +114,6 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     result.low = std::max(0.0, result.low - etlmon::mean_bound(target.rows, result.high));
     result.high += etlmon::mean_bound(target.rows, result.high);
     return result;
-}
-
-float down(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) > x ? std::nextafter(nearest, -kFloatInfinity) : nearest;
-}
-
-float up(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kFloatInfinity) : nearest;
 }
 
 /// EXPR over intervals. Exact operands give an exact result; one so small that a build may flush it to zero does not.

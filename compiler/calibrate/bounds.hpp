@@ -26,6 +26,10 @@ Interval interval_of(const check::Distance& distance, std::uint32_t rows, std::u
 /// The interval of the predicate's delta; its ends are infinite where delta is, or may be. Nothing where it is unknown.
 std::optional<Interval> interval_of(const check::Model& model, Index predicate, const plan::Evaluator& measured);
 
+/// The float32 next to x, not above it; not below it.
+float down(double x);
+float up(double x);
+
 /// The first float32 strictly above every delta of at most `high`, so far that their difference is a normal number;
 /// infinite where there is none.
 float strictly_above(double high);

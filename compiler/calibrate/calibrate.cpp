@@ -124,23 +124,13 @@ private:
     std::uint64_t pooled_ = 0;
 };
 
-std::string_view method_name(ThresholdOrigin origin) {
-    switch (origin) {
-        case ThresholdOrigin::f1: return "f1";
-        case ThresholdOrigin::conformal: return "conformal";
-        case ThresholdOrigin::class_conditional: return "class_conditional";
-        case ThresholdOrigin::literal: break;
-    }
-    return "";
-}
-
 thresholds::Entry entry_of(const check::Model& model, Index predicate, const std::vector<Demonstration>& demonstrations,
                            std::size_t of, const Fitted& fitted) {
     check::Provenance provenance = check::provenance(model, predicate);
     const bool arrays_only = std::all_of(demonstrations.begin(), demonstrations.end(),
                                          [&](const Demonstration& d) { return d.scores[of].from_array; });
     thresholds::Entry entry;
-    entry.method = method_name(model.predicates[predicate].threshold.origin);
+    entry.method = check::method_name(model.predicates[predicate].threshold.origin);
     entry.alpha = model.predicates[predicate].threshold.alpha;
     entry.epsilon = fitted.epsilon;
     entry.n = fitted.n;

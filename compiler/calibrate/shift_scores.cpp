@@ -1,8 +1,6 @@
 #include "calibrate/shift_scores.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <set>
 
 #include "calibrate/bounds.hpp"
@@ -10,18 +8,6 @@
 namespace etlc::calibrate {
 
 namespace {
-
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float down(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) > x ? std::nextafter(nearest, -kInfinity) : nearest;
-}
-
-float up(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kInfinity) : nearest;
-}
 
 /// The predicate's robustness as low and as high as any build may have it.
 plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured) {

@@ -72,6 +72,16 @@ std::string text_with_definitions(const Model& model, Index formula, const std::
 
 }  // namespace
 
+std::string_view method_name(ThresholdOrigin origin) {
+    switch (origin) {
+        case ThresholdOrigin::f1: return "f1";
+        case ThresholdOrigin::conformal: return "conformal";
+        case ThresholdOrigin::class_conditional: return "class_conditional";
+        case ThresholdOrigin::literal: break;
+    }
+    return "";
+}
+
 Provenance provenance(const Model& model, Index predicate) {
     Provenance result;
     result.predicate = model.predicates[predicate].text;

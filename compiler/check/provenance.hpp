@@ -6,6 +6,7 @@
 
 #include <map>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "check/model.hpp"
@@ -23,6 +24,9 @@ struct Provenance {
 };
 
 Provenance provenance(const Model& model, Index predicate);
+
+/// How a thresholds file calls the method: "conformal"; empty for a literal threshold.
+std::string_view method_name(ThresholdOrigin origin);
 
 /// The same of a calibrated monitor: `predicate` is its formula with the predicates and their thresholds written out,
 /// `truth` the truths of those that have one, `targets` all that either measures.

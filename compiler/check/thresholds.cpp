@@ -52,16 +52,6 @@ bool same_number(const std::string& a, const std::string& b) {
     return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
 }
 
-std::string_view method_word(ThresholdOrigin origin) {
-    switch (origin) {
-        case ThresholdOrigin::f1: return "f1";
-        case ThresholdOrigin::conformal: return "conformal";
-        case ThresholdOrigin::class_conditional: return "class_conditional";
-        case ThresholdOrigin::literal: break;
-    }
-    return "";
-}
-
 /// What differs between the spec and what the entry was calibrated for, a sentence each.
 class Differences {
 public:
@@ -71,7 +61,7 @@ public:
         : model_(model), threshold_(threshold), what_(what), entry_(entry), now_(std::move(now)) {}
 
     std::vector<std::string> find() && {
-        const std::string_view method = method_word(threshold_.origin);
+        const std::string_view method = method_name(threshold_.origin);
         if (entry_.method != method)
             add("method", entry_.method, method);
         else if (!same_number(entry_.alpha, threshold_.alpha))

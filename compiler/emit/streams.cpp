@@ -62,16 +62,11 @@ std::string since(const Context& context, const Stream& stream, const std::strin
     return left_first ? fmt::format("{}({}, {})", outer, left, right) : fmt::format("{}({}, {})", outer, right, left);
 }
 
-std::string within(const Context& context, const Stream& stream, const std::string& local) {
-    const Slot operand = stream.operands[0];
-    const std::string value = context.value(operand);
-    const std::string condition = open_condition(stream.interval);
-    const std::string elsewhere = context.literal(stream.value);
-    if (!context.lazy(operand)) return fmt::format("{}{} ? {} : {};", local, condition, value, elsewhere);
-    const std::string name =
-        local.substr(0, local.size() - std::string(" = ").size()).substr(std::string("const auto ").size());
-    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {} ? Value({}) : {}; }});", name, condition,
-                       value, elsewhere);
+/// The operand within its window, found out when it is asked for.
+std::string lazy_within(const Context& context, const Stream& stream, const std::string& name) {
+    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {} ? Value({}) : {}; }});", name,
+                       open_condition(stream.interval), context.value(stream.operands[0]),
+                       context.literal(stream.value));
 }
 
 /// What the stream's value is computed from; empty for atoms and constants, which need no statement.
@@ -89,7 +84,9 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
         case StreamOp::negation: return fmt::format("{}negate({});", local, at(0));
         case StreamOp::conjunction:
         case StreamOp::disjunction: return local + combination(context, stream.op, stream.operands) + ";";
-        case StreamOp::within: return within(context, stream, local);
+        case StreamOp::within:
+            return fmt::format("{}{} ? {} : {};", local, open_condition(stream.interval), at(0),
+                               context.literal(stream.value));
         case StreamOp::delay: {
             // In a Boolean monitor a delayed atom is measured: not where the trace has ended.
             const bool lazy = context.lazy(stream.operands[0]) && context.plan.has_sliding;
@@ -134,6 +131,8 @@ std::string reset_of(const Context& context, const Stream& stream, const std::st
 /// depends on it, and what need not is found out when it is asked for.
 std::string whole_statement(const Context& context, Slot slot) {
     const std::string& name = context.names.stream_local.at(slot);
+    const Stream& stream = context.plan.streams[slot];
+    if (context.lazy(slot) && stream.op == StreamOp::within) return lazy_within(context, stream, name);
     if (context.lazy(slot)) return statement(context, slot, "const auto " + name + " = ");
     const std::string condition = open_monitors(context, context.dependents.of_stream[slot]);
     const bool remembers = context.names.stream_member.count(slot) > 0;
