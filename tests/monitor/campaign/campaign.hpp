@@ -30,12 +30,13 @@ struct Tally {
         double share() const { return formulas == 0 ? 0 : static_cast<double>(refused) / formulas; }
     };
     /// By depth - 1. Prefix monitors with windows to kLongWindow, with all operators and mostly future ones; with
-    /// windows to kShortWindow; sliding ones.
+    /// windows to kShortWindow; sliding ones; all of these on truth values.
     using Row = std::array<Cell, kDepths>;
     Row long_windows;
     Row mostly_future;
     Row short_windows;
     Row sliding;
+    Row boolean;
     int pairs = 0;
     int compiled = 0;
     std::vector<Finding> findings;
@@ -43,10 +44,11 @@ struct Tally {
     bool enough() const { return findings.size() >= 10; }
 
     Cell& cell(const Subject& subject) {
-        Row& row = subject.sliding()                       ? sliding
-                   : subject.shape.window == kShortWindow  ? short_windows
-                   : subject.shape.future == kMostlyFuture ? mostly_future
-                                                           : long_windows;
+        Row& row = subject.values == check::Values::boolean ? boolean
+                   : subject.sliding()                      ? sliding
+                   : subject.shape.window == kShortWindow   ? short_windows
+                   : subject.shape.future == kMostlyFuture  ? mostly_future
+                                                            : long_windows;
         return row[static_cast<std::size_t>(subject.shape.depth - 1)];
     }
 };

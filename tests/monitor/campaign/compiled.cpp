@@ -20,7 +20,7 @@ constexpr plan::Limits kRoomy{64U << 20U, 64U << 20U, 256U << 20U};
 const Build kBuild{"g++", "-O1"};
 
 /// The spec without the monitors that are refused, each under the usual limits for itself.
-std::string without_refused(const std::string& spec, int& refused) {
+std::string without_refused(const std::string& spec, check::Values values) {
     std::string kept;
     std::string monitors;
     std::size_t at = 0;
@@ -34,10 +34,7 @@ std::string without_refused(const std::string& spec, int& refused) {
             continue;
         }
         const auto model = load(kept + line);
-        if (model && PlanRunner(*model).refusal().empty())
-            monitors += line;
-        else
-            ++refused;
+        if (model && PlanRunner(*model, {}, values).refusal().empty()) monitors += line;
     }
     return monitors.empty() ? "" : kept + monitors;
 }
@@ -49,34 +46,39 @@ Request request_for(const check::Model& model, const Subject& subject, std::uint
             t % 2 == 0 ? subject_trace(model, subject, t + 1, kLongest) : continuation(model, first, subject.seed)};
 }
 
-std::optional<std::string> mismatch_of(const check::Model& model, const reference::Trace& trace, Observed observed) {
-    observed.dependencies = PlanRunner(model, kRoomy).dependencies();
-    return first_mismatch(model, reference::evaluate(model, trace), observed, {});
+std::optional<std::string> mismatch_of(const check::Model& model, check::Values values, const reference::Trace& trace,
+                                       Observed observed) {
+    observed.dependencies = PlanRunner(model, kRoomy, values).dependencies();
+    const Comparison comparison{.on_demand = values == check::Values::boolean};
+    return first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
 }
 
 /// What the first instance of a program of this one class says on the trace.
-std::optional<std::string> trial(const std::string& spec, const reference::Trace& trace) {
-    const auto model = load(spec);
-    if (!model) return {};
-    GeneratedProgram program("campaign_shrinking");
-    if (!program.add(*model) || !program.compile({"g++", "-O0"})) return "it does not compile";
-    const auto result = program.run({{0, trace, trace}});
-    if (result.answers.size() != 1) return "it does not run";
-    return mismatch_of(*model, trace, result.answers[0][0]);
+Trial trial_on(check::Values values) {
+    return [values](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+        const auto model = load(spec);
+        if (!model) return {};
+        GeneratedProgram program("campaign_shrinking");
+        if (!program.add(*model, values) || !program.compile({"g++", "-O0"})) return "it does not compile";
+        const auto result = program.run({{0, trace, trace}});
+        if (result.answers.size() != 1) return "it does not run";
+        return mismatch_of(*model, values, trace, result.answers[0][0]);
+    };
 }
 
-void compare(const GeneratedProgram& program, const std::vector<Request>& requests,
-             const GeneratedProgram::Result& result, Tally& tally) {
+void compare(const GeneratedProgram& program, const std::vector<check::Values>& values,
+             const std::vector<Request>& requests, const GeneratedProgram::Result& result, Tally& tally) {
     std::vector<bool> failed(program.size());
     for (std::size_t n = 0; n < result.answers.size(); ++n) {
         const check::Model& model = program.model(requests[n].spec);
+        const check::Values of = values[requests[n].spec];
         for (int run = 0; run < 3 && !failed[requests[n].spec]; ++run) {
             const reference::Trace& trace = run == 0 ? requests[n].first : requests[n].second;
-            const auto mismatch = mismatch_of(model, trace, result.answers[n][static_cast<std::size_t>(run)]);
+            const auto mismatch = mismatch_of(model, of, trace, result.answers[n][static_cast<std::size_t>(run)]);
             if (!mismatch) continue;
             failed[requests[n].spec] = true;
-            tally.findings.push_back(
-                shrink({std::string(model.file.text()), trace, "compiled: " + *mismatch}, trial, kShrinkingTries));
+            tally.findings.push_back(shrink({std::string(model.file.text()), trace, "compiled: " + *mismatch},
+                                            trial_on(of), kShrinkingTries));
         }
     }
 }
@@ -84,21 +86,22 @@ void compare(const GeneratedProgram& program, const std::vector<Request>& reques
 /// One program; the number of formulas in it.
 int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& tally) {
     GeneratedProgram program("campaign");
+    std::vector<check::Values> values;
     std::vector<Request> requests;
     int monitors = 0;
     for (std::uint64_t n = 0; n < kClassesPerProgram && monitors < formulas; ++n) {
         const Subject tried = subject(effort.seed, first + n, std::min(kMonitorsPerClass, formulas));
-        int refused = 0;
-        const std::string spec = without_refused(tried.spec(), refused);
+        const std::string spec = without_refused(tried.spec(), tried.values);
         const auto model = spec.empty() ? std::nullopt : load(spec);
-        if (!model || !program.add(*model)) continue;
+        if (!model || !program.add(*model, tried.values)) continue;
+        values.push_back(tried.values);
         monitors += static_cast<int>(model->monitors.size());
         for (int t = 0; t < 4; ++t)
             requests.push_back(request_for(*model, tried, static_cast<std::uint32_t>(program.size() - 1), t));
     }
     if (requests.empty() || !program.compile(kBuild)) return 0;
     const auto result = program.run(requests);
-    compare(program, requests, result, tally);
+    compare(program, values, requests, result, tally);
     return monitors;
 }
 

@@ -46,6 +46,7 @@ int report(const Tally& tally) {
     good &= show_refused("the same, mostly future", tally.mostly_future, kMayBeRefused);
     good &= show_refused("prefix, windows to 6", tally.short_windows, kMayBeRefused);
     good &= show_refused("sliding", tally.sliding, kMayBeRefused);
+    good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
     fmt::print("{} pairs of a formula and a trace evaluated, {} formulas compiled: {} mismatches\n", tally.pairs,
                tally.compiled, tally.findings.size());
     good = good && tally.findings.empty();
@@ -65,7 +66,6 @@ int main(int argc, char** argv) {
     app.add_option("--compiled", effort.compiled, "formulas in compiled classes")->capture_default_str();
     app.add_option("--longest", effort.longest, "steps of the longest trace")->capture_default_str();
     app.add_option("--seed", effort.seed, "another campaign")->capture_default_str();
-    // Ways to evaluate a formula go here: each is another Effort, tried and tallied as these.
     app.add_flag("--show-refused", effort.show_refused, "print each formula that is refused");
     CLI11_PARSE(app, argc, argv);
     Tally tally;

@@ -13,12 +13,14 @@ namespace {
 constexpr int kTracesPerFormula = 3;
 constexpr int kShrinkingTries = 3000;
 
-std::optional<std::string> trial(const std::string& spec, const reference::Trace& trace) {
-    const auto model = load(spec);
-    if (!model) return {};
-    PlanRunner runner(*model);
-    if (!runner.refusal().empty()) return {};
-    return first_mismatch(*model, reference::evaluate(*model, trace), runner.run(trace), {});
+Trial trial_on(check::Values values) {
+    return [values](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+        const auto model = load(spec);
+        if (!model) return {};
+        PlanRunner runner(*model, {}, values);
+        if (!runner.refusal().empty()) return {};
+        return first_mismatch(*model, reference::evaluate(*model, trace, values), runner.run(trace), {});
+    };
 }
 
 /// Whether the formula is planned; what is refused is counted.
@@ -34,7 +36,7 @@ bool planned(const Effort& effort, const Subject& subject, const PlanRunner& run
 void try_formula(const Effort& effort, const Subject& subject, Tally& tally) {
     const auto model = load(subject.spec());
     if (!model) return;
-    PlanRunner runner(*model);
+    PlanRunner runner(*model, {}, subject.values);
     if (!planned(effort, subject, runner, tally)) return;
     for (int t = 0; t <= kTracesPerFormula; ++t) {
         reference::Trace trace = subject_trace(*model, subject, t, effort.longest);
@@ -42,9 +44,10 @@ void try_formula(const Effort& effort, const Subject& subject, Tally& tally) {
         if (t == kTracesPerFormula)
             trace = continuation(*model, subject_trace(*model, subject, 0, effort.longest), subject.seed);
         ++tally.pairs;
-        const auto mismatch = first_mismatch(*model, reference::evaluate(*model, trace), runner.run(trace), {});
+        const auto mismatch =
+            first_mismatch(*model, reference::evaluate(*model, trace, subject.values), runner.run(trace), {});
         if (!mismatch) continue;
-        tally.findings.push_back(shrink({subject.spec(), trace, *mismatch}, trial, kShrinkingTries));
+        tally.findings.push_back(shrink({subject.spec(), trace, *mismatch}, trial_on(subject.values), kShrinkingTries));
         return;
     }
 }
@@ -60,7 +63,7 @@ void try_plans(const Effort& effort, Tally& tally) {
     constexpr std::uint64_t kBeyondPairs = 1'000'000;
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(effort.planned); ++n) {
         const Subject tried = subject(effort.seed, kBeyondPairs + n, 1);
-        if (const auto model = load(tried.spec())) planned(effort, tried, PlanRunner(*model), tally);
+        if (const auto model = load(tried.spec())) planned(effort, tried, PlanRunner(*model, {}, tried.values), tally);
     }
 }
 

@@ -1,6 +1,7 @@
 // What a campaign tries: one random formula, and random traces for it.
 // Takes: the seed of the campaign and a number. Gives: the same subject every time. Keeps true: depths 1 to 5, prefix
-// and sliding monitors, windows to 40 and short ones take turns; traces reach 200 steps, with gaps and invalid samples.
+// and sliding monitors, windows to 40 and short ones, robustness and truth values take turns; traces reach 200 steps,
+// with gaps and invalid samples.
 #pragma once
 
 #include <cstdint>
@@ -21,6 +22,7 @@ inline constexpr double kMostlyFuture = 0.8;
 struct Subject {
     std::uint64_t seed = 0;
     SpecShape shape;
+    check::Values values = check::Values::robustness;
     bool sliding() const { return shape.formulas == SpecShape::Formulas::sliding; }
     std::string spec() const { return random_spec(seed, shape); }
 };
