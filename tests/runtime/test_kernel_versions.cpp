@@ -2,7 +2,7 @@
 // the versions that fuse multiplication and addition against each other: equal bits.
 #include <gtest/gtest.h>
 
-#include "kernel_cases.hpp"
+#include "kernel_versions.hpp"
 
 namespace {
 
@@ -11,31 +11,6 @@ using etlmon::Measured;
 using etlmon::MetricId;
 using etlmon::detail::Fixed;
 using etlmon::detail::Sizes;
-
-template <class Metric, class Aggregation, class Size, bool InColumns>
-using Run = Measured (*)(const float*, const float*, const float*, Size, Aggregation) noexcept;
-
-template <class Metric, class Aggregation, class Size, bool InColumns>
-struct Version {
-    const char* name;
-    bool fused;
-    Run<Metric, Aggregation, Size, InColumns> run;
-};
-
-/// The versions that were compiled and that the CPU has.
-template <class Metric, class Aggregation, class Size, bool InColumns>
-std::vector<Version<Metric, Aggregation, Size, InColumns>> versions() {
-    std::vector<Version<Metric, Aggregation, Size, InColumns>> all{
-        {"baseline", false, etlmon::detail::baseline::run<Metric, Aggregation, Size, InColumns>}};
-#if defined(ETLMON_DISPATCH)
-    const std::uint32_t level = etlmon::detail::x86_64_level();
-#if ETLMON_X86_64 < 3
-    if (level >= 3) all.push_back({"v3", true, etlmon::detail::x86_64_v3::run<Metric, Aggregation, Size, InColumns>});
-#endif
-    if (level >= 4) all.push_back({"v4", true, etlmon::detail::x86_64_v4::run<Metric, Aggregation, Size, InColumns>});
-#endif
-    return all;
-}
 
 /// All versions on one case. `targets`: prepared, in the form that they take.
 template <class Metric, class Aggregation, bool InColumns, class Size>

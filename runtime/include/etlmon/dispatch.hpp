@@ -21,14 +21,14 @@ inline CpuId cpu_id(uint32_t leaf) noexcept {
   return id;
 }
 
-/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA) or 4 (AVX-512 F, VL, BW, DQ), where the
-/// operating system keeps the registers. (Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1,
+/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA, F16C) or 4 (AVX-512 F, VL, BW, DQ), where
+/// the operating system keeps the registers. (Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1,
 /// sections 14.3 and 15.2.)
 inline uint32_t x86_64_level() noexcept {
-  constexpr uint32_t kFma = 1u << 12, kOsxsave = 1u << 27, kAvx = 1u << 28;
+  constexpr uint32_t kFma = 1u << 12, kOsxsave = 1u << 27, kAvx = 1u << 28, kF16c = 1u << 29;
   constexpr uint32_t kAvx2 = 1u << 5, kAvx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
   constexpr uint32_t kYmm = 0x6, kZmm = 0xe6;
-  constexpr uint32_t kLevel3 = kFma | kOsxsave | kAvx;
+  constexpr uint32_t kLevel3 = kFma | kOsxsave | kAvx | kF16c;
   if (cpu_id(0).a < 7 || (cpu_id(1).c & kLevel3) != kLevel3) return 1;
   uint32_t kept = 0, high = 0;
   __asm__("xgetbv" : "=a"(kept), "=d"(high) : "c"(0));
@@ -37,19 +37,19 @@ inline uint32_t x86_64_level() noexcept {
   return (has & kAvx512) == kAvx512 && (kept & kZmm) == kZmm ? 4 : 3;
 }
 
-template <class Metric, class Aggregation, class Size, bool InColumns>
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 struct Dispatch {
-  using Run = Measured (*)(const float*, const float*, const float*, Size, Aggregation) noexcept;
+  using Run = Measured (*)(const float*, G, const float*, Size, Aggregation) noexcept;
 
   static Run choice() noexcept {
     const uint32_t level = x86_64_level();
-    if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns>;
+    if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>;
 #if ETLMON_X86_64 < 3
-    if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns>;
+    if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>;
 #endif
-    return baseline::run<Metric, Aggregation, Size, InColumns>;
+    return baseline::run<Metric, Aggregation, Size, InColumns, G>;
   }
-  ETLMON_COLD static Measured choose(const float* z, const float* targets, const float* weights, Size size,
+  ETLMON_COLD static Measured choose(const float* z, G targets, const float* weights, Size size,
                                      Aggregation aggregation) noexcept {
     const Run run = choice();
     __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
@@ -58,22 +58,34 @@ struct Dispatch {
   inline static Run chosen = choose;
 };
 
-template <class Metric, class Aggregation, class Size, bool InColumns>
-ETLMON_INLINE Measured best(const float* z, const float* targets, const float* weights, Size size,
-                            Aggregation aggregation) noexcept {
-  using Kernel = Dispatch<Metric, Aggregation, Size, InColumns>;
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+                               Aggregation aggregation) noexcept {
+  using Kernel = Dispatch<Metric, Aggregation, Size, InColumns, G>;
   return __atomic_load_n(&Kernel::chosen, __ATOMIC_RELAXED)(z, targets, weights, size, aggregation);
 }
 
 #else
 
-template <class Metric, class Aggregation, class Size, bool InColumns>
-ETLMON_INLINE Measured best(const float* z, const float* targets, const float* weights, Size size,
-                            Aggregation aggregation) noexcept {
-  return baseline::run<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+                               Aggregation aggregation) noexcept {
+  return baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);
 }
 
 #endif
+
+/// The kernel on rows, or columns, of T; on int8 with their scale.
+template <class Metric, class Aggregation, class Size, bool InColumns, class T>
+ETLMON_INLINE Measured best(const float* z, const T* targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+}
+template <class Metric, class Aggregation, class Size, bool InColumns>
+ETLMON_INLINE Measured best(const float* z, ScaledRows targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+}
 
 }  // namespace detail
 }  // namespace etlmon

@@ -74,8 +74,8 @@ struct KthOf {
 
 namespace detail {
 
-template <class Metric>
-Measured measure_as(AggregationId aggregation, uint32_t n, const float* z, const float* targets, uint32_t K, uint32_t D,
+template <class Metric, class G>
+Measured measure_as(AggregationId aggregation, uint32_t n, const float* z, G targets, uint32_t K, uint32_t D,
                     const float* weights, float* scratch) noexcept {
   switch (aggregation) {
     case AggregationId::min:
@@ -90,20 +90,26 @@ Measured measure_as(AggregationId aggregation, uint32_t n, const float* z, const
   return best<Metric, KthOf, Sizes, false>(z, targets, weights, {K, D}, KthOf{scratch, n, 0});
 }
 
+template <class G>
+Measured measure_as(MetricId metric, AggregationId aggregation, uint32_t n, const float* z, G targets, uint32_t K,
+                    uint32_t D, const float* weights, float* scratch) noexcept {
+  switch (metric) {
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
+  case MetricId::id:                                             \
+    return measure_as<Type>(aggregation, n, z, targets, K, D, weights, scratch);
+#include "etlmon/distances.def"
+#undef DISTANCE
+  }
+  return {from_bits(kMissingBits), 0};
+}
+
 }  // namespace detail
 
 /// The aggregated distance from z (D finite floats) to K prepared targets. weights: D x D for mahalanobis, D for
 /// mahalanobis_diagonal, else unread. kth takes n in [1, K] and scratch of n floats, else unread.
 inline Measured measure(MetricId metric, AggregationId aggregation, uint32_t n, const float* z, const float* targets,
                         uint32_t K, uint32_t D, const float* weights, float* scratch) noexcept {
-  switch (metric) {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-  case MetricId::id:                                             \
-    return detail::measure_as<Type>(aggregation, n, z, targets, K, D, weights, scratch);
-#include "etlmon/distances.def"
-#undef DISTANCE
-  }
-  return {detail::from_bits(detail::kMissingBits), 0};
+  return detail::measure_as(metric, aggregation, n, z, targets, K, D, weights, scratch);
 }
 
 }  // namespace etlmon

@@ -28,13 +28,29 @@ constexpr uint32_t weights_of() noexcept {
 /// constants; the compiler lays the targets out as the machine likes them best. Errors: none; delta is NaN where z is
 /// zero under cosine and angular, +inf where it, or for the mean one of the distances, exceeds FLT_MAX; distances that
 /// do are taken for equal.
-template <class Metric, class Aggregation, uint32_t K, uint32_t D, const float (&Targets)[K * D]>
+/// Targets may be float32, or float16 as their bits, which are widened as they are read: the same distances.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
+  static_assert(sizeof(Targets) / sizeof(Targets[0]) == K * D, "K rows of D elements");
+  const auto* rows = &Targets[0];
   if constexpr (detail::in_columns(K, D) && !Metric::kQuadratic) {
-    const float* columns = detail::ColumnsOf<K, D, Targets>::kColumns.values;
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, columns, weights, {}, {});
+    rows = detail::ColumnsOf<K, D, Targets>::kColumns.values;
+    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, rows, weights, {}, {});
   } else {
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, Targets, weights, {}, {});
+    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, rows, weights, {}, {});
+  }
+}
+
+/// The same for targets of int8, each worth `scale` times itself, rounded once.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
+ETLMON_INLINE Measured measure_scaled(const float* z, float scale, const float* weights = nullptr) noexcept {
+  static_assert(sizeof(Targets) == K * D, "K rows of D bytes");
+  if constexpr (detail::in_columns(K, D)) {
+    const detail::ScaledRows rows{detail::ColumnsOf<K, D, Targets>::kColumns.values, scale};
+    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, rows, weights, {}, {});
+  } else {
+    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, detail::ScaledRows{Targets, scale}, weights,
+                                                                         {}, {});
   }
 }
 
@@ -42,7 +58,7 @@ ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) n
 template <class Metric, class Aggregation, uint32_t K, uint32_t D>
 ETLMON_INLINE Measured measure(const float* z, const float (&targets)[K * D]) noexcept {
   static_assert(!Metric::kWeighted && !Metric::kQuadratic, "this distance needs weights");
-  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, targets, nullptr, {}, {});
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, &targets[0], nullptr, {}, {});
 }
 
 /// The same for distances with weights: D x D symmetric positive definite (Mahalanobis) or D positive
@@ -51,7 +67,7 @@ template <class Metric, class Aggregation, uint32_t K, uint32_t D>
 ETLMON_INLINE Measured measure(const float* z, const float (&targets)[K * D],
                                const float (&weights)[Metric::kQuadratic ? D * D : D]) noexcept {
   static_assert(Metric::kWeighted || Metric::kQuadratic, "this distance has no weights");
-  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, targets, weights, {}, {});
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, &targets[0], weights, {}, {});
 }
 
 }  // namespace etlmon

@@ -38,14 +38,14 @@ constexpr Order order(uint32_t K, uint32_t D) noexcept {
 }
 
 /// A target set, element by element: element i of row k is values[i * column_length(K) + k].
-template <uint32_t K, uint32_t D>
+template <uint32_t K, uint32_t D, class T = float>
 struct Columns {
-  alignas(64) float values[D * column_length(K)];
+  alignas(64) T values[D * column_length(K)];
 };
 
-template <uint32_t K, uint32_t D>
-constexpr Columns<K, D> columns_of(const float (&rows)[K * D]) noexcept {
-  Columns<K, D> columns{};
+template <uint32_t K, uint32_t D, class T>
+constexpr Columns<K, D, T> columns_of(const T (&rows)[K * D]) noexcept {
+  Columns<K, D, T> columns{};
   for (uint32_t i = 0; i < D; ++i) {
     for (uint32_t k = 0; k < column_length(K); ++k) {
       columns.values[i * column_length(K) + k] = rows[(k < K ? k : K - 1) * D + i];
@@ -55,9 +55,9 @@ constexpr Columns<K, D> columns_of(const float (&rows)[K * D]) noexcept {
 }
 
 /// The columns of a set that is a constant of the program.
-template <uint32_t K, uint32_t D, const float (&Rows)[K * D]>
+template <uint32_t K, uint32_t D, const auto& Rows>
 struct ColumnsOf {
-  static constexpr Columns<K, D> kColumns = columns_of<K, D>(Rows);
+  static constexpr auto kColumns = columns_of<K, D>(Rows);
 };
 
 /// Sizes known to the compiler, and sizes known at run time.

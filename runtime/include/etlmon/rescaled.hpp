@@ -16,10 +16,11 @@ ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
   return {from_bits((254 - exponent) << 23), from_bits(exponent << 23)};
 }
 
-ETLMON_INLINE uint32_t greatest_magnitude(const float* x, uint32_t n) noexcept {
+template <class G>
+ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
   uint32_t greatest = 0;
   for (uint32_t i = 0; i < n; ++i) {
-    const uint32_t bits = observe(x[i]) & ~kSignBit;
+    const uint32_t bits = observe(element(x, i)) & ~kSignBit;
     greatest = bits > greatest ? bits : greatest;
   }
   return greatest;
@@ -31,7 +32,8 @@ class RescaledL2 {
   RescaledL2(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
-  uint32_t row(const float* g) const noexcept {
+  template <class G>
+  uint32_t row(G g) const noexcept {
     const uint32_t greatest = observe(baseline::one_row<Linf>({}, z_, g, z_, dimension_));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
     const PowerOfTwo power = power_of_two(greatest);
@@ -53,7 +55,8 @@ class RescaledRoot {
       : z_(z), weights_(weights), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
-  uint32_t row(const float* g) const noexcept {
+  template <class G>
+  uint32_t row(G g) const noexcept {
     constexpr uint32_t kQuarterOfMost = 0x7e800000u;  // 2^126: differences of larger elements may overflow
     const uint32_t size_z = greatest_magnitude(z_, dimension_), size_g = greatest_magnitude(g, dimension_);
     const float half = size_z >= kQuarterOfMost || size_g >= kQuarterOfMost ? 0.5f : 1.0f;
@@ -76,14 +79,16 @@ class RescaledRoot {
   }
 
  private:
-  float difference(const float* g, uint32_t i, float half) const noexcept {
-    return rounded(rounded(z_[i] * half) - rounded(g[i] * half));
+  template <class G>
+  float difference(G g, uint32_t i, float half) const noexcept {
+    return rounded(rounded(z_[i] * half) - rounded(element(g, i) * half));
   }
   float stretch(uint32_t i) const noexcept {
     return square_root(weights_[Metric::kQuadratic ? static_cast<size_t>(i) * dimension_ + i : i]);
   }
   /// Element i of W (z - g) / s_i, scaled.
-  float weighted(const float* g, uint32_t i, float half, float down) const noexcept {
+  template <class G>
+  float weighted(G g, uint32_t i, float half, float down) const noexcept {
     const float* row = weights_ + static_cast<size_t>(i) * dimension_;
     const float s = stretch(i);
     if (!(s > 0.0f)) return 0.0f;
@@ -118,10 +123,11 @@ class RescaledDirection {
   }
   bool known() const noexcept { return known_; }
 
-  uint32_t row(const float* g) const noexcept {
+  template <class G>
+  uint32_t row(G g) const noexcept {
     typename Metric::template Partial<float> sums{};
     for (uint32_t i = 0; i < dimension_; ++i) {
-      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)), g[i], 0.0f);
+      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)), element(g, i), 0.0f);
     }
     return observe(Metric::finish(Metric::row(sums)));
   }
@@ -140,7 +146,10 @@ class Unscaled {
  public:
   Unscaled(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
-  uint32_t row(const float* g) const noexcept { return observe(baseline::one_row<Metric>({}, z_, g, z_, dimension_)); }
+  template <class G>
+  uint32_t row(G g) const noexcept {
+    return observe(baseline::one_row<Metric>({}, z_, g, z_, dimension_));
+  }
 
  private:
   const float* z_;
@@ -162,13 +171,13 @@ using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric>,
 template <class Metric>
 using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
 
-template <class Metric, class Aggregation, bool InColumns>
-Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float* weights,
+template <class Metric, class Aggregation, bool InColumns, class G>
+Measured measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
                           Aggregation aggregation) noexcept {
   const Rescaled<Metric> distance(z, weights, set.dimension);
   if (!distance.known()) return {from_bits(kMissingBits), 0};
   Nearest nearest;
-  typename Set<InColumns>::Buffer buffer;
+  typename Set<InColumns, G>::Buffer buffer;
   for (uint32_t row = 0; row < set.rows; ++row) {
     const uint32_t bits = distance.row(set.row(row, buffer));
     nearest.add(bits, row);
@@ -186,18 +195,17 @@ Measured measure_rescaled(const float* z, const Set<InColumns>& set, const float
 }
 
 /// z is row k of the set, element by element.
-template <bool InColumns>
-ETLMON_INLINE bool is_row(const float* z, const Set<InColumns>& set, uint32_t k) noexcept {
-  typename Set<InColumns>::Buffer buffer;
-  const float* row = set.row(k, buffer);
-  if ((observe(z[0] - row[0]) & ~kSignBit) != 0) return false;  // most rows end here
+template <bool InColumns, class G>
+ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t k) noexcept {
+  typename Set<InColumns, G>::Buffer buffer;
+  const auto row = set.row(k, buffer);
+  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
   return observe(baseline::one_row<Linf>({}, z, row, z, set.dimension)) == 0;
 }
 
-template <class Metric, class Aggregation, class Size, bool InColumns>
-Measured measure_again(const float* z, const float* targets, const float* weights, Size size,
-                       Aggregation aggregation) noexcept {
-  const Set<InColumns> set{targets, size.rows(), size.dimension()};
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+Measured measure_again(const float* z, G targets, const float* weights, Size size, Aggregation aggregation) noexcept {
+  const Set<InColumns, G> set{targets, size.rows(), size.dimension()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {
       if (is_row(z, set, row)) return {0.0f, row};
@@ -206,9 +214,9 @@ Measured measure_again(const float* z, const float* targets, const float* weight
   return measure_rescaled<Metric>(z, set, weights, aggregation);
 }
 
-template <bool InColumns>
-bool is_equal(const float* z, const float* targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept {
-  return is_row(z, Set<InColumns>{targets, rows, dimension}, row);
+template <bool InColumns, class G>
+bool is_equal(const float* z, G targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept {
+  return is_row(z, Set<InColumns, G>{targets, rows, dimension}, row);
 }
 
 }  // namespace detail

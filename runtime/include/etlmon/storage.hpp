@@ -1,10 +1,16 @@
 // SPDX-License-Identifier: MIT
-// Embeddings in narrow storage, widened to float32.
-// Takes: float16 as their IEEE bits, or int8 and a scale. Gives: n floats.
+// Embeddings and targets in narrow storage, widened to float32.
+// Takes: float16 as their IEEE bits, or int8 and a scale. Gives: one element, four, or n floats.
 // Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x integer, rounded once.
+// Machines that widen by an instruction and those that do not get the same bits.
 #pragma once
 
 #include "etlmon/pack.hpp"
+
+// ARM machines that convert float16 by an instruction, and a compiler that was not told to mean something else by it.
+#if defined(__ARM_FP16_FORMAT_IEEE) && defined(__ARM_FP) && (__ARM_FP & 2)
+#define ETLMON_HAS_HALVES 1
+#endif
 
 namespace etlmon {
 
@@ -29,6 +35,12 @@ namespace detail {
 /// the difference of the biases, 112; a subnormal one is its mantissa times 2^-24, which is exact and flushed by
 /// nothing.
 ETLMON_INLINE Pack widened(const uint16_t* from) noexcept {
+#if defined(ETLMON_HAS_HALVES)
+  typedef __fp16 Halves __attribute__((vector_size(8)));
+  Halves halves;
+  copy_bytes(&halves, from, sizeof halves);
+  return __builtin_convertvector(halves, Pack);
+#else
   const PackBits half = {from[0], from[1], from[2], from[3]};
   const PackBits exponent = half & 0x7c00, mantissa = half & 0x3ff;
   const PackBits special = (exponent == 0x7c00) & (112 << 23);
@@ -37,6 +49,7 @@ ETLMON_INLINE Pack widened(const uint16_t* from) noexcept {
   const PackBits is_tiny = exponent == 0;
   const PackBits bits = (is_tiny & reinterpret_cast<PackBits>(tiny)) | (~is_tiny & normal);
   return reinterpret_cast<Pack>(bits | ((half & 0x8000) << 16));
+#endif
 }
 ETLMON_INLINE Pack scaled(const int8_t* from, float scale) noexcept {
   const PackBits integers = {from[0], from[1], from[2], from[3]};
@@ -51,6 +64,36 @@ ETLMON_INLINE Pack scaled(const int8_t* from, float scale) noexcept {
 }  // namespace detail
 #endif
 
+namespace detail {
+
+/// Rows of int8, each worth `scale` times itself: what a pointer is to other rows.
+struct ScaledRows {
+  const int8_t* values;
+  float scale;
+};
+ETLMON_INLINE ScaledRows operator+(ScaledRows rows, size_t n) noexcept { return {rows.values + n, rows.scale}; }
+ETLMON_INLINE ScaledRows& operator+=(ScaledRows& rows, size_t n) noexcept {
+  rows.values += n;
+  return rows;
+}
+
+/// Element i of rows of any storage, as float32.
+ETLMON_INLINE float element(const float* rows, size_t i) noexcept { return rows[i]; }
+ETLMON_INLINE float element(const uint16_t* rows, size_t i) noexcept {
+#if defined(ETLMON_HAS_HALVES)
+  __fp16 half;
+  copy_bytes(&half, rows + i, sizeof half);
+  return static_cast<float>(half);
+#else
+  return from_bits(widened_bits(rows[i]));
+#endif
+}
+ETLMON_INLINE float element(ScaledRows rows, size_t i) noexcept {
+  return rounded(rows.scale * static_cast<float>(rows.values[i]));
+}
+
+}  // namespace detail
+
 inline void widen_f16(const uint16_t* from, float* to, uint32_t n) noexcept {
   uint32_t i = 0;
 #if defined(ETLMON_HAS_PACKS)
@@ -59,7 +102,7 @@ inline void widen_f16(const uint16_t* from, float* to, uint32_t n) noexcept {
     detail::copy_bytes(to + i, &four, sizeof four);
   }
 #endif
-  for (; i < n; ++i) to[i] = detail::from_bits(widened_bits(from[i]));
+  for (; i < n; ++i) to[i] = detail::element(from, i);
 }
 
 inline void widen_i8(const int8_t* from, float scale, float* to, uint32_t n) noexcept {
@@ -70,7 +113,7 @@ inline void widen_i8(const int8_t* from, float scale, float* to, uint32_t n) noe
     detail::copy_bytes(to + i, &four, sizeof four);
   }
 #endif
-  for (; i < n; ++i) to[i] = detail::rounded(scale * static_cast<float>(from[i]));
+  for (; i < n; ++i) to[i] = detail::element(detail::ScaledRows{from, scale}, i);
 }
 
 }  // namespace etlmon

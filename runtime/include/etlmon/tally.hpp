@@ -8,26 +8,25 @@
 #include "etlmon/aggregate.hpp"
 #include "etlmon/distances.hpp"
 #include "etlmon/layout.hpp"
+#include "etlmon/storage.hpp"
 
 namespace etlmon {
 namespace detail {
 
 /// K rows of D elements, one after the other.
-template <bool InColumns>
+template <bool InColumns, class G>
 struct Set {
-  const float* values;
+  G values;
   uint32_t rows, dimension;
 
   struct Buffer {};
-  ETLMON_INLINE const float* row(uint32_t k, Buffer&) const noexcept {
-    return values + static_cast<size_t>(k) * dimension;
-  }
+  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept { return values + static_cast<size_t>(k) * dimension; }
 };
 
 /// The same in columns.
-template <>
-struct Set<true> {
-  const float* values;
+template <class G>
+struct Set<true, G> {
+  G values;
   uint32_t rows, dimension;
 
   struct Buffer {
@@ -36,7 +35,7 @@ struct Set<true> {
   /// Row k, gathered in `to`.
   ETLMON_INLINE const float* row(uint32_t k, Buffer& to) const noexcept {
     const uint32_t length = column_length(rows);
-    for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = values[i * length + k];
+    for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = element(values, i * length + k);
     return to.elements;
   }
 };
@@ -81,18 +80,17 @@ struct Tally {
 };
 
 /// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form.
-template <class Metric, class Aggregation, class Size, bool InColumns>
-ETLMON_COLD Measured measure_again(const float* z, const float* targets, const float* weights, Size size,
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_COLD Measured measure_again(const float* z, G targets, const float* weights, Size size,
                                    Aggregation aggregation) noexcept;
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
-template <bool InColumns>
-ETLMON_COLD bool is_equal(const float* z, const float* targets, uint32_t rows, uint32_t dimension,
-                          uint32_t row) noexcept;
+template <bool InColumns, class G>
+ETLMON_COLD bool is_equal(const float* z, G targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept;
 
 /// What the values say together. `aggregation`: as it was before it saw any.
-template <bool InColumns, class Metric, class Aggregation, class Size>
-ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, const float* targets,
+template <bool InColumns, class Metric, class Aggregation, class Size, class G>
+ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, G targets,
                                 const float* weights, Size size, Aggregation aggregation) noexcept {
   const uint32_t result = tally.result(size.rows());
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
@@ -102,7 +100,7 @@ ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const f
         sound = is_equal<InColumns>(z, targets, size.rows(), size.dimension(), tally.nearest.row);
       }
     }
-    if (!sound) return measure_again<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+    if (!sound) return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);
   }
   const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
   return {delta, tally.nearest.row};
