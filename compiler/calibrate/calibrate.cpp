@@ -7,6 +7,7 @@
 
 #include "calibrate/parallel.hpp"
 #include "calibrate/rank.hpp"
+#include "check/adaptation.hpp"
 #include "check/provenance.hpp"
 #include "data/episodes.hpp"
 #include "data/file.hpp"
@@ -172,6 +173,11 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         const Fit fitted = fit(predicate, *demonstrations, i);
         if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
             refusing.report(predicates[i], i, *refusal);
+            continue;
+        }
+        if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
+            sink.report(Code::start_out_of_range, predicate.threshold.span, check::outside(predicate, out->epsilon))
+                .note("give it lo and hi with room on both sides of the threshold");
             continue;
         }
         all.push_back(std::get<Fitted>(fitted));

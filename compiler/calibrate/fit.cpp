@@ -5,6 +5,7 @@
 
 #include "calibrate/bounds.hpp"
 #include "calibrate/rank.hpp"
+#include "check/adaptation.hpp"
 
 namespace etlc::calibrate {
 
@@ -84,6 +85,11 @@ Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& dem
                     : fit_rank(std::move(reaches), predicate.threshold.alpha);
     if (auto* fitted = std::get_if<Fitted>(&fit)) {
         fitted->epsilon = predicate.upper_bound() ? fitted->epsilon : 0.0F - fitted->epsilon;  // 0 rather than -0
+        if (predicate.threshold.adaptation) {
+            const auto start = check::start(*predicate.threshold.adaptation, fitted->epsilon, predicate.upper_bound());
+            if (!start) return OutOfRange{fitted->epsilon};
+            fitted->epsilon = *start;
+        }
         std::sort(measured.begin(), measured.end());
         fitted->scores = std::move(measured);
     }

@@ -29,7 +29,12 @@ enum class Refusal : std::uint8_t {
     no_f1,         ///< no observed distance as threshold finds a positive frame
 };
 
-using Fit = std::variant<Fitted, Refusal>;
+/// An adaptive threshold that would start outside [lo, hi].
+struct OutOfRange {
+    float epsilon = 0;
+};
+
+using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 
 /// `of`: which of the demonstrations' scores are this predicate's.
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of);

@@ -60,6 +60,16 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                 "    a positive frame is covered with probability >= 1 - {} where frames are exchangeable, which those "
                 "of one recording seldom are; no guarantee for episodes",
                 threshold.alpha, fitted.k, fitted.n, from, threshold.alpha);
+        case ThresholdOrigin::adaptive: {
+            const check::Adaptation& moves = *threshold.adaptation;
+            return fmt::format(
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from the {}, one of each "
+                "demonstration\n"
+                "    of the first T labelled positive frames it misses at most {}, H being the misses at which the end of "
+                "its range held it back",
+                threshold.alpha, moves.gamma, moves.lo, moves.hi, fitted.k, fitted.n, from,
+                check::miss_bound(predicate));
+        }
         case ThresholdOrigin::literal: break;
     }
     return "";
@@ -77,7 +87,9 @@ std::string predicate_report(const check::Model& model, Index index, const std::
     if (totals.from_array > 0)
         text += fmt::format("    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
                             totals.from_array, counted(demonstrations.size(), "demonstration"), predicate.name);
-    if (predicate.threshold.origin == ThresholdOrigin::conformal && totals.without_score > 0)
+    const bool by_demonstration =
+        predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
+    if (by_demonstration && totals.without_score > 0)
         text +=
             fmt::format("    {} without a positive frame left out\n", counted(totals.without_score, "demonstration"));
     if (totals.unmeasured > 0)

@@ -2,8 +2,11 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <limits>
+#include <set>
 
+#include "check/adaptation.hpp"
 #include "check/decimal.hpp"
 
 namespace etlc::check {
@@ -15,33 +18,43 @@ using diag::Code;
 struct Method {
     std::string_view name;
     ThresholdOrigin origin;
-    bool has_alpha;
+    std::vector<std::string_view> arguments;
 };
 
-constexpr std::array kMethods = std::to_array<Method>({
-    {"f1", ThresholdOrigin::f1, false},
-    {"conformal", ThresholdOrigin::conformal, true},
-    {"class_conditional", ThresholdOrigin::class_conditional, true},
-});
+const std::vector<Method>& methods() {
+    static const std::vector<Method> all{
+        {"f1", ThresholdOrigin::f1, {}},
+        {"conformal", ThresholdOrigin::conformal, {"alpha"}},
+        {"class_conditional", ThresholdOrigin::class_conditional, {"alpha"}},
+        {"adaptive", ThresholdOrigin::adaptive, {"alpha", "gamma", "lo", "hi"}},
+    };
+    return all;
+}
+
+/// "alpha, gamma, lo or hi"
+std::string listed(const std::vector<std::string_view>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) text += i + 1 < words.size() ? ", " : " or ";
+        text += words[i];
+    }
+    return text;
+}
 
 const Method* find_method(Context& c, const ast::Name& name) {
-    for (const Method& method : kMethods)
+    std::vector<std::string_view> names;
+    for (const Method& method : methods()) {
         if (method.name == name.text) return &method;
-    if (name.text == "adaptive") {
-        c.report(Code::calibration_not_available, name.span, "adaptive thresholds are not available in this version")
-            .note("the methods are f1, conformal and class_conditional");
-        return nullptr;
+        names.push_back(method.name);
     }
-    auto& error = c.report(
-        Code::unknown_method, name.span,
-        fmt::format("'{}' is not a calibration method; expected f1, conformal or class_conditional", name.text));
-    if (const auto near = diag::nearest_name(name.text, {"f1", "conformal", "class_conditional"}))
+    auto& error = c.report(Code::unknown_method, name.span,
+                           fmt::format("'{}' is not a calibration method; expected {}", name.text, listed(names)));
+    if (const auto near = diag::nearest_name(name.text, {names.begin(), names.end()}))
         error.note(fmt::format("did you mean '{}'?", *near));
     return nullptr;
 }
 
 bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
-    if (argument.key.text != "alpha") return false;
     const auto* number = std::get_if<ast::Number>(&argument.value);
     const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
                            Decimal::parse(number->text) < Decimal::parse("1");
@@ -54,26 +67,39 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
     return false;
 }
 
-/// The text of alpha, empty for a method without; nothing where an argument had an error.
-std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, const Method& method) {
-    std::string alpha;
+/// The arguments are those of the method, each once.
+bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& method) {
+    std::set<std::string_view> given;
     const std::size_t errors = c.sink.errors();
     for (const ast::Calibrated::Argument& argument : written.arguments) {
-        if (argument.key.text != "alpha" || !method.has_alpha) {
+        const std::string& key = argument.key.text;
+        const auto& known = method.arguments;
+        if (std::find(known.begin(), known.end(), key) == known.end())
             c.report(Code::calibration_argument, argument.key.span,
-                     method.has_alpha
-                         ? fmt::format("{} has no argument '{}'; expected alpha", method.name, argument.key.text)
-                         : fmt::format("{} has no arguments", method.name));
-            continue;
-        }
-        if (!alpha.empty()) c.report(Code::calibration_argument, argument.key.span, "alpha is given twice");
-        if (is_alpha(c, argument)) alpha = std::get<ast::Number>(argument.value).text;
+                     known.empty()
+                         ? fmt::format("{} has no arguments", method.name)
+                         : fmt::format("{} has no argument '{}'; expected {}", method.name, key, listed(known)));
+        else if (!given.insert(key).second)
+            c.report(Code::calibration_argument, argument.key.span, fmt::format("{} is given twice", key));
     }
+    return c.sink.errors() == errors;
+}
+
+/// The text of alpha, empty for a method without; nothing where an argument had an error.
+std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, const Method& method) {
+    const std::size_t errors = c.sink.errors();
+    arguments_fit(c, written, method);
+    std::string alpha;
+    for (const ast::Calibrated::Argument& argument : written.arguments)
+        if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
+            alpha = std::get<ast::Number>(argument.value).text;
     if (c.sink.errors() > errors) return std::nullopt;
-    if (method.has_alpha && alpha.empty()) {
-        c.report(
-            Code::calibration_argument, written.span,
-            fmt::format("{} needs its error rate; expected calibrated({}, alpha = 0.1)", method.name, method.name));
+    if (!method.arguments.empty() && alpha.empty()) {
+        c.report(Code::calibration_argument, written.span,
+                 fmt::format("{} needs its error rate; expected {}", method.name,
+                             method.origin == ThresholdOrigin::adaptive
+                                 ? std::string(kAdaptiveForm)
+                                 : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
         return std::nullopt;
     }
     return alpha;
@@ -83,8 +109,8 @@ Threshold uncalibrated(const ast::Calibrated& written, const Method& method, con
     Threshold threshold;
     threshold.origin = method.origin;
     threshold.alpha = alpha;
-    threshold.text = method.has_alpha ? fmt::format("calibrated({}, alpha = {})", method.name, alpha)
-                                      : fmt::format("calibrated({})", method.name);
+    threshold.text = alpha.empty() ? fmt::format("calibrated({})", method.name)
+                                   : fmt::format("calibrated({}, alpha = {})", method.name, alpha);
     threshold.value64 = std::numeric_limits<double>::quiet_NaN();
     threshold.value = std::numeric_limits<float>::quiet_NaN();
     threshold.span = written.span;
@@ -144,7 +170,14 @@ std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& wri
     if (method == nullptr) return std::nullopt;
     const auto alpha = alpha_of(c, written, *method);
     if (!alpha) return std::nullopt;
-    return uncalibrated(written, *method, *alpha);
+    Threshold threshold = uncalibrated(written, *method, *alpha);
+    if (method->origin != ThresholdOrigin::adaptive) return threshold;
+    threshold.adaptation = check_adaptation(c, written, *alpha);
+    if (!threshold.adaptation) return std::nullopt;
+    const Adaptation& moves = *threshold.adaptation;
+    threshold.text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})", *alpha, moves.gamma,
+                                 moves.lo, moves.hi);
+    return threshold;
 }
 
 }  // namespace etlc::check

@@ -45,9 +45,10 @@ void declare_all(Context& c) {
         if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
 }
 
-/// The generated class has distance_P and nearest_P for a predicate P and observe_I for an input I: a monitor or an
-/// input of such a name would make two things of the generated header look alike.
-void check_accessors(Context& c, NameKind kind, std::string_view prefix, NameKind owner_kind) {
+/// The generated class has functions like distance_P for a predicate P: a monitor or an input of such a name would make
+/// two things of the generated header look alike.
+void check_accessors(Context& c, NameKind kind, std::string_view prefix) {
+    const NameKind owner_kind = NameKind::predicate;
     for (const Entity& entity : c.scope.all(kind)) {
         if (entity.duplicate || !entity.name.starts_with(prefix)) continue;
         const Reference* owner = c.scope.find(std::string_view(entity.name).substr(prefix.size()));
@@ -71,9 +72,9 @@ void declare_names(Context& c) {
          {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor}) {
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
-        check_accessors(c, kind, "distance_", NameKind::predicate);
-        check_accessors(c, kind, "nearest_", NameKind::predicate);
-        check_accessors(c, kind, "observe_", NameKind::input);
+        for (const std::string_view prefix :
+             {"distance_", "nearest_", "threshold_", "initial_threshold_", "set_threshold_", "observe_"})
+            check_accessors(c, kind, prefix);
     }
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)
         c.report(Code::no_monitor, c.spec.name.span, "the spec has no monitor, so there is nothing to compile")

@@ -92,6 +92,7 @@ std::string_view uncovered(const Model& model, Index predicate) {
     switch (model.predicates[predicate].threshold.origin) {
         case ThresholdOrigin::f1: return "is calibrated for F1";
         case ThresholdOrigin::class_conditional: return "covers frames, not episodes";
+        case ThresholdOrigin::adaptive: return "has an adaptive threshold, which bounds a rate of misses, not episodes";
         case ThresholdOrigin::conformal: return "";
         case ThresholdOrigin::literal: break;
     }
@@ -191,6 +192,16 @@ std::string text(const Claim& claim) {
         case Claim::Kind::nothing: break;
     }
     return "nothing: " + claim.why;
+}
+
+std::string miss_bound(const Predicate& predicate) {
+    const Adaptation& adaptation = *predicate.threshold.adaptation;
+    const double start = predicate.threshold.value;
+    const double room = predicate.upper_bound() ? static_cast<double>(adaptation.range.high) - start
+                                                : start - static_cast<double>(adaptation.range.low);
+    const double alpha = to_double(predicate.threshold.alpha);
+    return fmt::format("{} T + {:.1f} + {:.4g} H", predicate.threshold.alpha,
+                       std::ceil(10 * room / to_double(adaptation.gamma)) / 10, 1 - alpha);
 }
 
 double coverage_quantile(std::uint64_t n, std::uint64_t k, double q) {

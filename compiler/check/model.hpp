@@ -105,7 +105,20 @@ enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater 
 /// (+inf) or false (-inf).
 enum class Values : std::uint8_t { robustness, boolean };
 
-enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional };
+enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
+
+/// How an adaptive threshold follows labels: by `widen` towards more detections after a positive frame that it missed,
+/// by `tighten` the other way after one that it found, and never out of `range`. All are multiples of `grid`, a power
+/// of two, and the ends of the range at most 2^24 times it, so no float32 sum of them is rounded.
+struct Adaptation {
+    std::string gamma;  ///< decimal texts, as written
+    std::string lo;
+    std::string hi;
+    Range range;        ///< [lo, hi], rounded outward
+    float widen = 0;    ///< gamma (1 - alpha), rounded up
+    float tighten = 0;  ///< gamma alpha, rounded down
+    float grid = 0;
+};
 
 struct Threshold {
     ThresholdOrigin origin = ThresholdOrigin::literal;
@@ -116,11 +129,16 @@ struct Threshold {
     float value = 0;      ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
     std::uint64_t n = 0;  ///< calibrated: how many scores it was chosen among
     std::uint64_t k = 0;  ///< and its rank among them; 0 for f1
+    std::optional<Adaptation> adaptation;  ///< of adaptive ones, whose `value` is where they start
     Span span;
+
+    /// Every value that it may come to have.
+    Range range() const { return adaptation ? adaptation->range : Range{value, value}; }
 };
 
 /// Definition "Embedding Predicate": (Z_target, d, epsilon, CMP, a), or EXPR CMP epsilon in general.
-/// Robustness is epsilon - delta for <= and <, delta - epsilon for >= and >, one float32 subtraction.
+/// Robustness is epsilon - delta for <= and <, delta - epsilon for >= and >, one float32 subtraction, with the epsilon
+/// of that step.
 struct Predicate {
     std::string name;  ///< empty for a comparison that stands in a formula
     std::string text;  ///< canonical text without the threshold: "min l2(z, goal_a) <= "
@@ -128,7 +146,7 @@ struct Predicate {
     Comparison comparison = Comparison::less_equal;
     Threshold threshold;
     Range delta;                ///< of the expression, by interval arithmetic, rounded outward
-    Range robustness;           ///< of epsilon - delta or delta - epsilon, rounded outward
+    Range robustness;           ///< of epsilon - delta or delta - epsilon for any epsilon it may have, rounded outward
     std::vector<Index> inputs;  ///< all inputs it reads, ascending
     Span span;
 

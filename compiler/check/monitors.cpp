@@ -103,8 +103,9 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// The node of a predicate with a calibrated threshold, at or below `root`; kNone where there is none.
-Index calibrated_node(const Model& model, Index root) {
+/// The node of a predicate whose threshold `is` so, at or below `root`; kNone where there is none.
+template <class Is>
+Index predicate_node(const Model& model, Index root, Is is) {
     std::vector<bool> visited(model.formulas.size());
     std::vector<Index> pending{root};
     while (!pending.empty()) {
@@ -113,12 +114,21 @@ Index calibrated_node(const Model& model, Index root) {
         if (visited[at]) continue;
         visited[at] = true;
         const Formula& formula = model.formulas[at];
-        const bool calibrated = formula.kind == Formula::Kind::predicate &&
-                                model.predicates[formula.index].threshold.origin != ThresholdOrigin::literal;
-        if (calibrated) return at;
+        if (formula.kind == Formula::Kind::predicate && is(model.predicates[formula.index].threshold)) return at;
         pending.insert(pending.end(), formula.operands.begin(), formula.operands.end());
     }
     return kNone;
+}
+
+/// A shift is guaranteed for the thresholds that it was fitted with.
+void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
+    const Index at = predicate_node(c.model, monitor.formula,
+                                    [](const Threshold& threshold) { return threshold.adaptation.has_value(); });
+    if (at == kNone) return;
+    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of '{}' is adaptive",
+                         monitor.name, c.model.predicates[c.model.formulas[at].index].name))
+        .note(c.model.formulas[at].span, "it is used here");
 }
 
 /// The predicate that the truth is of; kNone where there is none, or another truth of it.
@@ -149,7 +159,9 @@ void check_truths(Context& c) {
     MonitorCheck check(c);
     for (const Truth& truth : truths) {
         check.truth(truth, first.at(truth.predicate));
-        const Index calibrated = calibrated_node(c.model, truth.formula);
+        const Index calibrated = predicate_node(c.model, truth.formula, [](const Threshold& threshold) {
+            return threshold.origin != ThresholdOrigin::literal;
+        });
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
                  fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
@@ -179,6 +191,7 @@ void check_monitors(Context& c) {
             check.sliding(monitor, name);
         else
             check.prefix(monitor, name);
+        if (monitor.calibration) refuse_moving_thresholds(c, monitor);
     }
 }
 

@@ -38,10 +38,14 @@ std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number
 
 /// A distance is never below zero. In a difference of two a negative threshold has its sense.
 bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
-    if (expression.kind != Expr::Kind::distance || threshold.origin != ThresholdOrigin::literal || threshold.value >= 0)
-        return true;
-    c.report(Code::negative_threshold, threshold.span,
-             fmt::format("the threshold {} on a distance, which is never negative", threshold.text));
+    const bool negative = threshold.range().low < 0;  // not known of one that is not yet calibrated
+    if (expression.kind != Expr::Kind::distance || !negative) return true;
+    if (threshold.adaptation)
+        c.report(Code::negative_threshold, threshold.span,
+                 fmt::format("lo = {} is below every distance, which is never negative", threshold.adaptation->lo));
+    else
+        c.report(Code::negative_threshold, threshold.span,
+                 fmt::format("the threshold {} on a distance, which is never negative", threshold.text));
     return false;
 }
 
@@ -75,7 +79,7 @@ std::optional<Threshold> declared_threshold(Context& c, const ast::Predicate& de
 /// epsilon - delta or delta - epsilon.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
-    const Range epsilon{predicate.threshold.value, predicate.threshold.value};
+    const Range epsilon = predicate.threshold.range();
     return predicate.upper_bound() ? subtract(epsilon, predicate.delta) : subtract(predicate.delta, epsilon);
 }
 

@@ -77,6 +77,7 @@ std::string_view method_name(ThresholdOrigin origin) {
         case ThresholdOrigin::f1: return "f1";
         case ThresholdOrigin::conformal: return "conformal";
         case ThresholdOrigin::class_conditional: return "class_conditional";
+        case ThresholdOrigin::adaptive: return "adaptive";
         case ThresholdOrigin::literal: break;
     }
     return "";

@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
 
+#include "check/adaptation.hpp"
 #include "check/calibrated.hpp"
 #include "check/check.hpp"
 #include "check/decimal.hpp"
@@ -139,9 +141,19 @@ void take(Context& c, const std::string& name, Threshold& threshold, const std::
 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
     Predicate& predicate = c.model.predicates[index];
+    Threshold& threshold = predicate.threshold;
     take(c, predicate.name, predicate.threshold, file.path, file.predicates, [&](const thresholds::Entry& entry) {
-        return Differences(c.model, predicate.threshold, "predicate", provenance(c.model, index), entry).find();
+        return Differences(c.model, threshold, "predicate", provenance(c.model, index), entry).find();
     });
+    if (!threshold.adaptation || std::isnan(threshold.value)) return;
+    const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
+    if (!begin) {
+        c.report(Code::start_out_of_range, threshold.span, outside(predicate, threshold.value))
+            .note("give it lo and hi with room on both sides of the threshold; a new calibration is not needed");
+        return;
+    }
+    threshold.value = *begin;
+    threshold.value64 = static_cast<double>(*begin);
 }
 
 void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {

@@ -26,9 +26,8 @@ void warn_of_unused(Context& c) {
 
 enum class Outcome : std::uint8_t { varies, always, never };
 
-Outcome outcome(const Predicate& predicate) {
+Outcome outcome(const Predicate& predicate, float epsilon) {
     const auto [low, high] = predicate.delta;
-    const float epsilon = predicate.threshold.value;
     switch (predicate.comparison) {
         case Comparison::less_equal:
             return high <= epsilon ? Outcome::always : low > epsilon ? Outcome::never : Outcome::varies;
@@ -45,8 +44,9 @@ Outcome outcome(const Predicate& predicate) {
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || std::isnan(predicate.threshold.value)) continue;  // broken, or not yet calibrated
-        const Outcome found = outcome(predicate);
-        if (found == Outcome::varies) continue;
+        const Range epsilon = predicate.threshold.range();
+        const Outcome found = outcome(predicate, epsilon.low);
+        if (found == Outcome::varies || found != outcome(predicate, epsilon.high)) continue;
         const Range& delta = predicate.delta;
         const std::string values = delta.low == delta.high ? fmt::format("{:.9g}", delta.low)
                                                            : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);

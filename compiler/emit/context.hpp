@@ -86,16 +86,24 @@ std::string reading_declaration(const Context& context, std::uint32_t reading);
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
 std::string table_name(const Context& context, std::uint32_t reading);
 
+/// The function of the runtime that decides the predicate: "is_at_most".
+const char* comparison_name(const check::Predicate& predicate);
+/// observe_P, set_threshold_P and what goes with them.
+void print_adaptive_interface(Printer& out, const Context& context);
+void print_adaptation_constants(Printer& out, const Context& context);
+
 /// A data member of the class: its declaration and how reset() sets it.
 struct Member {
     std::string type;
     std::string name;
     std::string comment;
-    std::string reset;  ///< a statement
+    std::string reset;    ///< a statement; empty: it outlives the episode
+    std::string initial;  ///< empty: reset() sets it
 };
 std::vector<Member> members(const Context& context);
 std::vector<Member> stream_members(const Context& context);
 std::vector<Member> reading_members(const Context& context);
+std::vector<Member> threshold_members(const Context& context);
 std::vector<Member> pending_members(const Context& context, std::uint32_t reading);
 
 }  // namespace etlc::emit

@@ -40,6 +40,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     if (!plan.distances.empty()) headers.insert("kernel");
     for (Index p : plan.predicates)
         if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
+    if (!context.names.threshold_member.empty()) headers.insert("adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];
         if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("storage");
@@ -82,7 +83,7 @@ std::vector<Member> telemetry_members(const Context& context) {
     for (const auto& [p, name] : context.names.predicate_member) {
         const bool plain = context.model.predicates[p].plain_distance();
         result.push_back({plain ? "etlmon::Measured" : "float", name, "telemetry",
-                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing")});
+                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing"), ""});
     }
     return result;
 }
@@ -96,18 +97,20 @@ std::vector<Member> own_members(const Context& context) {
         const check::Input& input = context.model.inputs[i];
         const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
         result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second,
-                          fmt::format("the last {} that was there", input.name), held->second + ".reset();"});
+                          fmt::format("the last {} that was there", input.name), held->second + ".reset();", ""});
     }
     const std::vector<Member> telemetry = telemetry_members(context);
     result.insert(result.end(), telemetry.begin(), telemetry.end());
+    const std::vector<Member> thresholds = threshold_members(context);
+    result.insert(result.end(), thresholds.begin(), thresholds.end());
     for (const auto& [m, name] : context.names.verdict_member)
-        result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();"});
+        result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();", ""});
     if (context.boolean())
         result.push_back({"Verdicts", context.names.verdicts_member, "the last ones; final ones stay",
-                          context.names.verdicts_member + " = Verdicts();"});
-    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "index of the step; saturates", "step_ = 0;"});
-    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "calls of finish()", "finished_ = 0;"});
-    result.push_back({"uint32_t", "missing_steps_", "saturates", "missing_steps_ = 0;"});
+                          context.names.verdicts_member + " = Verdicts();", ""});
+    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "index of the step; saturates", "step_ = 0;", ""});
+    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "calls of finish()", "finished_ = 0;", ""});
+    result.push_back({"uint32_t", "missing_steps_", "saturates", "missing_steps_ = 0;", ""});
     return result;
 }
 
@@ -117,8 +120,12 @@ void print_telemetry(Printer& out, const Context& context) {
         const bool plain = predicate.plain_distance();
         out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member,
                  plain ? ".delta" : "");
-        out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}", predicate.name,
-                 float_literal(predicate.threshold.value));
+        const auto adaptive = context.names.threshold_member.find(p);
+        if (adaptive == context.names.threshold_member.end())
+            out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}", predicate.name,
+                     float_literal(predicate.threshold.value));
+        else
+            out.line("float threshold_{}() const noexcept {{ return {}; }}", predicate.name, adaptive->second);
         if (plain) out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}", predicate.name, member);
     }
 }
@@ -168,9 +175,11 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     out.line();
     out.line("Monitor() noexcept { reset(); }");
     out.line();
-    out.line("/// A new episode.");
+    out.line("/// A new episode{}.",
+             context.names.threshold_member.empty() ? "" : "; adaptive thresholds stay where they are");
     out.open("void reset() noexcept {");
-    for (const Member& member : all) out.line(member.reset);
+    for (const Member& member : all)
+        if (!member.reset.empty()) out.line(member.reset);
     out.close();
     out.line();
     out.line("/// One call, one time step.");
@@ -199,6 +208,7 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
         print_telemetry(out, context);
         out.line();
     }
+    print_adaptive_interface(out, context);
     out.line("/// Steps on which some predicate or bool input {}was unknown; saturates.",
              context.boolean() ? "that was asked for " : "");
     out.line("uint32_t missing_steps() const noexcept { return missing_steps_; }");
@@ -227,9 +237,12 @@ void print_class(Printer& out, const Context& context) {
         print_judge(out, context);
     }
     out.line();
+    print_adaptation_constants(out, context);
     std::vector<std::pair<std::string, std::string>> lines;
     for (const Member& member : all)
-        lines.emplace_back(fmt::format("{} {};", member.type, member.name), member.comment);
+        lines.emplace_back(
+            fmt::format("{} {}{};", member.type, member.name, member.initial.empty() ? "" : " = " + member.initial),
+            member.comment);
     print_aligned(out, lines);
     out.close("};");
     out.line("static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");

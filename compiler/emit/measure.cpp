@@ -248,18 +248,13 @@ private:
         if (context_.boolean()) {
             out_.line("missing |= etlmon::is_nan({});", delta);
             const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
-            out_.line("return etlmon::{}({}, {}{});", comparison(predicate), delta, threshold, otherwise);
+            out_.line("return etlmon::{}({}, {}{});", comparison_name(predicate), delta, threshold, otherwise);
             out_.close("});");
             return;
         }
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
                                         predicate.upper_bound() ? "at_most" : "at_least", delta, threshold, range));
         out_.line("missing |= etlmon::is_nan({});", delta);
-    }
-
-    static const char* comparison(const check::Predicate& predicate) {
-        if (predicate.upper_bound()) return predicate.strict() ? "is_below" : "is_at_most";
-        return predicate.strict() ? "is_above" : "is_at_least";
     }
 
     /// What stands for "not measured" in this step; where it is kept, step() of a Boolean class has said so.

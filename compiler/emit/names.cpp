@@ -89,6 +89,10 @@ private:
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
             if (!predicate.name.empty()) names_.predicate_member[p] = member(members_, predicate.name);
+            if (predicate.threshold.adaptation) {
+                names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
+                names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
+            }
             const std::string name = predicate.name.empty()
                                          ? identifier(predicate.text + predicate.threshold.text, "comparison")
                                          : predicate.name;

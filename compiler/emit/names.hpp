@@ -28,13 +28,15 @@ private:
 std::string identifier(std::string_view text, const std::string& otherwise);
 
 struct Names {
-    std::map<check::Index, std::string> input_local;       ///< in measure(): the pointer to this step's sample
-    std::map<check::Index, std::string> input_buffer;      ///< in measure(): widened elements, or a flag as a word
-    std::map<check::Index, std::string> distance_local;    ///< in measure(): what the kernel gave
-    std::map<check::Index, std::string> predicate_local;   ///< in measure(): delta of a predicate without telemetry
-    std::map<check::Index, std::string> predicate_atom;    ///< field of Atoms
-    std::map<check::Index, std::string> flag_atom;         ///< field of Atoms
-    std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
+    std::map<check::Index, std::string> input_local;          ///< in measure(): the pointer to this step's sample
+    std::map<check::Index, std::string> input_buffer;         ///< in measure(): widened elements, or a flag as a word
+    std::map<check::Index, std::string> distance_local;       ///< in measure(): what the kernel gave
+    std::map<check::Index, std::string> predicate_local;      ///< in measure(): delta of a predicate without telemetry
+    std::map<check::Index, std::string> predicate_atom;       ///< field of Atoms
+    std::map<check::Index, std::string> flag_atom;            ///< field of Atoms
+    std::map<check::Index, std::string> predicate_member;     ///< telemetry, of named predicates
+    std::map<check::Index, std::string> threshold_member;     ///< of adaptive predicates: the threshold as it is now
+    std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
     std::map<check::Index, std::string> hold_member;
     std::map<plan::Slot, std::string> stream_local;
     std::map<plan::Slot, std::string> stream_member;

@@ -65,6 +65,10 @@ std::string origin(const check::Threshold& threshold) {
         case check::ThresholdOrigin::class_conditional:
             return fmt::format("class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
                                threshold.alpha, threshold.k, threshold.n);
+        case check::ThresholdOrigin::adaptive:
+            return fmt::format("adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
+                               threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
+                               threshold.adaptation->hi, threshold.k, threshold.n);
     }
     return "";
 }
@@ -107,12 +111,31 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     return rows;
 }
 
+/// What is guaranteed of adaptive thresholds: a rate, whatever the world does.
+void print_miss_rates(Printer& out, const std::string& prefix, const std::string& margin, const plan::Plan& plan) {
+    std::vector<Row> rows{{"adaptive", "of the first T labelled positive frames it misses at most"}};
+    for (Index p : plan.predicates) {
+        const check::Predicate& predicate = plan.model->predicates[p];
+        if (predicate.threshold.adaptation) rows.push_back({predicate.name, check::miss_bound(predicate)});
+    }
+    if (rows.size() == 1) return;
+    print_table(out, prefix, rows, 2);
+    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    out.line(margin +
+             "A miss: beyond the threshold that holds when its label comes. H: of those misses, how many came when the "
+             "threshold");
+    out.line(margin +
+             "was held back at the end of its range. Before the first label the threshold is the conformal one.");
+    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+}
+
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     const std::string blank = prefix.substr(0, prefix.find_last_not_of(' ') + 1);
     out.line(blank);
     print_table(out, prefix, guarantee_rows(plan), 2);
     out.line(blank);
     const std::string margin = prefix.starts_with("//") ? "// " : prefix;
+    print_miss_rates(out, prefix, margin, plan);
     out.line(margin +
              "Probabilities are over the demonstrations and the new episode together, exchangeable, per episode as "
              "recorded. coverage: of");

@@ -189,7 +189,9 @@ public:
 private:
     static Cost telemetry(const check::Predicate& predicate) {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
-        return {.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord, .code_bytes = kCodePerRing};
+        const std::uint64_t threshold = predicate.threshold.adaptation ? kWord : 0;
+        return {.state_bytes = (predicate.plain_distance() ? 2 * kWord : kWord) + threshold,
+                .code_bytes = kCodePerRing};
     }
 
     void predicate(Index index) {

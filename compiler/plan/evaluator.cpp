@@ -33,6 +33,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     held_.resize(model_.inputs.size());
     distances_.resize(model_.distances.size());
     measured_.resize(model_.predicates.size());
+    for (const check::Predicate& predicate : model_.predicates) thresholds_.push_back(predicate.threshold.value);
     literals_.resize(model_.predicates.size(), kAnything);
     flags_.resize(model_.inputs.size(), kAnything);
     streams_.resize(plan.streams.size());
@@ -74,6 +75,10 @@ const std::vector<etlmon::Verdict>& Evaluator::finish() {
     advance_streams();
     judge();
     return verdicts_;
+}
+
+void Evaluator::observe(Index predicate, float distance, bool truth) {
+    if (truth) thresholds_[predicate] = observed(model_.predicates[predicate], thresholds_[predicate], distance);
 }
 
 // ---- inputs, distances, predicates
@@ -118,7 +123,7 @@ void Evaluator::measure_predicates() {
         if (present && predicate.plain_distance()) measured = distances_[predicate.expression.index];
         if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
         measured_[p] = measured;
-        literals_[p] = literal(predicate, measured.delta, plan_.values);
+        literals_[p] = literal(predicate, measured.delta, thresholds_[p], plan_.values);
         if (literal_ && !std::isnan(measured.delta)) literals_[p] = literal_(p);
         missing |= std::isnan(measured.delta);
     }

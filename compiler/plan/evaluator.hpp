@@ -37,6 +37,12 @@ public:
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
     std::uint32_t missing_steps() const { return missing_steps_; }
 
+    /// The threshold that the next step uses. An adaptive one moves with the labels that observe() is given and, as in
+    /// generated code, stays through reset(); nobody but its caller gives labels, so `etlc run` has the one that was
+    /// calibrated.
+    float threshold(Index predicate) const { return thresholds_[predicate]; }
+    void observe(Index predicate, float distance, bool truth);
+
     /// What the predicates of the last step were computed from: an input's values after `hold`, null where it is
     /// missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
@@ -97,7 +103,8 @@ private:
     std::vector<etlmon::Measured> distances_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
-    std::vector<Value> literals_;  ///< per predicate
+    std::vector<float> thresholds_;  ///< per predicate
+    std::vector<Value> literals_;    ///< per predicate
     Literal literal_;
     std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;

@@ -10,8 +10,7 @@ namespace {
 using check::Values;
 using etlmon::Value;
 
-etlmon::Truth comparison(const check::Predicate& predicate, float delta, etlmon::Truth range) {
-    const float epsilon = predicate.threshold.value;
+etlmon::Truth comparison(const check::Predicate& predicate, float delta, float epsilon, etlmon::Truth range) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return etlmon::is_at_most(delta, epsilon, range);
         case check::Comparison::less: return etlmon::is_below(delta, epsilon, range);
@@ -21,11 +20,17 @@ etlmon::Truth comparison(const check::Predicate& predicate, float delta, etlmon:
     return etlmon::is_above(delta, epsilon, range);
 }
 
-/// A comparison changes its answer at most once on the way from the least delta to the greatest.
+/// A comparison changes its answer at most once on the way from the least delta to the greatest, and on the way from
+/// the least epsilon to the greatest: the corners have all answers.
 etlmon::Truth truth_range(const check::Predicate& predicate) {
-    const etlmon::Truth at_least = comparison(predicate, predicate.delta.low, etlmon::kPerhaps);
-    const etlmon::Truth at_most = comparison(predicate, predicate.delta.high, etlmon::kPerhaps);
-    return {at_least.low && at_most.low, at_least.high || at_most.high};
+    const check::Range thresholds = predicate.threshold.range();
+    etlmon::Truth range{true, false};
+    for (const float delta : {predicate.delta.low, predicate.delta.high})
+        for (const float epsilon : {thresholds.low, thresholds.high}) {
+            const etlmon::Truth at = comparison(predicate, delta, epsilon, etlmon::kPerhaps);
+            range = {range.low && at.low, range.high || at.high};
+        }
+    return range;
 }
 
 Value value_of(etlmon::Truth truth) {
@@ -39,11 +44,22 @@ Value unseen_range(const check::Predicate& predicate, Values values) {
     return value_of(truth_range(predicate));
 }
 
-Value literal(const check::Predicate& predicate, float delta, Values values) {
-    if (values == Values::boolean) return value_of(comparison(predicate, delta, truth_range(predicate)));
+Value literal(const check::Predicate& predicate, float delta, float epsilon, Values values) {
+    if (values == Values::boolean) return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
     const Value range = unseen_range(predicate, values);
-    return predicate.upper_bound() ? etlmon::at_most(delta, predicate.threshold.value, range)
-                                   : etlmon::at_least(delta, predicate.threshold.value, range);
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range) : etlmon::at_least(delta, epsilon, range);
+}
+
+float observed(const check::Predicate& predicate, float epsilon, float distance) {
+    const check::Adaptation& adaptation = *predicate.threshold.adaptation;
+    return etlmon::adapted(epsilon, comparison(predicate, distance, epsilon, etlmon::kPerhaps),
+                           runtime_adaptation(adaptation, predicate.upper_bound()));
+}
+
+etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool upper_bound) {
+    const float sign = upper_bound ? 1.0F : -1.0F;
+    return {adaptation.range.low, adaptation.range.high, sign * adaptation.widen, -sign * adaptation.tighten,
+            adaptation.grid};
 }
 
 }  // namespace etlc::plan

@@ -5,15 +5,22 @@
 #pragma once
 
 #include "check/model.hpp"
+#include "etlmon/adaptation.hpp"
 #include "etlmon/value.hpp"
 
 namespace etlc::plan {
 
 /// The lowest and highest value of a predicate: the range of its robustness or, in truth values, what its comparison
-/// can say over the range of its expression.
+/// can say over the range of its expression and that of its threshold.
 etlmon::Value unseen_range(const check::Predicate& predicate, check::Values values);
 
-/// The value of a predicate whose distance or expression came to delta.
-etlmon::Value literal(const check::Predicate& predicate, float delta, check::Values values);
+/// The value of a predicate whose distance or expression came to delta, with the threshold that it has at this step.
+etlmon::Value literal(const check::Predicate& predicate, float delta, float epsilon, check::Values values);
+
+/// The threshold of an adaptive predicate after a positive frame of that distance.
+float observed(const check::Predicate& predicate, float epsilon, float distance);
+
+/// How it moves, as generated code says it.
+etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool upper_bound);
 
 }  // namespace etlc::plan

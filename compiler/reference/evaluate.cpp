@@ -17,8 +17,7 @@ Unseen negate(const Unseen& range) {
     return {-range.highest, -range.lowest};
 }
 
-bool holds(const check::Predicate& predicate, double delta) {
-    const double epsilon = predicate.threshold.value;
+bool holds(const check::Predicate& predicate, double delta, double epsilon) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return delta <= epsilon;
         case check::Comparison::less: return delta < epsilon;
@@ -38,10 +37,16 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     if (atom.kind == Node::Kind::predicate) {
         const check::Predicate& predicate = model.predicates[atom.index];
         range = {predicate.robustness.low, predicate.robustness.high};
-        if (values == Values::boolean) {  // a comparison is true on one side only
-            const bool at_low = holds(predicate, predicate.delta.low);
-            const bool at_high = holds(predicate, predicate.delta.high);
-            range = {truth(at_low && at_high), truth(at_low || at_high)};
+        if (values == Values::boolean) {  // a comparison is true on one side only, of delta and of epsilon
+            bool always = true;
+            bool ever = false;
+            const check::Range thresholds = predicate.threshold.range();
+            for (const double delta : {predicate.delta.low, predicate.delta.high})
+                for (const double epsilon : {thresholds.low, thresholds.high}) {
+                    always = always && holds(predicate, delta, epsilon);
+                    ever = ever || holds(predicate, delta, epsilon);
+                }
+            range = {truth(always), truth(ever)};
         }
     }
     return atom.negated ? negate(range) : range;
@@ -49,16 +54,19 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
 
 /// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is unknown.
 std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
-                             const std::vector<Telemetry>& telemetry, Values values) {
+                             const std::vector<Telemetry>& telemetry, Values values,
+                             const std::vector<double>& thresholds) {
     if (atom.kind == Node::Kind::boolean) {
         if (samples[atom.index].empty()) return {};
         return samples[atom.index][0] != 0 ? kInfinity : -kInfinity;
     }
     const check::Predicate& predicate = model.predicates[atom.index];
     const double delta = telemetry[atom.index].delta;
-    const double epsilon = predicate.threshold.value;
+    // "with the threshold of that step"
+    const bool moved = predicate.threshold.adaptation && !thresholds.empty();
+    const double epsilon = moved ? thresholds[atom.index] : predicate.threshold.value;
     if (delta != delta) return {};
-    if (values == Values::boolean) return truth(holds(predicate, delta));
+    if (values == Values::boolean) return truth(holds(predicate, delta, epsilon));
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
 }
 
@@ -96,8 +104,12 @@ Verdict sliding_verdict(const Value& value) {
 
 class Evaluation {
 public:
-    Evaluation(const check::Model& model, const Trace& trace, Values values)
-        : model_(model), values_(values), form_(normal_form(model)), samples_(accept(model, trace)) {
+    Evaluation(const check::Model& model, const Trace& trace, Values values, const Thresholds& thresholds)
+        : model_(model),
+          values_(values),
+          thresholds_(thresholds),
+          form_(normal_form(model)),
+          samples_(accept(model, trace)) {
         for (const check::Monitor& monitor : model.monitors)
             horizons_.push_back(monitor.sliding ? horizon(model, monitor.formula) : 0);
     }
@@ -113,6 +125,7 @@ public:
 private:
     const check::Model& model_;
     Values values_;
+    const Thresholds& thresholds_;
     NormalForm form_;
     std::vector<Samples> samples_;
     std::vector<std::uint64_t> horizons_;
@@ -142,7 +155,8 @@ private:
             if (!node.is_atom()) continue;
             literals_.ranges[n] = range_of(model_, node, values_);
             for (std::size_t step = 0; step < samples_.size(); ++step) {
-                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step], values_);
+                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step], values_,
+                                        thresholds_.empty() ? std::vector<double>{} : thresholds_[step]);
                 literals_.values[n].push_back(literal(rho, node.negated, literals_.ranges[n]));
                 if (!rho) lacking[step] = true;
             }
@@ -187,8 +201,8 @@ private:
 
 }  // namespace
 
-Run evaluate(const check::Model& model, const Trace& trace, Values values) {
-    return Evaluation(model, trace, values).run();
+Run evaluate(const check::Model& model, const Trace& trace, Values values, const Thresholds& thresholds) {
+    return Evaluation(model, trace, values, thresholds).run();
 }
 
 }  // namespace etlc::reference

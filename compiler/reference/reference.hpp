@@ -45,8 +45,14 @@ struct Run {
     std::uint32_t missing_steps = 0;
 };
 
+/// thresholds[step][predicate]: the epsilon that each adaptive predicate has at each step; of other predicates it is
+/// not looked at, and of none for no thresholds at all.
+using Thresholds = std::vector<std::vector<double>>;
+
 /// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest and highest unseen
-/// value are what its comparison can say over the range of its expression.
-Run evaluate(const check::Model& model, const Trace& trace, check::Values values = check::Values::robustness);
+/// value are what its comparison can say over the range of its expression. Without thresholds, adaptive ones stay where
+/// they start.
+Run evaluate(const check::Model& model, const Trace& trace, check::Values values = check::Values::robustness,
+             const Thresholds& thresholds = {});
 
 }  // namespace etlc::reference

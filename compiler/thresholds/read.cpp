@@ -95,9 +95,9 @@ private:
 
     std::string method(const Json& json, const std::string& path) {
         std::string value = text(json, path, "method");
-        const bool known = value == "f1" || value == "conformal" || value == "class_conditional";
+        const bool known = value == "f1" || value == "conformal" || value == "class_conditional" || value == "adaptive";
         if (!failure_ && !known)
-            fail(path + ".method", *json.find("method"), "'f1', 'conformal' or 'class_conditional'");
+            fail(path + ".method", *json.find("method"), "'f1', 'conformal', 'class_conditional' or 'adaptive'");
         return value;
     }
 
