@@ -26,6 +26,7 @@ struct Observed {
         bool computed = false;
         double delta = 0;  ///< NaN: unknown
         std::optional<std::uint32_t> nearest;
+        std::optional<double> threshold;  ///< of adaptive ones, as this step used it
     };
     std::vector<std::vector<reference::Verdict>> verdicts;
     std::vector<std::vector<reference::Verdict>> finish;

@@ -39,9 +39,10 @@ bool GeneratedProgram::command(const std::string& line) {
     return status == 0;
 }
 
-bool GeneratedProgram::add(const check::Model& model, check::Values values) {
+bool GeneratedProgram::add(const check::Model& model, check::Values values, const std::string& thresholds) {
     models_.push_back(model);
     write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
+    if (!thresholds.empty()) write_text(folder_ / (model.name + ".thresholds.json"), thresholds);
     return command(fmt::format("'{}' {}.etl -o {}.hpp {} --values {}", ETLC_COMMAND, model.name, model.name, kLimits,
                                values == check::Values::boolean ? "boolean" : "robustness"));
 }

@@ -25,7 +25,8 @@ public:
     explicit GeneratedProgram(const std::string& name);
 
     /// Has `etlc` write SPEC.hpp. Specs of one program have different names. False where that failed.
-    bool add(const check::Model& model, check::Values values = check::Values::robustness);
+    bool add(const check::Model& model, check::Values values = check::Values::robustness,
+             const std::string& thresholds = "");
     /// All headers, in two translation units that share one of them.
     bool compile(const Build& build);
 

@@ -17,7 +17,9 @@ std::string members(const check::Model& model) {
     std::string result;
     for (const check::Input& input : model.inputs) result += fmt::format("  HARNESS_INPUT({});\n", input.name);
     for (const check::Predicate& predicate : model.predicates)
-        if (!predicate.name.empty()) result += fmt::format("  HARNESS_PREDICATE({});\n", predicate.name);
+        if (!predicate.name.empty())
+            result += fmt::format("  HARNESS_{}PREDICATE({});\n", predicate.threshold.adaptation ? "ADAPTIVE_" : "",
+                                  predicate.name);
     return result;
 }
 
@@ -57,8 +59,23 @@ std::string reporting(const check::Model& model) {
     result += "  }\n  static void telemetry(const Monitor& m) {\n    (void)m;\n";
     for (const check::Predicate& predicate : model.predicates)
         if (!predicate.name.empty())
-            result += fmt::format("    harness::write_telemetry<{}_predicate>(m);\n", predicate.name);
+            result += fmt::format("    harness::write_telemetry<{0}_predicate>(m);\n{1}", predicate.name,
+                                  predicate.threshold.adaptation
+                                      ? fmt::format("    harness::write_threshold<{}_predicate>(m);\n", predicate.name)
+                                      : "");
     return result + "  }\n";
+}
+
+/// Adaptive thresholds: labels before a step, and back to the start.
+std::string labelling(const check::Model& model) {
+    std::string labels = "  static void labels(Monitor& m) {\n    (void)m;\n";
+    std::string restart = "  static void restart(Monitor& m) {\n    (void)m;\n";
+    for (const check::Predicate& predicate : model.predicates) {
+        if (!predicate.threshold.adaptation) continue;
+        labels += fmt::format("    harness::take_labels<{}_predicate>(m);\n", predicate.name);
+        restart += fmt::format("    {}_predicate::restart(m, 0);\n", predicate.name);
+    }
+    return labels + "  }\n" + restart + "  }\n";
 }
 
 }  // namespace
@@ -69,9 +86,9 @@ std::string adaptor_source(const check::Model& model) {
         "  using Inputs = {0}::Inputs;\n"
         "  using Verdicts = {0}::Verdicts;\n",
         model.name);
-    return fmt::format(
-               "#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
-               aliases + members(model) + buffers(model) + feeding(model) + reporting(model) + finishing(model)) +
+    return fmt::format("#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
+                       aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
+                           reporting(model) + finishing(model)) +
            fmt::format("void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); }}\n",
                        model.name);
 }

@@ -43,13 +43,24 @@ void put_element(std::string& bytes, const check::Input& input, double value) {
     }
 }
 
-std::string encode(const check::Model& model, const reference::Trace& trace) {
+void put_labels(std::string& bytes, const std::vector<Label>& labels) {
+    put(bytes, static_cast<std::uint8_t>(labels.size()));
+    for (const Label& label : labels) {
+        put(bytes, label.distance);
+        put(bytes, static_cast<std::uint8_t>(label.truth));
+    }
+}
+
+std::string encode(const check::Model& model, const reference::Trace& trace, const Labels& labels) {
     std::string bytes;
-    for (const reference::Step& step : trace)
+    for (std::size_t step = 0; step < trace.size(); ++step) {
+        for (std::size_t p = 0; p < model.predicates.size(); ++p)
+            if (model.predicates[p].threshold.adaptation) put_labels(bytes, labels[step][p]);
         for (std::size_t n = 0; n < model.inputs.size(); ++n) {
-            put(bytes, static_cast<std::uint8_t>(!step[n].empty()));
-            for (const double value : step[n]) put_element(bytes, model.inputs[n], value);
+            put(bytes, static_cast<std::uint8_t>(!trace[step][n].empty()));
+            for (const double value : trace[step][n]) put_element(bytes, model.inputs[n], value);
         }
+    }
     return bytes;
 }
 
@@ -66,9 +77,10 @@ std::string encode(const check::Model& model, const Request& request) {
     std::string bytes;
     put(bytes, request.spec);
     put(bytes, finish_calls(model));
-    for (const reference::Trace* trace : {&request.first, &request.second}) {
-        const std::string samples = encode(model, *trace);
-        put(bytes, static_cast<std::uint32_t>(trace->size()));
+    for (const bool second : {false, true}) {
+        const reference::Trace& trace = second ? request.second : request.first;
+        const std::string samples = encode(model, trace, second ? request.second_labels : request.first_labels);
+        put(bytes, static_cast<std::uint32_t>(trace.size()));
         put(bytes, static_cast<std::uint32_t>(samples.size()));
         bytes += samples;
     }
@@ -121,6 +133,9 @@ Observed Decoder::run(const check::Model& model, std::size_t steps) {
             telemetry[p].delta = static_cast<double>(take<float>());
             const auto row = take<std::uint32_t>();
             if ((bits & 2U) != 0) telemetry[p].nearest = row;
+            if (!model.predicates[p].threshold.adaptation) continue;
+            const float threshold = take<float>();
+            if (telemetry[p].computed) telemetry[p].threshold = static_cast<double>(threshold);
         }
     }
     result.missing_steps = take<std::uint32_t>();

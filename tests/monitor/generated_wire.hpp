@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <string>
 
+#include "adaptive.hpp"
 #include "check/model.hpp"
 #include "compare.hpp"
 #include "reference/reference.hpp"
@@ -16,6 +17,8 @@ struct Request {
     std::uint32_t spec = 0;
     reference::Trace first;
     reference::Trace second;
+    Labels first_labels{};  ///< where the spec has adaptive thresholds
+    Labels second_labels{};
 };
 using Answer = std::array<Observed, 3>;
 

@@ -49,11 +49,14 @@ PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits, ch
     if (plan_) evaluator_.emplace(*plan_);
 }
 
-Observed PlanRunner::run(const reference::Trace& trace) {
+Observed PlanRunner::run(const reference::Trace& trace, const Labels* labels) {
     Observed result;
     evaluator_->reset();
-    for (const reference::Step& step : trace) {
-        result.verdicts.push_back(verdicts(evaluator_->step(samples_of(step))));
+    for (std::size_t n = 0; n < trace.size(); ++n) {
+        for (plan::Index p = 0; labels != nullptr && p < model_.predicates.size(); ++p)
+            if (model_.predicates[p].threshold.adaptation)
+                for (const Label& label : (*labels)[n][p]) evaluator_->observe(p, label.distance, label.truth);
+        result.verdicts.push_back(verdicts(evaluator_->step(samples_of(trace[n]))));
         result.telemetry.push_back(telemetry());
     }
     result.missing_steps = evaluator_->missing_steps();

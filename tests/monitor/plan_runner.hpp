@@ -1,10 +1,12 @@
 // The plan's evaluator as a system under test.
-// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent of each other.
+// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent of
+// each other, but for what labels did to thresholds.
 #pragma once
 
 #include <optional>
 #include <string>
 
+#include "adaptive.hpp"
 #include "check/model.hpp"
 #include "compare.hpp"
 #include "plan/evaluator.hpp"
@@ -23,8 +25,9 @@ public:
     const std::string& refusal() const { return refusal_; }
     /// The atoms that the plan computes.
     Dependencies dependencies() const;
-    /// A run from reset to the last call of finish().
-    Observed run(const reference::Trace& trace);
+    /// A run from reset to the last call of finish(), with labels before each step. Adaptive thresholds go on from
+    /// where the last run left them.
+    Observed run(const reference::Trace& trace, const Labels* labels = nullptr);
 
 private:
     const check::Model& model_;

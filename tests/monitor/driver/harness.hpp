@@ -3,8 +3,9 @@
 // is C++17 without exceptions, RTTI or library containers, so that it compiles as firmware would; it compares no
 // floats.
 //
-// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and its samples (per input u8 present
-// and, where present, the elements). Answer: the first trace, the second, and the second once more. The first two run
+// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and, a step, its labels (per adaptive
+// predicate u8 number, then distances and u8 truths) and its samples (per input u8 present and, where present, the
+// elements). Answer: the first trace, the second, and the second once more. The first two run
 // in turns on two instances of the class; the third runs on the first instance after reset(). After the last request:
 // u64, how often memory was asked for while a monitor was constructed, stepped, finished or reset.
 #pragma once
@@ -82,26 +83,53 @@ inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
     template <class Inputs, class Value>                                                \
     static void set(Inputs&, const Value&, long) {}                                     \
   }
-#define HARNESS_PREDICATE(name)                                                                              \
+#define HARNESS_PREDICATE(name) \
+  struct name##_predicate {     \
+    HARNESS_TELEMETRY(name)     \
+  }
+#define HARNESS_TELEMETRY(name)                                                                          \
+  template <class Monitor>                                                                               \
+  static auto distance(const Monitor& m, float& delta, int)->decltype((void)m.distance_##name(), true) { \
+    delta = m.distance_##name();                                                                         \
+    return true;                                                                                         \
+  }                                                                                                      \
+  template <class Monitor>                                                                               \
+  static bool distance(const Monitor&, float&, long) {                                                   \
+    return false;                                                                                        \
+  }                                                                                                      \
+  template <class Monitor>                                                                               \
+  static auto nearest(const Monitor& m, uint32_t& row, int)->decltype((void)m.nearest_##name(), true) {  \
+    row = m.nearest_##name();                                                                            \
+    return true;                                                                                         \
+  }                                                                                                      \
+  template <class Monitor>                                                                               \
+  static bool nearest(const Monitor&, uint32_t&, long) {                                                 \
+    return false;                                                                                        \
+  }
+#define HARNESS_ADAPTIVE_PREDICATE(name)                                                                     \
   struct name##_predicate {                                                                                  \
+    HARNESS_TELEMETRY(name)                                                                                  \
     template <class Monitor>                                                                                 \
-    static auto distance(const Monitor& m, float& delta, int) -> decltype((void)m.distance_##name(), true) { \
-      delta = m.distance_##name();                                                                           \
-      return true;                                                                                           \
+    static auto observe(Monitor& m, const float& distance, bool truth, int)                                  \
+        -> decltype(m.observe_##name(distance, truth)) {                                                     \
+      m.observe_##name(distance, truth);                                                                     \
     }                                                                                                        \
     template <class Monitor>                                                                                 \
-    static bool distance(const Monitor&, float&, long) {                                                     \
-      return false;                                                                                          \
+    static void observe(Monitor&, const float&, bool, long) {}                                               \
+    template <class Monitor>                                                                                 \
+    static auto threshold(const Monitor& m, int) -> decltype(m.threshold_##name()) {                         \
+      return m.threshold_##name();                                                                           \
     }                                                                                                        \
     template <class Monitor>                                                                                 \
-    static auto nearest(const Monitor& m, uint32_t& row, int) -> decltype((void)m.nearest_##name(), true) {  \
-      row = m.nearest_##name();                                                                              \
-      return true;                                                                                           \
+    static float threshold(const Monitor&, long) {                                                           \
+      return 0.0f;                                                                                           \
     }                                                                                                        \
     template <class Monitor>                                                                                 \
-    static bool nearest(const Monitor&, uint32_t&, long) {                                                   \
-      return false;                                                                                          \
+    static auto restart(Monitor& m, int) -> decltype(m.set_threshold_##name(m.initial_threshold_##name())) { \
+      m.set_threshold_##name(m.initial_threshold_##name());                                                  \
     }                                                                                                        \
+    template <class Monitor>                                                                                 \
+    static void restart(Monitor&, long) {}                                                                   \
   }
 
 /// Reads one sample into `element` or `elements`, which a view may keep pointing at; leaves a missing input as it is.
@@ -137,6 +165,22 @@ void write_telemetry(const Monitor& monitor) {
   write(row);
 }
 
+template <class Predicate, class Monitor>
+void write_threshold(const Monitor& monitor) {
+  write(Predicate::threshold(monitor, 0));
+}
+
+template <class Predicate, class Monitor>
+void take_labels(Monitor& monitor) {
+  for (uint8_t n = read<uint8_t>(); n > 0; --n) {
+    float distance = 0;
+    read_bytes(&distance, sizeof distance);
+    const bool truth = read<uint8_t>() != 0;
+    const Watch watch;
+    Predicate::observe(monitor, distance, truth, 0);
+  }
+}
+
 /// A trace as it came in, and what a monitor says on it, kept until it is its turn to be written.
 constexpr size_t kTraceBytes = size_t{1} << 18;
 constexpr size_t kAnswerBytes = size_t{1} << 22;
@@ -154,8 +198,8 @@ extern Tape* sink;
 
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
-/// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers, Spec::feed, Spec::verdicts,
-/// Spec::telemetry, Spec::finish.
+/// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers, Spec::labels,
+/// Spec::restart, Spec::feed, Spec::verdicts, Spec::telemetry, Spec::finish.
 template <class Spec>
 class Session {
  public:
@@ -164,6 +208,8 @@ class Session {
     for (int n = 0; n < 2; ++n) load(tape(n), steps_[n]);
     static typename Spec::Monitor first;
     static typename Spec::Monitor second;
+    Spec::restart(first);  // they are those of the requests before
+    Spec::restart(second);
     reset(first);
     reset(second);
     Tape* answers[] = {&tape(2), &tape(3)};
@@ -204,6 +250,7 @@ class Session {
     typename Spec::Inputs inputs{};
     typename Spec::Buffers buffers{};
     source = &trace;
+    Spec::labels(monitor);
     Spec::feed(inputs, buffers);
     source = nullptr;
     typename Spec::Verdicts verdicts{};

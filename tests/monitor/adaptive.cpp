@@ -1,0 +1,153 @@
+#include "adaptive.hpp"
+
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <sstream>
+
+#include "check/check.hpp"
+#include "check/provenance.hpp"
+#include "diag/render.hpp"
+#include "parse/parse.hpp"
+#include "random.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::tests {
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// "predicate p0 = min l1(v, near) <= 1.25;" with a range of at least gamma around 1.25, no end of it below 0 where
+/// 1.25 is not.
+std::string made_adaptive(const std::string& line, Random& random) {
+    const std::size_t blank = line.find_last_of(' ');
+    const double literal = std::stod(line.substr(blank + 1));
+    double lo = literal - random.grid(0, 1, 0.25);
+    if (literal >= 0) lo = std::max(lo, 0.0);
+    const double hi = std::max(lo + 1, literal + random.grid(0, 1.5, 0.25));
+    return fmt::format("{} calibrated(adaptive, alpha = 0.25, gamma = {}, lo = {}, hi = {});", line.substr(0, blank),
+                       random.word({"0.25", "0.5", "1"}), lo, hi);
+}
+
+std::optional<check::Model> checked(const std::string& text, const check::Options& options) {
+    const source::File file("adaptive.etl", text);
+    diag::Sink sink;
+    const ast::Spec spec = parse::parse(file, sink);
+    auto model = check::check(spec, file, options, sink);
+    if (!model) ADD_FAILURE() << diag::render_text(file, sink) << text;
+    return model;
+}
+
+thresholds::Entry entry(const check::Model& model, check::Index predicate, float start) {
+    const check::Provenance provenance = check::provenance(model, predicate);
+    thresholds::Entry result;
+    result.method = "adaptive";
+    result.alpha = "0.25";
+    result.epsilon = start;
+    result.n = 3;
+    result.k = 3;
+    result.scores = {0, 0, 0};
+    result.predicate = provenance.predicate;
+    result.truth = "array";
+    result.targets = provenance.targets;
+    return result;
+}
+
+/// The miss of a positive frame, by the comparison itself.
+bool misses(const check::Predicate& predicate, double distance, double epsilon) {
+    switch (predicate.comparison) {
+        case check::Comparison::less_equal: return !(distance <= epsilon);
+        case check::Comparison::less: return !(distance < epsilon);
+        case check::Comparison::greater_equal: return !(distance >= epsilon);
+        case check::Comparison::greater: break;
+    }
+    return !(distance > epsilon);
+}
+
+/// epsilon += gamma (miss - alpha) within [lo, hi], for >= and > epsilon -= gamma (miss - alpha).
+double moved(const check::Predicate& predicate, double epsilon, const Label& label) {
+    if (!label.truth || std::isnan(label.distance)) return epsilon;
+    const check::Adaptation& adaptation = *predicate.threshold.adaptation;
+    const double miss = misses(predicate, static_cast<double>(label.distance), epsilon) ? 1 : 0;
+    const double by = std::stod(adaptation.gamma) * (miss - std::stod(predicate.threshold.alpha));
+    return std::clamp(predicate.upper_bound() ? epsilon + by : epsilon - by, std::stod(adaptation.lo),
+                      std::stod(adaptation.hi));
+}
+
+}  // namespace
+
+AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
+    Random random(seed ^ 0x5eedULL);
+    AdaptiveSpec result;
+    std::vector<float> starts;
+    std::istringstream lines(random_spec(seed, shape));
+    for (std::string line; std::getline(lines, line);) {
+        const bool adaptive = line.starts_with("predicate ") && random.chance(0.7);
+        if (line.starts_with("predicate ")) starts.push_back(std::stof(line.substr(line.find_last_of(' ') + 1)));
+        result.text += (adaptive ? made_adaptive(line, random) : line) + "\n";
+    }
+    check::Options options;
+    options.allow_uncalibrated = true;
+    const auto uncalibrated = checked(result.text, options);
+    if (!uncalibrated) return result;
+    thresholds::File file;
+    file.spec = uncalibrated->name;
+    for (check::Index p = 0; p < starts.size(); ++p)
+        if (uncalibrated->predicates[p].threshold.adaptation)
+            file.predicates[uncalibrated->predicates[p].name] = entry(*uncalibrated, p, starts[p]);
+    result.thresholds = thresholds::write(file);
+
+    const auto path =
+        std::filesystem::temp_directory_path() / fmt::format("etlc-{}-{}.thresholds.json", ::getpid(), seed);
+    std::ofstream(path) << result.thresholds;
+    options.allow_uncalibrated = false;
+    options.thresholds_path = path.string();
+    result.model = checked(result.text, options);
+    std::filesystem::remove(path);
+    return result;
+}
+
+Labels random_labels(const check::Model& model, const reference::Trace& trace, std::uint64_t seed) {
+    Random random(seed);
+    const auto telemetry = reference::evaluate(model, trace).telemetry;
+    const auto distance = [&](std::size_t step, std::size_t predicate) {
+        if (random.chance(0.1)) return random.chance(0.5) ? kInfinity : -kInfinity;
+        if (random.chance(0.1)) return std::numeric_limits<float>::quiet_NaN();
+        if (step == 0 || random.chance(0.3)) return static_cast<float>(random.grid(-4, 8, 0.25));
+        return static_cast<float>(telemetry[random.between(0, static_cast<int>(step) - 1)][predicate].delta);
+    };
+    Labels labels(trace.size());
+    for (std::size_t step = 0; step < trace.size(); ++step) {
+        labels[step].resize(model.predicates.size());
+        for (std::size_t p = 0; p < model.predicates.size(); ++p)
+            for (int n = random.between(-1, 2); n > 0; --n)
+                labels[step][p].push_back({distance(step, p), random.chance(0.8)});
+    }
+    return labels;
+}
+
+std::vector<double> calibrated_thresholds(const check::Model& model) {
+    std::vector<double> result;
+    for (const check::Predicate& predicate : model.predicates)
+        result.push_back(static_cast<double>(predicate.threshold.value));
+    return result;
+}
+
+reference::Thresholds tracked(const check::Model& model, const Labels& labels, std::vector<double>& now) {
+    reference::Thresholds result;
+    for (const auto& step : labels) {
+        for (std::size_t p = 0; p < model.predicates.size(); ++p)
+            if (model.predicates[p].threshold.adaptation)
+                for (const Label& label : step[p]) now[p] = moved(model.predicates[p], now[p], label);
+        result.push_back(now);
+    }
+    return result;
+}
+
+}  // namespace etlc::tests

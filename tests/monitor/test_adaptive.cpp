@@ -1,0 +1,185 @@
+// Adaptive thresholds that labels move between the steps: the evaluator and the generated classes held to the
+// reference, and the bounds over continuations to what other labels bring.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "adaptive.hpp"
+#include "compare.hpp"
+#include "generated_program.hpp"
+#include "plan_runner.hpp"
+#include "random_trace.hpp"
+
+namespace {
+
+using namespace etlc;
+using namespace etlc::tests;
+using check::Values;
+using Formulas = SpecShape::Formulas;
+using reference::evaluate;
+using reference::Trace;
+
+constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
+
+const SpecShape kShapes[] = {
+    {.formulas = Formulas::unnested, .depth = 3},
+    {.formulas = Formulas::unbounded_nesting, .depth = 3},
+    {.formulas = Formulas::prefix, .monitors = 5, .depth = 3, .window = 3},
+    {.formulas = Formulas::sliding, .depth = 3, .window = 3},
+    {.formulas = Formulas::mixed, .depth = 3, .window = 3},
+};
+
+/// Of the trace of that number: every other one has gaps.
+TraceShape trace_shape(std::size_t n) {
+    return {.steps = 6 + 4 * (n % 5), .missing = n % 2 == 0 ? 0 : 0.15, .invalid = n % 3 == 0 ? 0.05 : 0};
+}
+
+std::string words(const check::Model& model, const Trace& trace, const reference::Thresholds& thresholds) {
+    std::string text = std::string(model.file.text()) + to_csv(model, trace) + "thresholds\n";
+    for (const auto& step : thresholds) text += fmt::format("{}\n", fmt::join(step, ", "));
+    return text;
+}
+
+class AdaptivePlan : public testing::TestWithParam<Values> {};
+
+TEST_P(AdaptivePlan, AgreesWithTheReference) {
+    for (int n = 0; n < 150; ++n) {
+        const AdaptiveSpec spec = random_adaptive_spec(70000 + n, kShapes[n % std::size(kShapes)]);
+        ASSERT_TRUE(spec.model);
+        PlanRunner runner(*spec.model, kRoomy, GetParam());
+        if (!runner.refusal().empty()) continue;
+        std::vector<double> thresholds = calibrated_thresholds(*spec.model);  // runs go on where the last one ended
+        for (int t = 0; t < 5; ++t) {
+            const Trace trace = random_trace(*spec.model, 100 * n + t, trace_shape(t));
+            const Labels labels = random_labels(*spec.model, trace, 9 * n + t);
+            const auto at_steps = tracked(*spec.model, labels, thresholds);
+            const auto mismatch = first_mismatch(*spec.model, evaluate(*spec.model, trace, GetParam(), at_steps),
+                                                 runner.run(trace, &labels), {});
+            ASSERT_FALSE(mismatch) << *mismatch << "\n" << words(*spec.model, trace, at_steps);
+        }
+    }
+}
+
+INSTANTIATE_TEST_SUITE_P(Values, AdaptivePlan, testing::Values(Values::robustness, Values::boolean),
+                         [](const auto& values) {
+                             return std::string(values.param == Values::boolean ? "Boolean" : "Robustness");
+                         });
+
+/// Whatever the next steps and labels bring, rho stays within what was said.
+TEST(AdaptiveReference, BoundsHoldForEveryContinuationAndAllLabels) {
+    for (int n = 0; n < 60; ++n) {
+        const AdaptiveSpec spec = random_adaptive_spec(71000 + n, kShapes[n % 3]);
+        ASSERT_TRUE(spec.model);
+        const check::Model& model = *spec.model;
+        const Trace trace = random_trace(model, n, {.steps = 10, .missing = n % 2 == 0 ? 0 : 0.15});
+        const Labels labels = random_labels(model, trace, n);
+        for (std::size_t i = 0; i < 10; i += 3) {
+            std::vector<double> thresholds = calibrated_thresholds(model);
+            const auto before = evaluate(model, trace, Values::robustness, tracked(model, labels, thresholds));
+            Trace other(trace.begin(), trace.begin() + static_cast<std::ptrdiff_t>(i + 1));
+            const Trace rest = random_trace(model, 77 * n + i, {.steps = 6, .extreme = 0.2});
+            other.insert(other.end(), rest.begin(), rest.end());
+            Labels others = random_labels(model, other, 1000 * n + i);
+            std::copy_n(labels.begin(), i + 1, others.begin());
+            thresholds = calibrated_thresholds(model);
+            const auto after = evaluate(model, other, Values::robustness, tracked(model, others, thresholds));
+            for (std::size_t later = i; later < other.size(); ++later)
+                for (std::size_t m = 0; m < model.monitors.size(); ++m) {
+                    const auto& said = before.verdicts[i][m];
+                    ASSERT_LE(said.lower, after.verdicts[later][m].robustness) << spec.text << i << ", " << later;
+                    ASSERT_GE(said.upper, after.verdicts[later][m].robustness_high) << spec.text << i << ", " << later;
+                }
+        }
+    }
+}
+
+// ---- generated classes
+
+struct Variant {
+    const char* name;
+    Build build;
+};
+
+void PrintTo(const Variant& variant, std::ostream* out) {
+    *out << variant.name;
+}
+
+/// The first mismatch of one run; `thresholds` are those that it starts with, and become those that it ends with.
+std::optional<std::string> mismatch(const check::Model& model, const Dependencies& dependencies, Values values,
+                                    const Trace& trace, const Labels& labels, std::vector<double>& thresholds,
+                                    Observed observed) {
+    const auto at_steps = tracked(model, labels, thresholds);
+    for (std::size_t step = 0; step < trace.size(); ++step)
+        for (std::size_t p = 0; p < model.predicates.size(); ++p) {
+            const auto& said = observed.telemetry[step][p].threshold;
+            if (said && *said != at_steps[step][p])
+                return fmt::format("step {}: threshold of {} is {}, expected {}\n{}", step, model.predicates[p].name,
+                                   *said, at_steps[step][p], words(model, trace, at_steps));
+        }
+    observed.dependencies = dependencies;
+    const auto found =
+        first_mismatch(model, evaluate(model, trace, values, at_steps), observed, {0, values == Values::boolean});
+    if (!found) return {};
+    return *found + "\n" + words(model, trace, at_steps);
+}
+
+class AdaptiveGenerated : public testing::TestWithParam<Variant> {};
+
+TEST_P(AdaptiveGenerated, AgreesWithTheReference) {
+    GeneratedProgram program(std::string("adaptive") + GetParam().name);
+    std::vector<Values> values;
+    std::vector<Request> requests;
+    for (std::uint32_t n = 0; n < 2 * std::size(kShapes); ++n) {
+        const AdaptiveSpec spec = random_adaptive_spec(72000 + n, kShapes[n % std::size(kShapes)]);
+        ASSERT_TRUE(spec.model);
+        values.push_back(n < std::size(kShapes) ? Values::robustness : Values::boolean);
+        ASSERT_TRUE(program.add(*spec.model, values.back(), spec.thresholds));
+        for (int t = 0; t < 8; ++t) {
+            Request request{n,
+                            random_trace(*spec.model, 10 * n + t, trace_shape(t)),
+                            random_trace(*spec.model, 500 + 10 * n + t, trace_shape(t + 3)),
+                            {},
+                            {}};
+            request.first_labels = random_labels(*spec.model, request.first, 2 * t);
+            request.second_labels = random_labels(*spec.model, request.second, 2 * t + 1);
+            requests.push_back(std::move(request));
+        }
+    }
+    ASSERT_TRUE(program.compile(GetParam().build));
+    const auto result = program.run(requests);
+    ASSERT_EQ(result.answers.size(), requests.size());
+    EXPECT_EQ(result.allocations, 0U);
+    for (std::size_t n = 0; n < requests.size(); ++n) {
+        const Request& request = requests[n];
+        const check::Model& model = program.model(request.spec);
+        const Dependencies dependencies = PlanRunner(model, kRoomy).dependencies();
+        const auto check = [&](const Trace& trace, const Labels& labels, std::vector<double>& thresholds, int run) {
+            const auto found =
+                mismatch(model, dependencies, values[request.spec], trace, labels, thresholds, result.answers[n][run]);
+            EXPECT_FALSE(found) << "run " << run << ": " << *found;
+        };
+        std::vector<double> first = calibrated_thresholds(model);
+        std::vector<double> second = first;
+        check(request.first, request.first_labels, first, 0);
+        check(request.second, request.second_labels, second, 1);
+        check(request.second, request.second_labels, first, 2);  // after reset(), which keeps what was learnt
+        if (HasFailure()) return;
+    }
+}
+
+const Variant kVariants[] = {
+    {"GccSanitized", {"g++", "-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all"}},
+    {"ClangFastMath", {"clang++", "-O3 -ffast-math", true}},
+    {"GccFastMath", {"g++", "-O3 -ffast-math", true}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Compilers, AdaptiveGenerated, testing::ValuesIn(kVariants),
+                         [](const auto& variant) { return std::string(variant.param.name); });
+
+}  // namespace
