@@ -64,3 +64,8 @@ show etlc evaluate examples/dubins/paper.etl --thresholds "$out/paper.thresholds
 
 title "The same over five seeds, beside the paper's table"
 show examples/dubins/experiment.sh build/release/etlc "$record" "$drives"
+
+title "A camera whose mount gives way: a threshold that stays, and one that follows labels"
+show grep -E '^predicate' examples/dubins/drift.etl
+echo
+show examples/dubins/drift.sh build/release/etlc "$record" "$drives"

@@ -65,7 +65,8 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
             return fmt::format(
                 "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from the {}, one of each "
                 "demonstration\n"
-                "    of the first T labelled positive frames it misses at most {}, H being the misses at which the end of "
+                "    of the first T labelled positive frames it misses at most {}, H being the misses at which the end "
+                "of "
                 "its range held it back",
                 threshold.alpha, moves.gamma, moves.lo, moves.hi, fitted.k, fitted.n, from,
                 check::miss_bound(predicate));

@@ -34,8 +34,8 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor);
 /// In words: "P(some verdict of a new episode misses a success) <= 0.1", "nothing: 'p' is f1-calibrated".
 std::string text(const Claim& claim);
 
-/// Of an adaptive predicate, how many of the first T labelled positive frames it misses at most: "0.1 T + 35.7 + 0.9 H", H
-/// the number of misses at which the end of its range held the threshold back. docs/calibration.md derives it.
+/// Of an adaptive predicate, how many of the first T labelled positive frames it misses at most, "0.1 T + 35.7 + 0.9
+/// H", H the number of misses at which the end of its range held the threshold back. docs/calibration.md derives it.
 std::string miss_bound(const Predicate& predicate);
 
 /// A predicate on scalars and numbers alone that has no `truth`: what it says is what is meant.

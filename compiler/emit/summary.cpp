@@ -83,11 +83,13 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     return rows;
 }
 
-bool is_calibrated(const plan::Plan& plan) {
+bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
         return true;
     return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
-        return plan.model->predicates[p].threshold.origin != check::ThresholdOrigin::literal;
+        const check::ThresholdOrigin origin = plan.model->predicates[p].threshold.origin;
+        return origin != check::ThresholdOrigin::literal &&
+               (!but_adaptive || origin != check::ThresholdOrigin::adaptive);
     });
 }
 
@@ -119,6 +121,7 @@ void print_miss_rates(Printer& out, const std::string& prefix, const std::string
         if (predicate.threshold.adaptation) rows.push_back({predicate.name, check::miss_bound(predicate)});
     }
     if (rows.size() == 1) return;
+    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     print_table(out, prefix, rows, 2);
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     out.line(margin +
@@ -126,16 +129,16 @@ void print_miss_rates(Printer& out, const std::string& prefix, const std::string
              "threshold");
     out.line(margin +
              "was held back at the end of its range. Before the first label the threshold is the conformal one.");
-    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
 }
 
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     const std::string blank = prefix.substr(0, prefix.find_last_not_of(' ') + 1);
     out.line(blank);
     print_table(out, prefix, guarantee_rows(plan), 2);
-    out.line(blank);
     const std::string margin = prefix.starts_with("//") ? "// " : prefix;
     print_miss_rates(out, prefix, margin, plan);
+    if (!is_calibrated(plan, true)) return;  // nothing is said of episodes
+    out.line(blank);
     out.line(margin +
              "Probabilities are over the demonstrations and the new episode together, exchangeable, per episode as "
              "recorded. coverage: of");
@@ -149,7 +152,7 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_table(out, prefix, monitor_rows(plan), 2);
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
-    if (is_calibrated(plan)) print_guarantees(out, prefix, plan);
+    if (is_calibrated(plan, false)) print_guarantees(out, prefix, plan);
 }
 
 }  // namespace

@@ -4,37 +4,14 @@
 // FOLDER_OF_THE_HEADER watch.cpp
 #include <array>
 #include <cstdio>
-#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <string>
 
 #include "paper.hpp"
+#include "recorded_frame.hpp"
 
 namespace {
-
-struct Frame {
-    double px = 0;
-    double py = 0;
-    std::array<float, 32> z{};
-};
-
-/// A row of columns px, py, z[0] ... z[31], as dubins_record writes it.
-bool read(const std::string& row, Frame& frame) {
-    const char* at = row.c_str();
-    char* end = nullptr;
-    const auto number = [&] {
-        const double value = std::strtod(at, &end);
-        const bool sound = end != at;
-        at = *end == ',' ? end + 1 : end;
-        if (!sound) at = nullptr;
-        return value;
-    };
-    frame.px = number();
-    if (at != nullptr) frame.py = number();
-    for (std::size_t i = 0; i < frame.z.size() && at != nullptr; ++i) frame.z[i] = static_cast<float>(number());
-    return at != nullptr;
-}
 
 /// The four formulas over what is true, written by hand.
 struct Truth {
@@ -42,13 +19,10 @@ struct Truth {
     bool avoided = true;
     bool in_order = false;
 
-    static bool within(const Frame& frame, double x, double y, double radius) {
-        return (frame.px - x) * (frame.px - x) + (frame.py - y) * (frame.py - y) < radius * radius;
-    }
     void step(const Frame& frame) {
-        reached |= within(frame, 0.8, 0.8, 0.25);
-        avoided &= !within(frame, 0.8, -0.8, 0.5);
-        in_order |= reached && within(frame, -0.8, 0.8, 0.25);
+        reached |= frame.within(0.8, 0.8, 0.25);
+        avoided &= !frame.within(0.8, -0.8, 0.5);
+        in_order |= reached && frame.within(-0.8, 0.8, 0.25);
     }
 };
 

@@ -130,6 +130,41 @@ TEST(Fitted, RanksAsBruteForceDoes) {
     }
 }
 
+/// An adaptive threshold starts at the conformal one or, its grid (here 2^-23) being coarser, just beyond it.
+TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
+    Random random(44);
+    int outside = 0;
+    for (const std::string comparison : {"<=", "<", ">=", ">"}) {
+        const bool upper = comparison[0] == '<';
+        const auto conformal = model_of(comparison, "calibrated(conformal, alpha = 0.2)");
+        const auto adaptive =
+            model_of(comparison, "calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -1.5, hi = 1.5)");
+        for (int n = 1; n <= 200; ++n) {
+            const auto all = demonstrations(random_episodes(random, n), upper);
+            const auto expected = calibrate::fit(conformal.predicates[0], all, 0);
+            const auto fit = calibrate::fit(adaptive.predicates[0], all, 0);
+            if (const auto* refusal = std::get_if<Refusal>(&expected)) {
+                ASSERT_EQ(std::get<Refusal>(fit), *refusal);
+                continue;
+            }
+            const auto& fitted = std::get<Fitted>(expected);
+            if (std::abs(fitted.epsilon) > 1.5F) {
+                ++outside;
+                ASSERT_EQ(std::get<calibrate::OutOfRange>(fit).epsilon, fitted.epsilon);
+                continue;
+            }
+            const auto& start = std::get<Fitted>(fit);
+            const float beyond = upper ? start.epsilon - fitted.epsilon : fitted.epsilon - start.epsilon;
+            ASSERT_GE(beyond, 0);
+            ASSERT_LT(beyond, 0x1p-23F);
+            ASSERT_EQ(start.epsilon, std::round(start.epsilon * 0x1p23F) * 0x1p-23F);
+            ASSERT_EQ(start.scores, fitted.scores);
+            ASSERT_EQ(start.k, fitted.k);
+        }
+    }
+    EXPECT_GT(outside, 10);
+}
+
 TEST(Fitted, F1AsBruteForceDoes) {
     Random random(42);
     for (const std::string comparison : {"<=", "<", ">=", ">"}) {
@@ -199,7 +234,8 @@ TEST(Calibrate, ThreadsDoNotChangeTheResult) {
         files.push_back(std::make_unique<TemporaryPath>(fmt::format("episode{}.csv", episode), text));
         request.data.push_back(files.back()->path());
     }
-    for (const std::string method : {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1"}) {
+    for (const std::string method : {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1",
+                                     "adaptive, alpha = 0.1, gamma = 0.1, lo = 0, hi = 2"}) {
         const auto model = model_of("<", fmt::format("calibrated({})", method));
         std::string first;
         for (const unsigned jobs : {1U, 2U, 5U, 64U}) {

@@ -1,5 +1,5 @@
-# The temporal operators: as the project is built, then where flags or another compiler could change what they mean.
-set(temporal_sources test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_truth.cpp test_temporal_values.cpp test_temporal_windows.cpp)
+# The temporal operators, and thresholds that move: as the project is built, then where flags or another compiler could change what they mean.
+set(temporal_sources test_adaptation.cpp test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_truth.cpp test_temporal_values.cpp test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 
 etlc_test(test_temporal SOURCES ${temporal_sources} LIBRARIES etlmon::etlmon)
@@ -31,7 +31,7 @@ if(NOT ETLC_TEMPORAL_OTHER)
   etlc_missing_tool(${temporal_other} ${temporal_package})
 else()
   set(temporal_headers ${CMAKE_CURRENT_SOURCE_DIR}/temporal_streams.hpp)
-  foreach(header value truth verdict delay monoid window boolean_window)
+  foreach(header adaptation value truth verdict delay monoid window boolean_window)
     list(APPEND temporal_headers ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/${header}.hpp)
   endforeach()
   set(objects)

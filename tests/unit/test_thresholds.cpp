@@ -221,7 +221,7 @@ std::vector<Broken> content() {
                "key 'episodes' stands twice in one object"),
         broken("\"held\": {", "\"held\": 1, \"other\": {", "'predicates.held' is '1', expected an object"),
         broken("\"method\": \"conformal\"", "\"method\": \"conform\"",
-               at_a + "method' is the text 'conform', expected 'f1', 'conformal' or 'class_conditional'"),
+               at_a + "method' is the text 'conform', expected 'f1', 'conformal', 'class_conditional' or 'adaptive'"),
         broken("\"method\": \"conformal\",", "", "key " + at_a + "method' is missing, expected a text"),
         broken("\"alpha\": 0.10,", "", "key " + at_a + "alpha' is missing, expected a number between 0 and 1"),
         broken("0.10", "\"0.10\"", at_a + "alpha' is the text '0.10', expected a number between 0 and 1"),
