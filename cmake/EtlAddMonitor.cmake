@@ -1,4 +1,5 @@
-# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name] [STANDALONE])
+# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
+#                  [INLINE_TARGETS bytes] [STANDALONE])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of TARGET then include by that name.
 #   TARGET      an executable or a library made in this directory; it may have several monitors
@@ -7,6 +8,8 @@
 #   VALUES      what the monitors compute with (default: robustness); boolean: truth values, and only the distances that matter
 #   NAMESPACE   of the generated code (default: the name after `spec`)
 #   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon. No source includes both kinds.
+#   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header (default: 262144); the monitor is given that
+#               file at run time. It is empty where no set is larger. The target's property ETLC_TARGETS_FILES lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder and is made anew when the spec,
 # a file that the spec loads, the thresholds or etlc itself change. Of a library, the header and the runtime are public.
 # Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for the others).
@@ -14,7 +17,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;VALUES;NAMESPACE" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS" "")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -34,17 +37,22 @@ function(etlc_add_monitor target)
   if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
     message(FATAL_ERROR "${call}: VALUES ${arg_VALUES}: expected robustness or boolean")
   endif()
+  if(DEFINED arg_INLINE_TARGETS AND NOT arg_INLINE_TARGETS MATCHES "^[0-9]+$")
+    message(FATAL_ERROR "${call}: INLINE_TARGETS ${arg_INLINE_TARGETS}: expected a number of bytes")
+  endif()
   __etlc_check_target("${call}" "${target}")
   __etlc_input("${call}" SPEC "${arg_SPEC}" spec)
 
   get_filename_component(stem "${spec}" NAME_WLE)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/etlc/${target}")
   set(header "${folder}/${stem}.hpp")
+  set(targets_file "${folder}/${stem}.targets.bin")
   get_target_property(monitors ${target} ETLC_MONITORS)
   if("${stem}" IN_LIST monitors)
     message(FATAL_ERROR "${call}: there is a monitor ${stem}.hpp already: name one of the two specs otherwise")
   endif()
   set_property(TARGET ${target} APPEND PROPERTY ETLC_MONITORS "${stem}")
+  set_property(TARGET ${target} APPEND PROPERTY ETLC_TARGETS_FILES "${targets_file}")
 
   set(options)
   set(depends "${spec}")
@@ -59,14 +67,17 @@ function(etlc_add_monitor target)
   if(arg_NAMESPACE)
     list(APPEND options --namespace ${arg_NAMESPACE})
   endif()
+  if(DEFINED arg_INLINE_TARGETS)
+    list(APPEND options --inline-targets ${arg_INLINE_TARGETS})
+  endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)
   endif()
 
   file(MAKE_DIRECTORY "${folder}")
   add_custom_command(
-    OUTPUT "${header}"
-    COMMAND etlc::etlc "${spec}" -o "${header}" --depfile "${header}.d" ${options}
+    OUTPUT "${header}" "${targets_file}"
+    COMMAND etlc::etlc "${spec}" -o "${header}" --targets-file "${targets_file}" --depfile "${header}.d" ${options}
     DEPENDS ${depends} etlc::etlc
     DEPFILE "${header}.d"
     COMMENT "Compiling ${stem}.etl to ${stem}.hpp"

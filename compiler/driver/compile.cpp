@@ -1,5 +1,9 @@
 #include "driver/compile.hpp"
 
+#include <fmt/format.h>
+
+#include <set>
+
 #include "driver/version.hpp"
 #include "emit/emit.hpp"
 #include "opt/opt.hpp"
@@ -26,23 +30,52 @@ std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, 
     return result;
 }
 
-std::optional<std::string> emit(const source::File& file, const Request& request, diag::Sink& sink,
-                                std::vector<std::string>& dependencies) {
+namespace {
+
+std::optional<std::string> text_of(const Compiled& compiled, const Request& request) {
+    if (request.emit == "graph") return ir::print(*compiled.program);
+    if (request.emit == "plan") return plan::print(compiled.plan, compiled.program->graph);
+    for (const emit::Backend& backend : emit::backends())
+        if (backend.name == request.emit)
+            return backend.emit(compiled.plan, compiled.program->graph,
+                                {request.name_space, kVersion, request.standalone, request.targets_file});
+    return std::nullopt;
+}
+
+/// A header on standard output has no file beside it, unless the call names one.
+void refuse_stored_targets(const Compiled& compiled, diag::Sink& sink) {
+    std::set<check::Index> seen;
+    for (const plan::StoredSet& set : compiled.plan.stored) {
+        const check::Target& target = compiled.model->targets[set.target];
+        if (!seen.insert(set.target).second) continue;
+        sink.report(diag::Code::no_file_for_targets, target.span,
+                    fmt::format("'{}' takes {} bytes, too many to be spelled out, and a header on standard output has "
+                                "no file beside it",
+                                target.name, target.values.size() * sizeof(float)))
+            .note("name the header with -o, the file with --targets-file, or raise --inline-targets");
+    }
+}
+
+}  // namespace
+
+std::optional<Output> emit(const source::File& file, const Request& request, diag::Sink& sink) {
+    Output output;
     if (request.emit == "ast") {
         const ast::Spec spec = parse::parse(file, sink);
         if (sink.has_errors()) return std::nullopt;
-        return ast::print(spec);
+        output.text = ast::print(spec);
+        return output;
     }
-    const auto compiled = compile(file, request, sink);
+    auto compiled = compile(file, request, sink);
     if (!compiled) return std::nullopt;
-    dependencies = compiled->model->dependencies;
-    if (request.emit == "graph") return ir::print(*compiled->program);
-    if (request.emit == "plan") return plan::print(compiled->plan, compiled->program->graph);
-    for (const emit::Backend& backend : emit::backends())
-        if (backend.name == request.emit)
-            return backend.emit(compiled->plan, compiled->program->graph,
-                                {request.name_space, kVersion, request.standalone});
-    return std::nullopt;
+    if (request.emit == "hpp" && request.targets_file.empty()) refuse_stored_targets(*compiled, sink);
+    if (sink.has_errors()) return std::nullopt;
+    auto text = text_of(*compiled, request);
+    if (!text) return std::nullopt;
+    output.text = std::move(*text);
+    output.dependencies = compiled->model->dependencies;
+    if (request.emit == "hpp") output.compiled = std::move(*compiled);
+    return output;
 }
 
 std::vector<std::pair<std::string, std::string>> emittable() {

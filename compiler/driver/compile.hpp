@@ -28,7 +28,15 @@ struct Request {
     check::Values values = check::Values::robustness;
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
-    bool standalone = false;  ///< the header with the runtime in it
+    bool standalone = false;   ///< the header with the runtime in it
+    std::string targets_file;  ///< name of the file beside the header, without folders
+};
+
+/// What a call of etlc writes.
+struct Output {
+    std::string text;                       ///< of request.emit
+    std::vector<std::string> dependencies;  ///< every file that the spec loads
+    Compiled compiled;                      ///< of the header: its plan says what goes to the file of targets
 };
 
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);
@@ -37,9 +45,8 @@ std::optional<Compiled> compile(const source::File& file, const Request& request
 std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink,
                                 check::Values values = check::Values::robustness);
 
-/// The text of request.emit; nothing where there was an error. `dependencies`: every file that the spec loads.
-std::optional<std::string> emit(const source::File& file, const Request& request, diag::Sink& sink,
-                                std::vector<std::string>& dependencies);
+/// Nothing where there was an error.
+std::optional<Output> emit(const source::File& file, const Request& request, diag::Sink& sink);
 
 /// What --emit takes, each with a summary for --help.
 std::vector<std::pair<std::string, std::string>> emittable();

@@ -5,6 +5,8 @@
 #include <CLI/CLI.hpp>
 #include <cctype>
 #include <cstdio>
+#include <filesystem>
+#include <list>
 
 #include "data/file.hpp"
 #include "diag/render.hpp"
@@ -15,6 +17,7 @@
 #include "driver/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
+#include "plan/stored.hpp"
 
 namespace {
 
@@ -28,6 +31,8 @@ struct Call {
     std::string spec;
     std::string output;
     std::string depfile;
+    std::string targets_file;    ///< where large target sets go; empty: nowhere
+    bool targets_named = false;  ///< by the call, which then expects the file even where nothing goes to it
     std::string diagnostics = "text";
     std::vector<std::string> warnings;
     bool check_only = false;
@@ -68,10 +73,48 @@ std::string dependency_rule(const std::string& output, const std::string& spec, 
     return rule + "\n";
 }
 
-void write(const std::string& path, const std::string& text, diag::Sink& sink) {
-    const std::string& target = path == "-" ? "/dev/stdout" : path;
-    if (const auto failure = data::write_file_atomically(target, text, diag::Code::unwritable_output))
-        sink.report(data::in_file(*failure, path));
+/// A file of the output that takes its name only when all others are complete too.
+class OutputFile {
+public:
+    OutputFile(std::string path, diag::Sink& sink) : path_(std::move(path)), sink_(sink) {
+        auto file = data::AtomicFile::create(path_ == "-" ? "/dev/stdout" : path_, diag::Code::unwritable_output);
+        if (file)
+            file_.emplace(std::move(*file));
+        else
+            report(file.failure());
+    }
+    /// False, and reported, where it cannot be written.
+    bool write(std::string_view bytes) { return file_ && succeeds(file_->write(bytes)); }
+    bool commit() { return file_ && succeeds(file_->commit()); }
+
+private:
+    bool succeeds(const std::optional<diag::Failure>& failure) {
+        if (failure) report(*failure);
+        return !failure;
+    }
+    void report(const diag::Failure& failure) { sink_.report(data::in_file(failure, path_)); }
+
+    std::string path_;
+    diag::Sink& sink_;
+    std::optional<data::AtomicFile> file_;
+};
+
+/// The header, the file of targets where there is one, and the dependencies: all of them or none. The header is the
+/// last to appear, so that whoever sees it finds its targets.
+void write_output(const Call& call, const driver::Output& output, diag::Sink& sink) {
+    std::list<OutputFile> files;
+    const auto add = [&](const std::string& path) -> OutputFile& { return files.emplace_back(path, sink); };
+    bool written = true;
+    if (call.request.emit == "hpp" && (call.targets_named || !output.compiled.plan.stored.empty())) {
+        OutputFile& targets = add(call.targets_file);
+        written = plan::store(output.compiled.plan, [&](const std::uint8_t* bytes, std::size_t size) {
+            return targets.write({reinterpret_cast<const char*>(bytes), size});
+        });
+    }
+    if (!call.depfile.empty())
+        written = written && add(call.depfile).write(dependency_rule(call.output, call.spec, output.dependencies));
+    written = written && add(call.output).write(output.text);
+    for (OutputFile& file : files) written = written && file.commit();
 }
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
@@ -87,13 +130,9 @@ int compile_spec(const Call& call) {
     diag::Sink sink;
     source::File file;
     if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
-    std::vector<std::string> dependencies;
-    const auto text = driver::emit(file, call.request, sink, dependencies);
-    const bool refused = !text || (warnings_are_errors(call) && sink.warnings() > 0);
-    if (!refused && !call.check_only) {
-        if (!call.depfile.empty()) write(call.depfile, dependency_rule(call.output, call.spec, dependencies), sink);
-        if (!sink.has_errors()) write(call.output, *text, sink);
-    }
+    const auto output = driver::emit(file, call.request, sink);
+    const bool refused = !output || (warnings_are_errors(call) && sink.warnings() > 0);
+    if (!refused && !call.check_only) write_output(call, *output, sink);
     return conclude(call, file, sink);
 }
 
@@ -186,6 +225,14 @@ void add_compile_options(CLI::App& app, Call& call) {
                 return names_namespace(name) ? std::string() : fmt::format("'{}' is not the name of a namespace", name);
             },
             ""));
+    app.add_option("--inline-targets", call.request.limits.inline_target_bytes,
+                   "target sets of more bytes are not spelled out in the header, but go to a file beside it")
+        ->type_name("BYTES")
+        ->capture_default_str();
+    app.add_option("--targets-file", call.targets_file,
+                   "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to it); named, it is "
+                   "always written, perhaps empty")
+        ->type_name("FILE");
     app.add_option("--depfile", call.depfile, "also write what the output depends on, for make and ninja")
         ->type_name("FILE");
 }
@@ -198,6 +245,11 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
     if (!call.check_only && !prints_stage && call.output.empty())
         return "say where to write the header with -o, or --check";
     if (!call.depfile.empty() && (call.output.empty() || call.output == "-")) return "--depfile needs -o FILE";
+    if (app.count("--targets-file") > 0 && (call.targets_file.empty() || call.targets_file == "-" ||
+                                            call.targets_file == call.output || call.targets_file == call.depfile))
+        return "--targets-file needs a file of its own";
+    if (app.count("--targets-file") > 0 && prints_stage && call.request.emit != "hpp")
+        return "--targets-file goes with the header, not with other stages";
     return "";
 }
 
@@ -218,6 +270,15 @@ int parse_arguments(CLI::App& app, int argc, char** argv) {
     return -1;
 }
 
+/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output.
+void name_targets_file(Call& call) {
+    call.targets_named = !call.targets_file.empty();
+    const std::filesystem::path header = call.output;
+    if (!call.targets_named && call.output != "-")
+        call.targets_file = (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
+    call.request.targets_file = std::filesystem::path(call.targets_file).filename().string();
+}
+
 int compile_command(int argc, char** argv) {
     Call call;
     CLI::App app(
@@ -231,6 +292,7 @@ int compile_command(int argc, char** argv) {
     if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
     if (const std::string mistake = mistake_in(call, app); !mistake.empty()) return complain(app, mistake);
     if (call.output.empty()) call.output = "-";
+    name_targets_file(call);
     return compile_spec(call);
 }
 

@@ -32,10 +32,13 @@ struct Context {
     Names names;
     std::string spec_file;  ///< file name without folders
     std::string name_space;
+    std::string targets_file;  ///< file name of the stored target sets, without folders
     Spelling spelling;
     plan::Dependents dependents;
 
     bool boolean() const { return plan.values == check::Values::boolean; }
+    /// Some target sets lie beside the header: the monitor has to be given them.
+    bool stores_targets() const { return !plan.stored.empty(); }
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
@@ -98,7 +101,7 @@ struct Member {
     std::string name;
     std::string comment;
     std::string reset;    ///< a statement; empty: it outlives the episode
-    std::string initial;  ///< empty: reset() sets it
+    std::string initial;  ///< empty: reset() or the constructor sets it
 };
 std::vector<Member> members(const Context& context);
 std::vector<Member> stream_members(const Context& context);

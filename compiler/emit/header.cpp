@@ -5,7 +5,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
-#include "plan/kernels.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::emit {
 
@@ -37,7 +37,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool boolean = context.boolean();
     std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version", "views"};
-    if (!plan.distances.empty()) headers.insert("kernel");
+    for (Index d : plan.distances) headers.insert(plan::stored_set(plan, d) == nullptr ? "kernel" : "targets");
     for (Index p : plan.predicates)
         if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
     if (!context.names.threshold_member.empty()) headers.insert("adaptation");
@@ -58,13 +58,18 @@ std::set<std::string> runtime_headers(const Context& context) {
     return headers;
 }
 
-void print_includes(Printer& out, const Context& context, const std::string& version) {
+void print_includes(Printer& out, const Context& context, const std::string& version, bool standalone) {
     out.line("#pragma once");
     out.line();
     out.line("#include <stddef.h>");
     out.line("#include <stdint.h>");
     out.line();
     for (const std::string& header : runtime_headers(context)) out.line("#include \"etlmon/{}.hpp\"", header);
+    if (standalone && context.stores_targets()) {
+        out.line("#if defined(ETLMON_MAPPED_TARGETS)  // on a POSIX host, to map {}", context.targets_file);
+        out.line("#include \"etlmon/mapped_targets.hpp\"");
+        out.line("#endif");
+    }
     const std::size_t dot = version.find('.');
     const std::string major = version.substr(0, dot);
     const std::string minor = version.substr(dot + 1, version.find('.', dot + 1) - dot - 1);
@@ -161,9 +166,28 @@ void print_boolean_step(Printer& out, const Context& context) {
     out.close();
 }
 
+void print_constructors(Printer& out, const Context& context) {
+    if (!context.stores_targets()) {
+        out.line("Monitor() noexcept { reset(); }");
+        return out.line();
+    }
+    const std::string& member = context.names.rows_member;
+    out.line("/// Over the targets of {}, which must stay where they are. Where they are not ready, every",
+             context.targets_file);
+    out.line("/// predicate on them is unknown at every step.");
+    out.line("explicit Monitor(const Targets& targets) noexcept : {}(targets.rows()) {{ reset(); }}", member);
+    out.line("/// The same from the bytes of the file, all of which are read once to check them.");
+    out.line("Monitor(const uint8_t* bytes, size_t size) noexcept : Monitor(Targets(bytes, size)) {}");
+    out.line("static bool valid(const uint8_t* bytes, size_t size) noexcept { return Targets(bytes, size).ready(); }");
+    out.line("bool ready() const noexcept {{ return {} != nullptr; }}  ///< has its targets", member);
+    out.line();
+}
+
 void print_public_part(Printer& out, const Context& context, const std::vector<Member>& all) {
     const plan::Cost& cost = context.plan.cost;
-    out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)", cost.state_bytes);
+    out.line("static constexpr size_t kStateBytes = {};  ///< sizeof(Monitor)",
+             context.stores_targets() ? fmt::format("etlmon::with_pointer({})", cost.state_bytes)
+                                      : fmt::format("{}", cost.state_bytes));
     if (cost.stack_bytes > 0)
         out.line("static constexpr size_t kStackBytes = {};  ///< of a step, for positions evaluated anew",
                  cost.stack_bytes);
@@ -173,8 +197,7 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     out.line("static constexpr uint32_t kDistanceElements = {};  ///< target elements measured in a step",
              cost.distance_operations);
     out.line();
-    out.line("Monitor() noexcept { reset(); }");
-    out.line();
+    print_constructors(out, context);
     out.line("/// A new episode{}.",
              context.names.threshold_member.empty() ? "" : "; adaptive thresholds stay where they are");
     out.open("void reset() noexcept {");
@@ -264,6 +287,8 @@ std::vector<Member> members(const Context& context) {
     // Words before bytes: no padding but at the end.
     std::stable_partition(all.begin(), all.end(),
                           [&](const Member& member) { return !context.boolean() || !is_bytes(member); });
+    if (context.stores_targets())
+        all.insert(all.begin(), {"const float*", context.names.rows_member, "in " + context.targets_file, ""});
     return all;
 }
 
@@ -276,12 +301,13 @@ std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options
                           make_names(plan, graph),
                           file_name(model.file.path()),
                           options.name_space.empty() ? model.name : options.name_space,
+                          options.targets_file,
                           boolean ? truth_spelling() : Spelling(),
                           plan::dependents(plan)};
     Printer out;
     out.line("// Made by etlc {} from {}: change that, and run etlc again.", options.version, context.spec_file);
     print_summary(out, context);
-    print_includes(out, context, options.version);
+    print_includes(out, context, options.version, options.standalone);
     out.line("namespace {} {{", context.name_space);
     out.line();
     print_inputs_and_verdicts(out, context);

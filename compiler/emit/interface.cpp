@@ -1,6 +1,7 @@
 // What the user of the class fills in and gets back, and the constants behind it.
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::emit {
 
@@ -52,6 +53,11 @@ void print_rows(Printer& out, const Context& context, Index d) {
     out.line("/// {}: {} of {} elements{}", target.origin,
              target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows), target.dimension,
              plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+    if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
+        out.line("inline constexpr size_t {} = {};  // floats from the beginning of {}",
+                 context.names.target_array.at(d), set->offset / sizeof(float), context.targets_file);
+        return;
+    }
     print_numbers(out, context.names.target_array.at(d), fmt::format("{} * {}", target.rows, target.dimension),
                   plan::prepared_rows(context.model, distance));
 }
@@ -85,6 +91,14 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
 
 void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
+    if (context.stores_targets()) {
+        out.line("/// The bytes of {}: mapped by etlmon/mapped_targets.hpp, or linked in at a multiple of 64.",
+                 context.targets_file);
+        out.line("/// The type holds their size and their XXH64: it is ready with no others.");
+        out.line("using Targets = etlmon::Targets<{}u, 0x{:016x}u>;", plan::stored_bytes(context.plan),
+                 plan::stored_hash(context.plan));
+        out.line();
+    }
     out.line("/// Target sets, a row after the other.");
     out.line("namespace targets {");
     std::set<std::string> done;

@@ -3,6 +3,7 @@
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
 #include "plan/literals.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::emit {
 
@@ -143,6 +144,11 @@ std::string kernel_call(const Context& context, Index d, const std::string& z) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
     const auto weights = context.names.weight_array.find(d);
+    if (plan::stored_set(context.plan, d) != nullptr)
+        return fmt::format("etlmon::measure_stored<etlmon::{}, {}, {}, {}>({}, {} + targets::{}{})",
+                           plan::metric_name(distance), aggregation(distance), target.rows, target.dimension, z,
+                           context.names.rows_member, context.names.target_array.at(d),
+                           weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
     return fmt::format("etlmon::measure<etlmon::{}, {}, {}, {}, targets::{}>({}{})", plan::metric_name(distance),
                        aggregation(distance), target.rows, target.dimension, context.names.target_array.at(d), z,
                        weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
@@ -151,14 +157,15 @@ std::string kernel_call(const Context& context, Index d, const std::string& z) {
 /// `into = measure(...)`, only where the inputs are there.
 void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
     const check::Distance& distance = context.model.distances[d];
+    const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
     if (!distance.point_is_vector) {
         const std::string z = sample(context, distance.point[0]);
-        print_wrapped(out, fmt::format("if ({} != nullptr) {} = {};", z, into, kernel_call(context, d, z)));
+        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, kernel_call(context, d, z)));
         return;
     }
     std::string elements;
     for (Index i : distance.point) elements += (elements.empty() ? "*" : ", *") + sample(context, i);
-    print_wrapped(out, fmt::format("if ({}) {{", all_present(context, distance.point)));
+    print_wrapped(out, fmt::format("if ({}{}) {{", ready, all_present(context, distance.point)));
     out.indent();
     print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
     print_wrapped(out, fmt::format("{} = {};", into, kernel_call(context, d, "point")));

@@ -75,6 +75,7 @@ public:
         name_readings();
         name_constants();
         names_.verdicts_member = member(members_, "verdicts");
+        names_.rows_member = member(members_, "targets");
         return std::move(names_);
     }
 

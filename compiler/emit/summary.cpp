@@ -4,6 +4,7 @@
 #include "check/guarantees.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::emit {
 
@@ -155,11 +156,26 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
     if (is_calibrated(plan, false)) print_guarantees(out, prefix, plan);
 }
 
+/// The sets that the monitor has to be given, and what they take.
+void print_stored(Printer& out, const std::string& prefix, const plan::Plan& plan, const std::string& file) {
+    if (plan.stored.empty()) return;
+    std::vector<Row> rows{{"in " + file, "rows", "elements", "bytes"}};
+    for (const plan::StoredSet& set : plan.stored) {
+        const check::Target& target = plan.model->targets[set.target];
+        rows.push_back({target.origin + (set.as_given ? "" : ", scaled to length 1"), number(target.rows),
+                        number(target.dimension), number(target.rows * set.row_bytes)});
+    }
+    rows.push_back({"all together", "", "", number(plan::stored_bytes(plan))});
+    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    print_table(out, prefix, rows, 1);
+}
+
 }  // namespace
 
 void print_summary(Printer& out, const Context& context) {
     out.line("//");
     print_tables(out, "//   ", context.plan);
+    print_stored(out, "//   ", context.plan, context.targets_file);
     out.line("//");
     out.line(
         "// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and "
@@ -167,12 +183,14 @@ void print_summary(Printer& out, const Context& context) {
     out.line(
         "// robustness keys in the worst step. distance elements: target elements that a step compares with its "
         "input.");
+    if (context.stores_targets()) out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }
 
-std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options&) {
+std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
     Printer out;
     out.line("spec {}", plan.model->name);
     print_tables(out, "  ", plan);
+    print_stored(out, "  ", plan, options.targets_file.empty() ? "the file of targets" : options.targets_file);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)

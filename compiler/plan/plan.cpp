@@ -8,6 +8,7 @@
 #include "plan/budget.hpp"
 #include "plan/readings.hpp"
 #include "plan/refusal.hpp"
+#include "plan/stored.hpp"
 #include "plan/streams.hpp"
 
 namespace etlc::plan {
@@ -84,6 +85,7 @@ public:
     Plan finish() {
         drop_idle_streams();
         collect_inputs();
+        plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
                              std::any_of(plan_.streams.begin(), plan_.streams.end(),
                                          [](const Stream& stream) { return stream.op == StreamOp::within; });

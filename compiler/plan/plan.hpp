@@ -174,12 +174,21 @@ struct Cost {
     std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
 };
 
+/// A target set that lies in the file beside the header, see stored.hpp.
+struct StoredSet {
+    Index target = 0;
+    bool as_given = true;  ///< else rows of length 1
+    std::uint64_t offset = 0;
+    std::uint64_t row_bytes = 0;  ///< from a row to the next
+};
+
 struct Plan {
     const check::Model* model = nullptr;
     check::Values values = check::Values::robustness;
     std::vector<Index> inputs;  ///< that some monitor depends on, in order of declaration
     std::vector<Index> targets;
     std::vector<Index> distances;
+    std::vector<StoredSet> stored;
     std::vector<Index> predicates;
     std::vector<Stream> streams;
     std::vector<Reading> readings;
@@ -194,6 +203,7 @@ struct Limits {
     std::uint64_t state_bytes = 1U << 20U;  ///< and the stack of a step with it
     std::uint64_t code_bytes = 64U << 10U;
     std::uint64_t operations = 1U << 20U;
+    std::uint64_t inline_target_bytes = 256U << 10U;  ///< larger target sets go to a file beside the header
 };
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.

@@ -48,7 +48,10 @@ const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "
 
 /// Headers of the runtime for programs on a host, which no generated code includes, and what of the C++ library each
 /// may use.
-const std::map<std::string, Names> kHosted = {{"dynamic.hpp", {"limits"}}, {"error_bounds.hpp", {}}};
+const std::map<std::string, Names> kHosted = {
+    {"dynamic.hpp", {"limits"}},
+    {"error_bounds.hpp", {}},
+    {"mapped_targets.hpp", {"errno.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h"}}};
 
 Names reachable(const std::string& folder) {
     Names seen = {folder, "source"};

@@ -41,6 +41,7 @@ refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" "etlc_add_mo
 refused "SPEC specs: there is no such file" "etlc_add_monitor(robot SPEC specs)"
 refused "THRESHOLDS t.json: there is no such file" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
 refused "NAMESPACE a-b is not a C++ namespace" "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
+refused "INLINE_TARGETS 1k: expected a number of bytes" "etlc_add_monitor(robot SPEC specs/a.etl INLINE_TARGETS 1k)"
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 

@@ -23,12 +23,14 @@ cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
 compile
 expect "$("$box/build/robot")" "reached 0 limit 0.5"
 "$box/build/alone" || fail "the standalone monitor"
+expect "$("$box/build/stored")" "ready: reached 0"
 if grep 'include.*etlmon' "$box/build/etlc/alone/guard.hpp"; then fail "a standalone header includes the runtime"; fi
 
 reach=$box/build/etlc/robot/reach.hpp guard=$box/build/etlc/robot/guard.hpp
 if grep -F "$box" "$reach"; then fail "the header names a folder of the machine that made it"; fi
 
 stamp() { stat -c %y "$1"; }
+[ ! -s "$box/build/etlc/robot/reach.targets.bin" ] || fail "small targets are in a file"
 reach_made=$(stamp "$reach") guard_made=$(stamp "$guard")
 compile
 expect "$(stamp "$reach")" "$reach_made"
@@ -38,6 +40,7 @@ compile
 [ "$(stamp "$reach")" != "$reach_made" ] || fail "the target has changed, the header has not"
 expect "$(stamp "$guard")" "$guard_made"
 expect "$("$box/build/robot")" "reached -3 limit 0.5"
+expect "$("$box/build/stored")" "ready: reached -3"
 
 change sed -i 's/<= 2.5/<= 2.25/' "$box/consumer/specs/guard.etl"
 compile

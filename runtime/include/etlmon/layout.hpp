@@ -60,19 +60,27 @@ struct ColumnsOf {
   static constexpr auto kColumns = columns_of<K, D>(Rows);
 };
 
-/// Sizes known to the compiler, and sizes known at run time.
+/// Sizes known to the compiler, and sizes known at run time. stride(): floats from a row to the next.
 template <uint32_t K, uint32_t D>
 struct Fixed {
   static constexpr uint32_t rows() noexcept { return K; }
   static constexpr uint32_t dimension() noexcept { return D; }
+  static constexpr uint32_t stride() noexcept { return D; }
   static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
+};
+/// Rows that begin at multiples of 64 bytes, as in a file of targets.
+constexpr uint32_t padded(uint32_t D) noexcept { return (D + kLanes - 1) / kLanes * kLanes; }
+template <uint32_t K, uint32_t D>
+struct Padded : Fixed<K, D> {
+  static constexpr uint32_t stride() noexcept { return padded(D); }
 };
 struct Sizes {
   uint32_t K, D;
   constexpr uint32_t rows() const noexcept { return K; }
   constexpr uint32_t dimension() const noexcept { return D; }
+  constexpr uint32_t stride() const noexcept { return D; }
   static constexpr bool may_be(Order) noexcept { return true; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
 };

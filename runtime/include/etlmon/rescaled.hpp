@@ -205,7 +205,7 @@ ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 Measured measure_again(const float* z, G targets, const float* weights, Size size, Aggregation aggregation) noexcept {
-  const Set<InColumns, G> set{targets, size.rows(), size.dimension()};
+  const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {
       if (is_row(z, set, row)) return {0.0f, row};
@@ -215,8 +215,8 @@ Measured measure_again(const float* z, G targets, const float* weights, Size siz
 }
 
 template <bool InColumns, class G>
-bool is_equal(const float* z, G targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept {
-  return is_row(z, Set<InColumns, G>{targets, rows, dimension}, row);
+bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept {
+  return is_row(z, set, row);
 }
 
 }  // namespace detail

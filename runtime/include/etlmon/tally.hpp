@@ -13,21 +13,21 @@
 namespace etlmon {
 namespace detail {
 
-/// K rows of D elements, one after the other.
+/// K rows of D elements, one after the other, `stride` elements apart.
 template <bool InColumns, class G>
 struct Set {
   G values;
-  uint32_t rows, dimension;
+  uint32_t rows, dimension, stride;
 
   struct Buffer {};
-  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept { return values + static_cast<size_t>(k) * dimension; }
+  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept { return values + static_cast<size_t>(k) * stride; }
 };
 
 /// The same in columns.
 template <class G>
 struct Set<true, G> {
   G values;
-  uint32_t rows, dimension;
+  uint32_t rows, dimension, stride;
 
   struct Buffer {
     float elements[4 * kLanes];
@@ -86,7 +86,7 @@ ETLMON_COLD Measured measure_again(const float* z, G targets, const float* weigh
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
 template <bool InColumns, class G>
-ETLMON_COLD bool is_equal(const float* z, G targets, uint32_t rows, uint32_t dimension, uint32_t row) noexcept;
+ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept;
 
 /// What the values say together. `aggregation`: as it was before it saw any.
 template <bool InColumns, class Metric, class Aggregation, class Size, class G>
@@ -97,7 +97,7 @@ ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const f
     bool sound = tally.sound(result);
     if constexpr (Metric::kRescales && !Aggregation::kNearest) {
       if (!sound && tally.sound_if_equal(result)) {
-        sound = is_equal<InColumns>(z, targets, size.rows(), size.dimension(), tally.nearest.row);
+        sound = is_equal<InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
       }
     }
     if (!sound) return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);

@@ -1,0 +1,91 @@
+#include "plan/stored.hpp"
+
+#include <algorithm>
+#include <bit>
+
+#include "etlmon/checksum.hpp"
+#include "etlmon/layout.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+constexpr std::size_t kPieceBytes = 1U << 20U;
+
+/// Rows `first` to before `end` of the set, ready to be written.
+void fill(const check::Target& target, const StoredSet& set, std::size_t first, std::size_t end,
+          std::vector<float>& rows, std::vector<float>& piece) {
+    const std::size_t stride = set.row_bytes / sizeof(float);
+    const std::size_t width = target.dimension;
+    rows.assign(target.values.begin() + static_cast<std::ptrdiff_t>(first * width),
+                target.values.begin() + static_cast<std::ptrdiff_t>(end * width));
+    if (!set.as_given)
+        etlmon::prepare(etlmon::MetricId::cosine, rows.data(), static_cast<std::uint32_t>(end - first),
+                        target.dimension);
+    piece.assign((end - first) * stride, 0.0F);
+    for (std::size_t row = 0; row < end - first; ++row)
+        std::copy_n(rows.data() + row * width, width, piece.data() + row * stride);
+    if constexpr (std::endian::native == std::endian::big) {
+        auto* bytes = reinterpret_cast<std::uint8_t*>(piece.data());
+        for (std::size_t i = 0; i < piece.size(); ++i) std::reverse(bytes + 4 * i, bytes + 4 * i + 4);
+    }
+}
+
+}  // namespace
+
+std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes) {
+    std::vector<StoredSet> sets;
+    std::uint64_t offset = 0;
+    for (Index d : plan.distances) {
+        const check::Distance& distance = plan.model->distances[d];
+        const check::Target& target = plan.model->targets[distance.target];
+        const bool as_given = rows_as_given(distance);
+        const bool known = std::any_of(sets.begin(), sets.end(), [&](const StoredSet& set) {
+            return set.target == distance.target && set.as_given == as_given;
+        });
+        if (known || target.values.size() * sizeof(float) <= inline_bytes) continue;
+        sets.push_back({distance.target, as_given, offset, etlmon::detail::padded(target.dimension) * sizeof(float)});
+        offset += target.rows * sets.back().row_bytes;
+    }
+    return sets;
+}
+
+const StoredSet* stored_set(const Plan& plan, Index d) {
+    const check::Distance& distance = plan.model->distances[d];
+    const auto found = std::find_if(plan.stored.begin(), plan.stored.end(), [&](const StoredSet& set) {
+        return set.target == distance.target && set.as_given == rows_as_given(distance);
+    });
+    return found == plan.stored.end() ? nullptr : &*found;
+}
+
+std::uint64_t stored_bytes(const Plan& plan) {
+    if (plan.stored.empty()) return 0;
+    const StoredSet& last = plan.stored.back();
+    return last.offset + plan.model->targets[last.target].rows * last.row_bytes;
+}
+
+bool store(const Plan& plan, const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take) {
+    std::vector<float> rows;
+    std::vector<float> piece;
+    for (const StoredSet& set : plan.stored) {
+        const check::Target& target = plan.model->targets[set.target];
+        const std::size_t at_once = std::max<std::size_t>(1, kPieceBytes / set.row_bytes);
+        for (std::size_t row = 0; row < target.rows; row += at_once) {
+            fill(target, set, row, std::min<std::size_t>(row + at_once, target.rows), rows, piece);
+            if (!take(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size() * sizeof(float))) return false;
+        }
+    }
+    return true;
+}
+
+std::uint64_t stored_hash(const Plan& plan) {
+    etlmon::Checksum checksum;
+    store(plan, [&](const std::uint8_t* bytes, std::size_t size) {
+        checksum.add(bytes, size);
+        return true;
+    });
+    return checksum.value();
+}
+
+}  // namespace etlc::plan

@@ -1,0 +1,31 @@
+// Target sets that are not spelled out in the header: they lie in a file beside it, which the monitor is given.
+// Takes: a plan. Gives: which sets, where in the file each begins, and the bytes of the file. Keeps true: rows are
+// little-endian float32 in the form that the kernels want, each padded with zeros to a multiple of 64 bytes; sets stand
+// in the order of the plan's distances; the same plan gives the same bytes on every machine.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "plan/plan.hpp"
+
+namespace etlc::plan {
+
+/// The sets of the plan's distances that are larger than `inline_bytes`.
+std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes);
+
+/// Where the distance's set lies in the file; null where it stands in the header.
+const StoredSet* stored_set(const Plan& plan, Index distance);
+
+/// Bytes of the file; 0 where there is none.
+std::uint64_t stored_bytes(const Plan& plan);
+
+/// The file, piece by piece, for as long as `take` says true. Gives whether it always did.
+bool store(const Plan& plan, const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take);
+
+/// The file's XXH64.
+std::uint64_t stored_hash(const Plan& plan);
+
+}  // namespace etlc::plan

@@ -1,0 +1,80 @@
+#!/usr/bin/env bash
+# stored_test.sh ETLC CXX...: a monitor whose target sets lie in a file gives the verdicts and telemetry of the same
+# monitor with its sets spelled out, bit for bit: every distance and aggregation, sets in every layout, robustness and
+# truth values, the runtime included and pasted in, under sanitizers.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+runtime=$here/../../runtime/include
+etlc=$1; shift
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+
+"$1" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
+./arrays wide.npy 1400 384   # more than 2 MiB: read in one stream
+./arrays middle.npy 300 33
+./arrays narrow.npy 400 7
+./arrays scalars.npy 300 2
+cat >stored.etl <<'END'
+spec stored;
+input wide : f32[384];
+input middle : f32[33];
+input narrow : f32[7];
+input x : f32;
+input y : f32;
+target wide_set = load("wide.npy");
+target middle_set = load("middle.npy");
+target narrow_set = load("narrow.npy");
+target scalar_set = load("scalars.npy");
+END
+predicates=
+add() { echo "predicate $1 = $2 <= $3;" >>stored.etl; predicates+=" $1"; }
+for metric in l2 l2sq l1 linf cosine angular; do add "${metric}_middle" "min $metric(middle, middle_set)" 1; done
+for metric in l2 l1 cosine; do add "${metric}_wide" "min $metric(wide, wide_set)" 1; done
+add kth_wide "kth(5) l2(wide, wide_set)" 20
+add mean_middle "mean l2(middle, middle_set)" 5
+add max_middle "max cosine(middle, middle_set)" 1
+add l2_narrow "min l2(narrow, narrow_set)" 1
+add mean_narrow "mean angular(narrow, narrow_set)" 1
+add weighted "min mahalanobis([1, 2, 3, 4, 5, 6, 7])(narrow, narrow_set)" 1
+add l2_scalars "min l2([x, y], scalar_set)" 0.1
+add form "min mahalanobis([[2, 1], [1, 3]])([x, y], scalar_set)" 0.1
+: >names.inc
+for p in $predicates; do echo "PREDICATE($p)" >>names.inc; done
+echo "monitor touched = F (l2_wide && F (l2_middle || l2_narrow));" >>stored.etl
+echo "monitor every = G ($(sed 's/^ //; s/ / || /g' <<<"$predicates"));" >>stored.etl
+echo "sliding monitor none = F[0,2] !($(sed 's/^ //; s/ / \&\& /g' <<<"$predicates"));" >>stored.etl
+printf 'MONITOR(touched) MONITOR(every) MONITOR(none)\n#undef PREDICATE\n#undef MONITOR\n' >>names.inc
+
+options=(--max-code 10000000 --inline-targets)
+"$etlc" stored.etl -o inlined.hpp --namespace inlined "${options[@]}" 100000000
+"$etlc" stored.etl -o stored.hpp "${options[@]}" 0
+grep -q 'inline constexpr float' inlined.hpp
+[ ! -e inlined.targets.bin ]
+[ "$(wc -c <stored.hpp)" -lt 400000 ]
+"$etlc" stored.etl -o pasted.hpp --standalone "${options[@]}" 0
+cmp pasted.targets.bin stored.targets.bin
+cat >pasted.cpp <<'END'
+#include "pasted.hpp"
+int main() {
+  const etlmon::MappedTargets<stored::Targets> file("pasted.targets.bin");
+  stored::Monitor monitor(file.targets());
+  return monitor.ready() && monitor.step(stored::Inputs()).touched.unknown() ? 0 : 1;
+}
+END
+flags=(-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -I. "-I$here/stored" "-I$runtime")
+for cxx in "$@"; do
+    "$cxx" "${flags[@]}" -O1 -c "$here/stored/inlined.cpp" -o inlined.o
+    "$cxx" "${flags[@]}" -O2 -DSEEDS=12 "$here/stored/main.cpp" inlined.o -o plain
+    ./plain stored.targets.bin
+    "$cxx" "${flags[@]}" -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DSEEDS=3 "$here/stored/main.cpp" inlined.o -o sanitized
+    ./sanitized stored.targets.bin
+    "$cxx" "${flags[@]}" -O1 -DETLMON_MAPPED_TARGETS pasted.cpp -o pasted
+    ./pasted
+done
+
+# Truth values, where a distance is measured on demand.
+"$etlc" stored.etl -o inlined.hpp --namespace inlined --values boolean "${options[@]}" 100000000
+"$etlc" stored.etl -o stored.hpp --values boolean "${options[@]}" 0
+"$1" "${flags[@]}" -O1 -DSEEDS=6 "$here/stored/main.cpp" "$here/stored/inlined.cpp" -o boolean
+./boolean stored.targets.bin

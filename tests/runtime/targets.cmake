@@ -1,0 +1,2 @@
+# Files of targets, and the search in them.
+etlc_test(test_targets SOURCES test_targets.cpp LIBRARIES etlmon::etlmon)

@@ -1,0 +1,13 @@
+# A target set that is too large for a header on standard output; with a file of its own it is none.
+printf 'spec t;\ninput z : f32[3];\ntarget near = [[1, 2, 3], [4, 5, 6]];\npredicate at = min l2(z, near) <= 1;\nmonitor m = F at;\n' > t.etl
+"$ETLC" t.etl -o - --inline-targets 23
+echo "exit status $?"
+"$ETLC" t.etl -o - --inline-targets 24 > inlined.hpp
+echo "exit status $?"
+"$ETLC" t.etl -o - --inline-targets 23 --targets-file t.bin > stored.hpp
+echo "exit status $?; $(wc -c < t.bin) bytes"
+"$ETLC" t.etl -o t.hpp --inline-targets 23
+cmp t.targets.bin t.bin && echo "the same bytes beside t.hpp"
+mkdir t2.targets.bin
+"$ETLC" t.etl -o t2.hpp --inline-targets 23
+ls
