@@ -1,20 +1,14 @@
 #include "adaptive.hpp"
 
 #include <fmt/format.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <fstream>
 #include <limits>
 #include <sstream>
 
-#include "check/check.hpp"
 #include "check/provenance.hpp"
-#include "diag/render.hpp"
-#include "parse/parse.hpp"
+#include "loading.hpp"
 #include "random.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -33,15 +27,6 @@ std::string made_adaptive(const std::string& line, Random& random) {
     const double hi = std::max(lo + 1, literal + random.grid(0, 1.5, 0.25));
     return fmt::format("{} calibrated(adaptive, alpha = 0.25, gamma = {}, lo = {}, hi = {});", line.substr(0, blank),
                        random.word({"0.25", "0.5", "1"}), lo, hi);
-}
-
-std::optional<check::Model> checked(const std::string& text, const check::Options& options) {
-    const source::File file("adaptive.etl", text);
-    diag::Sink sink;
-    const ast::Spec spec = parse::parse(file, sink);
-    auto model = check::check(spec, file, options, sink);
-    if (!model) ADD_FAILURE() << diag::render_text(file, sink) << text;
-    return model;
 }
 
 thresholds::Entry entry(const check::Model& model, check::Index predicate, float start) {
@@ -92,9 +77,7 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
         if (line.starts_with("predicate ")) starts.push_back(std::stof(line.substr(line.find_last_of(' ') + 1)));
         result.text += (adaptive ? made_adaptive(line, random) : line) + "\n";
     }
-    check::Options options;
-    options.allow_uncalibrated = true;
-    const auto uncalibrated = checked(result.text, options);
+    const auto uncalibrated = load_uncalibrated(result.text);
     if (!uncalibrated) return result;
     thresholds::File file;
     file.spec = uncalibrated->name;
@@ -102,14 +85,7 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
         if (uncalibrated->predicates[p].threshold.adaptation)
             file.predicates[uncalibrated->predicates[p].name] = entry(*uncalibrated, p, starts[p]);
     result.thresholds = thresholds::write(file);
-
-    const auto path =
-        std::filesystem::temp_directory_path() / fmt::format("etlc-{}-{}.thresholds.json", ::getpid(), seed);
-    std::ofstream(path) << result.thresholds;
-    options.allow_uncalibrated = false;
-    options.thresholds_path = path.string();
-    result.model = checked(result.text, options);
-    std::filesystem::remove(path);
+    result.model = load_with_thresholds(result.text, result.thresholds);
     return result;
 }
 

@@ -1,7 +1,10 @@
 #include "loading.hpp"
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 
@@ -11,14 +14,39 @@
 
 namespace etlc::tests {
 
-std::optional<check::Model> load(const std::string& text, const std::string& path) {
+namespace {
+
+std::optional<check::Model> load(const std::string& text, const std::string& path, const check::Options& options) {
     const source::File file(path, text);
     diag::Sink sink;
     const ast::Spec spec = parse::parse(file, sink);
     std::optional<check::Model> model;
-    if (!sink.has_errors()) model = check::check(spec, file, {}, sink);
+    if (!sink.has_errors()) model = check::check(spec, file, options, sink);
     if (!model) ADD_FAILURE() << "the spec was refused:\n" << diag::render_text(file, sink) << text;
     return model;
+}
+
+}  // namespace
+
+std::optional<check::Model> load(const std::string& text, const std::string& path) {
+    return load(text, path, {});
+}
+
+std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds) {
+    check::Options options;
+    options.thresholds_path =
+        (std::filesystem::temp_directory_path() / fmt::format("etlc-{}.thresholds.json", ::getpid())).string();
+    std::ofstream(options.thresholds_path) << thresholds;
+    auto model = load(text, "test.etl", options);
+    std::filesystem::remove(options.thresholds_path);
+    return model;
+}
+
+std::optional<check::Model> load_uncalibrated(const std::string& text) {
+    check::Options options;
+    options.allow_uncalibrated = true;
+    options.allow_uncalibrated_monitors = true;
+    return load(text, "test.etl", options);
 }
 
 std::string read_text(const std::string& path) {

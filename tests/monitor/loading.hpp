@@ -11,6 +11,11 @@ namespace etlc::tests {
 
 std::optional<check::Model> load(const std::string& text, const std::string& path = "test.etl");
 
+/// The same where its thresholds file holds this JSON.
+std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds);
+/// Before there are thresholds: calibrated ones are NaN.
+std::optional<check::Model> load_uncalibrated(const std::string& text);
+
 /// The bytes of a file; fails the current test where it cannot be read.
 std::string read_text(const std::string& path);
 

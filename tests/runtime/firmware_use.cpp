@@ -1,4 +1,5 @@
 // Everything of the distance side that generated code may call, instantiated once: what does its object refer to?
+#include "etlmon/adaptation.hpp"
 #include "etlmon/expression.hpp"
 #include "etlmon/kernel.hpp"
 #include "etlmon/storage.hpp"
@@ -37,6 +38,7 @@ struct Inputs {
 etlmon::Measured distances(const float* z, int which);
 bool usable(const Inputs& in);
 void widen(const Inputs& in, float* to);
+void observe(float& threshold, const float& distance, bool truth, const etlmon::Adaptation& by);
 
 etlmon::Measured distances(const float* z, int which) {
     using namespace etlmon;
@@ -63,4 +65,9 @@ bool usable(const Inputs& in) {
 void widen(const Inputs& in, float* to) {
     etlmon::widen_f16(in.half.data(), to, kD);
     etlmon::widen_i8(in.small.data(), 0.5f, to, kD);
+}
+
+void observe(float& threshold, const float& distance, bool truth, const etlmon::Adaptation& by) {
+    if (truth) threshold = etlmon::adapted(threshold, etlmon::is_at_most(distance, threshold), by);
+    threshold = etlmon::restored(distance, threshold, by);
 }

@@ -122,6 +122,23 @@ TEST(Adaptation, WidensTheRangeOfItsPredicate) {
     EXPECT_EQ(checked.predicate("high").robustness.high, 3.0F);
 }
 
+/// A comparison that every threshold makes true is warned of, not one that only the start does.
+TEST(Adaptation, ConstantForEveryThreshold) {
+    const std::string path = std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json";
+    const auto codes = [&](const std::string& range, const std::string& lo) {
+        return Checked(
+                   "spec adaptive; input x : f32 in " + range +
+                       "; input y : f32; predicate low = x <= calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = " +
+                       lo + ", hi = 2); truth low = y < 1; monitor m = F low;",
+                   {path, false})
+            .codes();
+    };
+    EXPECT_EQ(codes("[0, 0.75]", "0.5"), "");
+    EXPECT_EQ(codes("[0, 0.75]", "0.75"), "W0301");
+    EXPECT_EQ(codes("[2, 3]", "0.5"), "");
+    EXPECT_EQ(codes("[2.5, 3]", "0.5"), "W0301");
+}
+
 }  // namespace
 
 }  // namespace etlc::check
