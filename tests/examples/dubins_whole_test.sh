@@ -1,0 +1,20 @@
+#!/usr/bin/env bash
+# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed; calibrated as wholes the monitors miss about as
+# often as they may, and are wrong the other way no more often than by the union bound.
+set -euo pipefail
+record=$1 etlc=$2 source=$3 compiler=$4
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+CXX=$compiler "$source/examples/dubins/whole.sh" "$etlc" "$record" "$folder" 1 >"$folder/printed"
+cat "$folder/printed" "$folder/1/whole.csv"
+awk -F, '
+    FNR > 1 { share = $5 / $4; other[$1 " " $2] = $6; ++rows }
+    # One set of 60 drives: coverage is drawn from a Beta, whose 5 % quantile is about 0.82, and 180 drives measure it.
+    FNR > 1 && share > ($1 == "whole" ? 0.3 : 0.2) { wrong = $1 " " $2 " misses too much" }
+    END {
+        if (rows != 4) wrong = "there are not four rows"
+        for (monitor in other) if (monitor ~ /^whole/) { by_union = monitor; sub(/whole/, "union", by_union); if (other[monitor] > other[by_union]) wrong = monitor " loses" }
+        if (other["whole sequential"] * 2 > other["union sequential"]) wrong = "sequential gains nothing"
+        if (wrong != "") { print wrong; exit 1 }
+    }' "$folder/1/whole.csv"
