@@ -189,7 +189,9 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
     const Bootstrap bootstrap(episodes.size());
     for (std::size_t i = 0; i < subject.labelled.size(); ++i) {
         result.predicates.push_back(predicate_score(bootstrap, episodes, i));
-        result.predicates.back().name = model.predicates[subject.labelled[i]].name;
+        const check::Predicate& predicate = model.predicates[subject.labelled[i]];
+        result.predicates.back().name = predicate.name;
+        result.predicates.back().adaptive = predicate.threshold.adaptation.has_value();
     }
     for (std::size_t m = 0; m < subject.monitors.size(); ++m) {
         const MonitorSubject& monitor = subject.monitors[m];

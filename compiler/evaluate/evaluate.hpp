@@ -39,6 +39,7 @@ struct Score {
 
 struct PredicateScore {
     std::string name;
+    bool adaptive = false;  ///< with the threshold that it starts with: nothing gives labels here
     Score frames;
     Figure auroc;                  ///< of the distance, whatever the threshold
     Figure coverage;               ///< of the episodes with a positive frame, those of which none is missed

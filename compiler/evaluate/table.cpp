@@ -87,6 +87,8 @@ std::string predicates_part(const Evaluation& evaluation) {
         rows[first].push_back(figure(p.auroc));
         rows[first].push_back(figure(p.coverage));
         add_remarks(remarks, p.name, p.frames.counts, "frames");
+        if (p.adaptive)
+            remarks += fmt::format("{}: with the threshold that it starts with; labels would move it\n", p.name);
         if (p.arrays > 0)
             remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n", p.name, p.arrays);
     }

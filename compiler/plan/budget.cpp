@@ -24,6 +24,7 @@ constexpr std::uint64_t kKeysPerValue = 2;
 constexpr std::uint64_t kCodePerValueOperation = 24;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
+constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P(), as a Cortex-M4 has it at -Os
 constexpr std::uint64_t kCodePerTable = 200;
 constexpr std::uint64_t kCodePerFold = 96;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
@@ -189,9 +190,9 @@ public:
 private:
     static Cost telemetry(const check::Predicate& predicate) {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
-        const std::uint64_t threshold = predicate.threshold.adaptation ? kWord : 0;
-        return {.state_bytes = (predicate.plain_distance() ? 2 * kWord : kWord) + threshold,
-                .code_bytes = kCodePerRing};
+        Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord, .code_bytes = kCodePerRing};
+        if (predicate.threshold.adaptation) cost = cost + Cost{.state_bytes = kWord, .code_bytes = kCodePerAdaptation};
+        return cost;
     }
 
     void predicate(Index index) {

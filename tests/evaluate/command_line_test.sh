@@ -46,6 +46,11 @@ SPEC
 "$etlc" evaluate groups.etl --data "$data/trace.h5" --episodes 'data/demo_*[0-9]' --map z=obs/z >groups.txt
 grep -q '^3 episodes, 21 frames' groups.txt || fail "$(cat groups.txt)"
 
+sed 's/<= 0.5;/<= calibrated(adaptive, alpha = 0.5, gamma = 0.1, lo = 0, hi = 4);/' dock.etl >adaptive.etl
+"$etlc" calibrate adaptive.etl --data episodes/[012].csv >calibrated.txt
+"$etlc" evaluate adaptive.etl --data episodes/[345].csv >adaptive.txt
+grep -q '^near: with the threshold that it starts with; labels would move it$' adaptive.txt || fail "$(cat adaptive.txt)"
+
 status=0
 "$etlc" evaluate dock.etl 2>err.txt || status=$?
 [ $status = 2 ] && grep -q -- --data err.txt || fail "no --data: $status, $(cat err.txt)"
