@@ -37,7 +37,10 @@ std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool boolean = context.boolean();
     std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version", "views"};
-    for (Index d : plan.distances) headers.insert(plan::stored_set(plan, d) == nullptr ? "kernel" : "targets");
+    for (Index d : plan.distances)
+        headers.insert(plan::stored_set(plan, d) == nullptr ? "kernel"
+                       : plan::searches(plan, d)            ? "search"
+                                                            : "targets");
     for (Index p : plan.predicates)
         if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
     if (!context.names.threshold_member.empty()) headers.insert("adaptation");
@@ -103,6 +106,11 @@ std::vector<Member> own_members(const Context& context) {
         const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
         result.push_back({fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold), held->second,
                           fmt::format("the last {} that was there", input.name), held->second + ".reset();", ""});
+    }
+    for (const auto& [d, name] : context.names.search_member) {
+        const check::Target& target = context.model.targets[context.model.distances[d].target];
+        result.push_back({fmt::format("etlmon::Search<{}, {}>", target.rows, target.dimension), name,
+                          "what it remembers of " + context.model.distances[d].text, name + ".reset();"});
     }
     const std::vector<Member> telemetry = telemetry_members(context);
     result.insert(result.end(), telemetry.begin(), telemetry.end());

@@ -144,6 +144,10 @@ std::string kernel_call(const Context& context, Index d, const std::string& z) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
     const auto weights = context.names.weight_array.find(d);
+    const auto search = context.names.search_member.find(d);
+    if (search != context.names.search_member.end())
+        return fmt::format("{}.nearest<etlmon::{}>({}, {} + targets::{})", search->second, plan::metric_name(distance),
+                           z, context.names.rows_member, context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
         return fmt::format("etlmon::measure_stored<etlmon::{}, {}, {}, {}>({}, {} + targets::{}{})",
                            plan::metric_name(distance), aggregation(distance), target.rows, target.dimension, z,

@@ -7,6 +7,7 @@
 
 #include "plan/budget.hpp"
 #include "plan/kernels.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::emit {
 
@@ -232,6 +233,7 @@ private:
             auto [entry, added] = arrays.try_emplace({distance.target, as_given});
             if (added) entry->second = constants_.claim(as_given ? target : target + "_unit");
             names_.target_array[d] = entry->second;
+            if (plan::searches(plan_, d)) names_.search_member[d] = member(members_, target + "_search");
             if (!distance.weights.empty()) names_.weight_array[d] = constants_.claim(target + "_weights");
         }
     }

@@ -61,6 +61,7 @@ struct Names {
     std::map<std::uint32_t, PendingNames> pending;
     std::map<std::size_t, std::string> verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
     std::map<std::size_t, std::string> open_local;      ///< per prefix monitor of a Boolean class: can still change
+    std::map<check::Index, std::string> search_member;  ///< per distance whose stored set is searched
     std::string rows_member;                            ///< the stored target sets
     std::string verdicts_member;                        ///< of a Boolean class: the last answers
     std::map<check::Index, std::string> target_array;   ///< per distance: its rows

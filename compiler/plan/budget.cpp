@@ -10,6 +10,7 @@
 #include "etlmon/verdict.hpp"
 #include "etlmon/window.hpp"
 #include "plan/register_program.hpp"
+#include "plan/stored.hpp"
 
 namespace etlc::plan {
 
@@ -181,7 +182,10 @@ public:
         for (Slot slot : streams_) sum = sum + cost_of(plan_.streams[slot], plan_.values);
         for (std::uint32_t index : readings_) sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
-        for (Index d : distances_) sum = sum + distance_cost(model, model.distances[d]);
+        for (Index d : distances_) {
+            sum = sum + distance_cost(model, model.distances[d]);
+            if (searches(plan_, d)) sum.state_bytes += search_bytes(model.targets[model.distances[d].target]);
+        }
         for (Index t : targets_) sum.constant_bytes += model.targets[t].values.size() * sizeof(float);
         for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
         return sum;

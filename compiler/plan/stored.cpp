@@ -5,6 +5,7 @@
 
 #include "etlmon/checksum.hpp"
 #include "etlmon/layout.hpp"
+#include "etlmon/search.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::plan {
@@ -57,6 +58,24 @@ const StoredSet* stored_set(const Plan& plan, Index d) {
         return set.target == distance.target && set.as_given == rows_as_given(distance);
     });
     return found == plan.stored.end() ? nullptr : &*found;
+}
+
+bool searches(const Plan& plan, Index d) {
+    const check::Distance& distance = plan.model->distances[d];
+    if (distance.aggregation != check::Aggregation::min || stored_set(plan, d) == nullptr) return false;
+    const std::uint32_t rows = plan.model->targets[distance.target].rows;
+    switch (metric_id(distance)) {
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
+    case etlmon::MetricId::id:                                   \
+        return etlmon::searches<etlmon::Type>(rows);
+#include "etlmon/distances.def"
+#undef DISTANCE
+    }
+    return false;
+}
+
+std::uint64_t search_bytes(const check::Target& target) {
+    return sizeof(float) * (target.dimension + std::uint64_t{etlmon::detail::blocks_of(target.rows)} + 2);
 }
 
 std::uint64_t stored_bytes(const Plan& plan) {

@@ -9,6 +9,7 @@
 #pragma once
 
 #include "etlmon/storage.hpp"
+#include "etlmon/reach.hpp"
 #include "etlmon/tally.hpp"
 
 #if defined(ETLMON_HAS_PACKS) && defined(__x86_64__)
@@ -41,6 +42,7 @@ namespace x86_64_v4 {
 #include "etlmon/tiles.inc"
 #include "etlmon/columns.inc"
 #include "etlmon/run.inc"
+#include "etlmon/search.inc"
 // clang-format on
 }  // namespace x86_64_v4
 #undef ETLMON_TARGET
@@ -61,6 +63,7 @@ namespace x86_64_v3 {
 #include "etlmon/tiles.inc"
 #include "etlmon/columns.inc"
 #include "etlmon/run.inc"
+#include "etlmon/search.inc"
 // clang-format on
 }  // namespace x86_64_v3
 #undef ETLMON_TARGET
@@ -95,6 +98,7 @@ namespace baseline {
 #include "etlmon/columns.inc"
 #endif
 #include "etlmon/run.inc"
+#include "etlmon/search.inc"
 // clang-format on
 }  // namespace baseline
 #undef ETLMON_TARGET
