@@ -198,6 +198,10 @@ class Monitor {
   using Key = etlmon::Key;
   using Reading = etlmon::Reading;
 
+ public:
+  // A step in two halves: step(in) is judge(measure(in)). They share no member that either changes, so one may
+  // interrupt the other; every measure() is followed by one judge() of what it gave, in the same order.
+
   /// What this step says about each predicate.
   struct Atoms {
     Value at_a{};
@@ -271,6 +275,8 @@ class Monitor {
     verdicts.sequential = etlmon::prefix_verdict(sequential);
     return verdicts;
   }
+
+ private:
 
   Value reach_;               // F at_a
   Value avoid_;               // G !near_c

@@ -78,6 +78,10 @@ class Monitor {
   using Key = etlmon::Key;
   using Reading = etlmon::Reading;
 
+ public:
+  // A step in two halves: step(in) is judge(measure(in)). They share no member that either changes, so one may
+  // interrupt the other; every measure() is followed by one judge() of what it gave, in the same order.
+
   /// What this step says about each predicate.
   struct Atoms {
     Value near_goal{};
@@ -114,6 +118,8 @@ class Monitor {
     verdicts.stays = etlmon::prefix_verdict(stays);
     return verdicts;
   }
+
+ private:
 
   Value stays_;                 // G near_goal
   etlmon::Measured near_goal_;  // telemetry

@@ -245,6 +245,22 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     out.line("uint32_t missing_steps() const noexcept { return missing_steps_; }");
 }
 
+/// measure() and judge(): public, and on disjoint members, for loops that do them at different times.
+void print_halves(Printer& out, const Context& context) {
+    out.label("public:");
+    out.line(
+        "// A step in two halves: step(in) is judge(measure(in)). They share no member that either changes, so one "
+        "may");
+    out.line("// interrupt the other; every measure() is followed by one judge() of what it gave, in the same order.");
+    out.line();
+    print_atoms(out, context);
+    print_measure(out, context);
+    out.line();
+    print_judge(out, context);
+    out.line();
+    out.label("private:");
+}
+
 void print_class(Printer& out, const Context& context) {
     const std::vector<Member> all = members(context);
     out.line("/// Every monitor of the spec, stepped together. Any number of instances; none of them shares anything.");
@@ -258,16 +274,13 @@ void print_class(Printer& out, const Context& context) {
     out.line("using Key = {};", boolean ? "bool" : "etlmon::Key");
     out.line("using Reading = etlmon::{};", boolean ? "BasicReading<Value>" : "Reading");
     out.line();
-    if (!boolean) print_atoms(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
     if (boolean) {
         print_advance(out, context);
-    } else {
-        print_measure(out, context);
         out.line();
-        print_judge(out, context);
+    } else {
+        print_halves(out, context);
     }
-    out.line();
     print_adaptation_constants(out, context);
     std::vector<std::pair<std::string, std::string>> lines;
     for (const Member& member : all)
