@@ -277,7 +277,6 @@ class Monitor {
   }
 
  private:
-
   Value reach_;               // F at_a
   Value avoid_;               // G !near_c
   Value sequential_met_;      // nothing is owed any more

@@ -8,8 +8,8 @@
 // ETLMON_NO_DISPATCH.
 #pragma once
 
-#include "etlmon/storage.hpp"
 #include "etlmon/reach.hpp"
+#include "etlmon/storage.hpp"
 #include "etlmon/tally.hpp"
 
 #if defined(ETLMON_HAS_PACKS) && defined(__x86_64__)
