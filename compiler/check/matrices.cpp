@@ -67,7 +67,7 @@ bool round_values(Context& c, const data::Array& array, const ast::Load& load, M
 
 std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::string& path) {
     c.dependencies.insert(path);
-    const auto array = data::read_array(path, load.key);
+    auto array = data::read_array(path, load.key);
     if (!array) {
         diag::Diagnostic diagnostic = data::in_file(array.failure(), path);
         diagnostic.span = load.span;
@@ -80,6 +80,7 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     matrix.rows = matrix.one_dimensional ? 1 : static_cast<std::uint32_t>(array->shape[0]);
     matrix.columns = static_cast<std::uint32_t>(array->shape.back());
     if (!round_values(c, *array, load, matrix)) return std::nullopt;
+    array->values = {};  // of a large set twice what is kept
     matrix.origin = origin_of(load);
     matrix.path = path;
     matrix.hash = data::content_hash({matrix.rows, matrix.columns}, matrix.values);

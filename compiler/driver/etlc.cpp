@@ -270,11 +270,12 @@ int parse_arguments(CLI::App& app, int argc, char** argv) {
     return -1;
 }
 
-/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output.
+/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check writes nothing, so any
+/// name does.
 void name_targets_file(Call& call) {
     call.targets_named = !call.targets_file.empty();
-    const std::filesystem::path header = call.output;
-    if (!call.targets_named && call.output != "-")
+    const std::filesystem::path header = call.check_only ? call.spec : call.output;
+    if (!call.targets_named && header != "-")
         call.targets_file = (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
     call.request.targets_file = std::filesystem::path(call.targets_file).filename().string();
 }
