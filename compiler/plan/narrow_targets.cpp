@@ -223,8 +223,8 @@ void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
     if (!plan.narrow.empty() || sink.has_errors()) return;
     sink.report(Code::targets_not_narrow, {}, fmt::format("--targets-as {} changes nothing here", word(storage)))
         .note(
-            "it is for distances that a predicate compares with a threshold as they are, not for expressions and "
-            "not for mahalanobis with full weights");
+            "it is for distances that a predicate compares with a threshold as they are, not for expressions, adaptive "
+            "thresholds or mahalanobis with full weights");
 }
 
 const NarrowSet* narrow_set(const Plan& plan, Index distance) {
