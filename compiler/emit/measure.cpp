@@ -205,8 +205,10 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
     const std::string averaged = distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set->rows) : "";
     print_wrapped(out, fmt::format("{} = etlmon::enclose<etlmon::{}>({}, {}, {}{});", into, plan::metric_name(distance),
                                    narrow_call(context, *set, z), float_literal(set->moved), set->dimension, averaged));
-    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {} = etlmon::exactly({});", into, cuts(context, *set),
-                                   into, wide_call(context, d, z)));
+    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, *set)));
+    out.indent();
+    print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
+    out.close();
 }
 
 /// `into = measure(...)`, only where the inputs are there.
