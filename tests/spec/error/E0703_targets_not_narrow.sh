@@ -18,4 +18,3 @@ predicate within = mahalanobis([[2, 0.5], [0.5, 1]])(z, a) <= 1;
 monitor m = F (contrast && within);
 END
 "$ETLC" expression.etl --targets-as f16 --check
-"$ETLC" expression.etl --targets-as f8 --check
