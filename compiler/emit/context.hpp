@@ -39,9 +39,6 @@ struct Context {
     bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
-    /// Measured on narrow rows, which leave it open within bounds; or on narrow rows that are the rows exactly.
-    bool enclosed(check::Index distance) const;
-    bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.

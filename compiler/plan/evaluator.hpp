@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "etlmon/enclosed.hpp"
+#include "etlmon/kernel.hpp"
 #include "etlmon/monoid.hpp"
 #include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
@@ -81,7 +81,6 @@ private:
     bool usable(const check::Input& input, const Sample& sample) const;
     void measure_distances();
     void measure_predicates();
-    etlmon::Enclosed measure(Index distance, const float* z);
     float expression(const check::Expr& e) const;
     void advance_streams();
     Value advance(const Stream& stream, StreamState& state) const;
@@ -102,7 +101,6 @@ private:
     std::vector<const float*> inputs_;          ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<etlmon::Measured> distances_;
-    std::vector<etlmon::Enclosed> enclosed_;  ///< per distance: the same, with what narrow targets leave open
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;  ///< per predicate

@@ -1,11 +1,10 @@
 // The measuring half of the evaluator: distances and expressions of one step, through the runtime's own kernels.
 #include <algorithm>
 
-#include "etlmon/dynamic_narrow.hpp"
+#include "etlmon/dynamic.hpp"
 #include "etlmon/expression.hpp"
 #include "plan/evaluator.hpp"
 #include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
 
 namespace etlc::plan {
 
@@ -22,13 +21,6 @@ etlmon::AggregationId aggregation_id(check::Aggregation aggregation) {
         case kth: break;
     }
     return etlmon::AggregationId::kth;
-}
-
-bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
-    return std::any_of(cuts.begin(), cuts.end(), [&](const Cut& cut) {
-        const etlmon::Cut one[] = {{cut.low, cut.high}};
-        return enclosed.doubtful(one);
-    });
 }
 
 }  // namespace
@@ -52,38 +44,17 @@ void Evaluator::measure_distances() {
         const bool present = std::all_of(distance.point.begin(), distance.point.end(),
                                          [&](Index input) { return inputs_[input] != nullptr; });
         distances_[d] = {etlmon::kMissing, 0};
-        enclosed_[d] = {};
         if (!present) continue;
         const float* z = inputs_[distance.point[0]];
         if (distance.point_is_vector) {
             for (std::size_t i = 0; i < distance.point.size(); ++i) points_[d][i] = *inputs_[distance.point[i]];
             z = points_[d].data();
         }
-        enclosed_[d] = measure(d, z);
-        distances_[d] = enclosed_[d].measured;
+        const check::Target& target = model_.targets[distance.target];
+        distances_[d] = etlmon::measure(metric_id(distance), aggregation_id(distance.aggregation), distance.kth, z,
+                                        prepared_[d].data(), target.rows, target.dimension, distance.weights.data(),
+                                        scratch_.data());
     }
-}
-
-/// On narrow rows where there are some; where these leave a comparison open, or there are none, on float32.
-etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
-    const check::Distance& distance = model_.distances[d];
-    const check::Target& target = model_.targets[distance.target];
-    const etlmon::MetricId metric = metric_id(distance);
-    const etlmon::AggregationId aggregation = aggregation_id(distance.aggregation);
-    if (const NarrowSet* set = narrow_set(plan_, d)) {
-        const etlmon::Measured narrow =
-            set->storage == Storage::f16
-                ? etlmon::measure(metric, aggregation, distance.kth, z, set->halves.data(), set->rows, set->dimension,
-                                  distance.weights.data(), scratch_.data())
-                : etlmon::measure_scaled(metric, aggregation, distance.kth, z, set->bytes.data(), set->scale, set->rows,
-                                         set->dimension, distance.weights.data(), scratch_.data());
-        if (set->lossless) return etlmon::exactly(narrow);
-        const etlmon::Enclosed enclosed =
-            etlmon::enclose(metric, aggregation, narrow, set->moved, set->rows, set->dimension);
-        if (!doubtful(enclosed, set->cuts)) return enclosed;
-    }
-    return etlmon::exactly(etlmon::measure(metric, aggregation, distance.kth, z, prepared_[d].data(), target.rows,
-                                           target.dimension, distance.weights.data(), scratch_.data()));
 }
 
 /// EXPR in float32, each operation rounded once; NaN where an operand is.

@@ -6,7 +6,6 @@
 #include <set>
 
 #include "plan/budget.hpp"
-#include "plan/narrow_targets.hpp"
 #include "plan/readings.hpp"
 #include "plan/refusal.hpp"
 #include "plan/stored.hpp"
@@ -83,11 +82,10 @@ public:
         return true;
     }
 
-    Plan finish(Storage targets_as, diag::Sink& sink) {
+    Plan finish() {
         drop_idle_streams();
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
-        narrow_targets(plan_, targets_as, sink);
         plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
                              std::any_of(plan_.streams.begin(), plan_.streams.end(),
                                          [](const Stream& stream) { return stream.op == StreamOp::within; });
@@ -152,13 +150,12 @@ private:
 
 }  // namespace
 
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values,
-                         Storage targets_as) {
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values) {
     Planning planning(program, limits, values);
     bool complete = true;
     for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;
-    Plan result = planning.finish(targets_as, sink);
+    Plan result = planning.finish();
     check_budget(result, program.graph, limits, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;

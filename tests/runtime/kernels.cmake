@@ -8,7 +8,7 @@ add_library(exact_distances STATIC exact.cpp)
 target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eigen)
 target_compile_options(exact_distances PRIVATE -O2)
 
-etlc_test(test_kernels SOURCES ${kernel_sources} test_kernel_versions.cpp test_kernel_narrow.cpp test_enclosed.cpp LIBRARIES exact_distances)
+etlc_test(test_kernels SOURCES ${kernel_sources} test_kernel_versions.cpp test_kernel_narrow.cpp LIBRARIES exact_distances)
 set_target_properties(test_kernels PROPERTIES CXX_STANDARD 17)
 target_compile_options(test_kernels PRIVATE ${kernel_warnings})
 
@@ -32,7 +32,7 @@ endif()
 etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
 set(all_kernel_sources ${kernel_sources})
-set(kernel_sources test_kernel_versions.cpp test_kernel_narrow.cpp test_enclosed.cpp test_expression.cpp test_views.cpp)
+set(kernel_sources test_kernel_versions.cpp test_kernel_narrow.cpp test_expression.cpp test_views.cpp)
 etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
 set(kernel_sources ${all_kernel_sources})
 
