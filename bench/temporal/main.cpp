@@ -47,18 +47,19 @@ std::string figure(const json& row, const char* name, int decimals) {
 }
 
 void print_head() {
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %7s %7s %7s %8s %7s\n", "formula", "plain", "rho", "verdict", "+-",
-                "rho/", "verd/", "rescan/", "plain,", "verd,", "worst", "state", "ops");
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %7s %7s %7s %8s %7s\n", "", "ns", "ns", "ns", "%", "plain", "rho",
-                "rho", "call ns", "call ns", "ns", "bytes", "");
+    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n", "formula", "plain", "rho", "verdict",
+                "+-", "rho/", "verd/", "rescan/", "copilot/", "plain,", "verd,", "worst", "state", "ops");
+    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n", "", "ns", "ns", "ns", "%", "plain",
+                "rho", "rho", "call ns", "call ns", "ns", "bytes", "");
 }
 
 void print(const json& row) {
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %7s %7s %7s %8s %7s\n", row["formula"].get<std::string>().c_str(),
-                figure(row, "plain_ns", 2).c_str(), figure(row, "robustness_ns", 2).c_str(),
-                figure(row, "verdict_ns", 2).c_str(), figure(row, "spread_percent", 0).c_str(),
-                figure(row, "robustness_to_plain", 2).c_str(), figure(row, "verdict_to_robustness", 2).c_str(),
-                figure(row, "rescan_to_robustness", 1).c_str(), figure(row, "plain_called_ns", 2).c_str(),
+    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n",
+                row["formula"].get<std::string>().c_str(), figure(row, "plain_ns", 2).c_str(),
+                figure(row, "robustness_ns", 2).c_str(), figure(row, "verdict_ns", 2).c_str(),
+                figure(row, "spread_percent", 0).c_str(), figure(row, "robustness_to_plain", 2).c_str(),
+                figure(row, "verdict_to_robustness", 2).c_str(), figure(row, "rescan_to_robustness", 1).c_str(),
+                figure(row, "copilot_to_robustness", 1).c_str(), figure(row, "plain_called_ns", 2).c_str(),
                 figure(row, "verdict_called_ns", 2).c_str(), figure(row, "worst_step_ns", 0).c_str(),
                 figure(row, "state_bytes", 0).c_str(), figure(row, "operations", 0).c_str());
     std::fflush(stdout);
@@ -66,7 +67,7 @@ void print(const json& row) {
 
 json measured(const Row& row, bench::Effort effort) {
     std::vector<Routine> routines{row.rho, row.verdict, row.called};
-    for (const std::optional<Routine>& more : {row.plain, row.plain_called, row.rescan})
+    for (const std::optional<Routine>& more : {row.plain, row.plain_called, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
     const Series& rho = series[0];
@@ -88,7 +89,11 @@ json measured(const Row& row, bench::Effort effort) {
     }
     if (row.rescan) {
         result["rescan_ns"] = series[next].median();
-        result["rescan_to_robustness"] = bench::ratio(series[next], rho);
+        result["rescan_to_robustness"] = bench::ratio(series[next++], rho);
+    }
+    if (row.copilot) {
+        result["copilot_ns"] = series[next].median();
+        result["copilot_to_robustness"] = bench::ratio(series[next], rho);
     }
     return result;
 }

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "cases.hpp"
+#include "copilot/copilot.hpp"
 #include "etlmon/verdict.hpp"
 #include "timing.hpp"
 
@@ -28,6 +29,7 @@ struct Row {
     std::uint32_t operations = 0;
     std::optional<Routine> plain, rescan;  ///< robustness by hand
     std::optional<Routine> plain_called;   ///< the same, its state in memory between steps
+    std::optional<Routine> copilot;        ///< Copilot's monitor, whose state is in memory too
     Routine rho;                           ///< the monitor; its user reads `robustness` alone
     Routine verdict;                       ///< its user reads all of the verdict
     Routine called;                        ///< the same, its state in memory between steps
@@ -63,6 +65,11 @@ template <class ByHand, std::size_t kMonitors, bool kCalled>
     }
 }
 
+[[gnu::noinline]] inline void by_copilot(CopilotStep step, const Signals& signals, std::size_t from,
+                                         float* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i) out[i] = step(signals, from + i);
+}
+
 /// Goes over all steps, chunk by chunk, with something that takes a chunk.
 template <class Result, class State, class Chunk>
 Routine routine(const std::string& name, std::size_t monitors, const std::shared_ptr<const Signals>& signals,
@@ -82,20 +89,42 @@ Routine routine(const std::string& name, std::size_t monitors, const std::shared
 
 /// Stops where two that are compared do not compute the same.
 template <class Case, class ByHand>
-void check(const Signals& signals) {
+void check(const Signals& signals, ByHand& by_hand) {
     const auto monitor = std::make_unique<typename Case::Monitor>();
-    const auto by_hand = std::make_unique<ByHand>();
     monitor->reset();
-    by_hand->reset();
+    by_hand.reset();
     float rho[Case::kMonitors];
     for (std::size_t i = 0; i < signals.size(); ++i) {
-        by_hand->step(signals, i, rho);
+        by_hand.step(signals, i, rho);
         Case::visit(monitor->step(Case::inputs(signals, i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
             if (verdict.decided() && verdict.robustness != rho[m])
-                throw std::logic_error(std::string(Case::kTitle) + ": the loop by hand disagrees at step " +
+                throw std::logic_error(std::string(Case::kTitle) + ": what it is compared with disagrees at step " +
                                        std::to_string(i));
         });
     }
+}
+
+/// Copilot's monitor of the formula, if it has one; stops where it does not compute the same.
+template <class Case>
+std::optional<Routine> copilot_routine(const std::shared_ptr<const Signals>& signals) {
+    const auto step = copilot_step(Case::kTitle);
+    if (!step) return std::nullopt;
+    struct Stepped {
+        CopilotStep one;
+        void reset() {}
+        void step(const Signals& of, std::size_t i, float* rho) { *rho = one(of, i); }
+    };
+    Stepped stepped{*step};
+    check<Case>(*signals, stepped);
+    const auto results = std::make_shared<std::vector<float>>(kChunk);
+    return Routine{"copilot",
+                   [=] {
+                       for (std::size_t from = 0; from < kSteps; from += kChunk) {
+                           by_copilot(*step, *signals, from, results->data());
+                           settle_memory();
+                       }
+                   },
+                   kSteps};
 }
 
 template <class Case>
@@ -122,16 +151,17 @@ Row row() {
     result.operations = Monitor::kOperations;
     if constexpr (!std::is_same_v<typename Case::Plain, NoRescanning>) {
         using Plain = typename Case::Plain;
-        check<Case, Plain>(*signals);
+        check<Case>(*signals, *std::make_unique<Plain>());
         result.plain = routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>);
         result.plain_called =
             routine<float, Plain>("plain, called", kMonitors, signals, by_hand<Plain, kMonitors, true>);
     }
     if constexpr (!std::is_same_v<typename Case::Rescanning, NoRescanning>) {
         using Rescanning = typename Case::Rescanning;
-        check<Case, Rescanning>(*signals);
+        check<Case>(*signals, *std::make_unique<Rescanning>());
         result.rescan = routine<float, Rescanning>("rescan", kMonitors, signals, by_hand<Rescanning, kMonitors, false>);
     }
+    result.copilot = copilot_routine<Case>(signals);
     result.rho = routine<float, Monitor>("robustness", kMonitors, signals, read_robustness<Case>);
     result.verdict = routine<etlmon::Verdict, Monitor>("verdict", kMonitors, signals, read_verdict<Case, false>);
     result.called = routine<etlmon::Verdict, Monitor>("verdict, called", kMonitors, signals, read_verdict<Case, true>);
