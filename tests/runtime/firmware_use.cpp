@@ -58,8 +58,8 @@ etlmon::Measured distances(const float* z, int which) {
 }
 
 bool usable(const Inputs& in) {
-    return present(in.z) && present(in.half) && present(in.small) && etlmon::present_scalar(in.x, 0.0f, 1.0f) &&
-           present(in.on) && in.on.value();
+    return present(in.z) && present(in.half) && present(in.small) &&
+           !etlmon::is_nan(etlmon::accept(in.x, 0.0f, 1.0f)) && present(in.on) && in.on.value();
 }
 
 void widen(const Inputs& in, float* to) {

@@ -32,7 +32,7 @@ endif()
 etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
 set(all_kernel_sources ${kernel_sources})
-set(kernel_sources test_kernel_versions.cpp test_kernel_narrow.cpp test_expression.cpp test_views.cpp)
+set(kernel_sources test_kernel_versions.cpp test_expression.cpp test_views.cpp)
 etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
 set(kernel_sources ${all_kernel_sources})
 

@@ -114,12 +114,12 @@ static_assert(kWindowFits<etlmon::Until<Bits>, 4> && kWindowFits<etlmon::Release
 static_assert(kWindowFits<etlmon::Greatest<narrow::Byte>, 2> && kWindowFits<etlmon::Trigger<narrow::Byte>, 7>);
 static_assert(kDelayFits<Key, 1> && kDelayFits<Value, 7> && kDelayFits<narrow::Byte, 1> && kDelayFits<narrow::Byte, 6>);
 static_assert(sizeof(etlmon::Window<etlmon::Greatest<Key>, 1001>) == 4 + 4 * 1002);
-static_assert(sizeof(etlmon::Window<etlmon::Since<Value>, 100>) == 2 * (4 + 8 * 102));
+static_assert(sizeof(etlmon::Window<etlmon::Since<Value>, 100>) == 4 + 12 + 2 * 8 * 102);
 static_assert(sizeof(etlmon::Widening<etlmon::Greatest<Key>, 50, 80>) == 4 + 4 * 30);
 
 TEST(TemporalCost, BytesAreThoseOfTheMembers) {
     EXPECT_EQ(etlmon::window_bytes<etlmon::Greatest<Key>>(1001), 4u + 4u * 1002u);
-    EXPECT_EQ(etlmon::window_bytes<etlmon::Since<Value>>(100), 2u * (4u + 8u * 102u));
+    EXPECT_EQ(etlmon::window_bytes<etlmon::Since<Value>>(100), 4u + 12u + 2u * 8u * 102u);
     EXPECT_EQ(etlmon::delay_bytes<Value>(50), 4u + 8u * 50u);
 }
 

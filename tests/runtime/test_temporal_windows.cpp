@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "temporal_streams.hpp"
 
@@ -92,6 +93,51 @@ TYPED_TEST(TemporalWindow, ClassesAndReset) {
     EXPECT_EQ((first_mismatch_of_class<TypeParam, 3>()), kNone);
     EXPECT_EQ((first_mismatch_of_class<TypeParam, 6>()), kNone);
     EXPECT_EQ((first_mismatch_of_class<TypeParam, 101>()), kNone);
+}
+
+// ---- pairs of keys, whose highs are only kept up where they differ from the lows
+
+/// Random pairs whose ends are the same but for bursts, after `quiet` steps of none, in which one in `rarity` differs.
+Streams<Value> with_bursts(size_t length, uint32_t quiet, uint32_t rarity, uint32_t seed) {
+    Streams<Value> streams = random_streams<Value>(length, seed);
+    std::mt19937 random(seed + 1);
+    const auto close = [&](Value& value, size_t i) {
+        const bool burst = i / quiet % 2 == 1;
+        if (!burst || random() % rarity != 0) value.high = value.low;
+    };
+    for (size_t i = 0; i < length; ++i) {
+        close(streams.g[i], i);
+        close(streams.f[i], i);
+    }
+    return streams;
+}
+
+template <class Case, uint32_t N>
+void expect_bursts() {
+    const auto window = std::make_unique<etlmon::Window<typename Case::Monoid, N>>();
+    static_assert(sizeof(*window) == etlmon::window_bytes<typename Case::Monoid>(N), "as the budget says");
+    for (const uint32_t quiet : {1u, N / 2 + 1, N, 2 * N + 3})
+        for (const uint32_t rarity : {1u, 3u, N + 1}) {
+            window->reset();
+            const auto streams = with_bursts(9 * N + 20, quiet, rarity, N + 100 * quiet + rarity);
+            EXPECT_EQ(first_mismatch<Case>(*window, N, streams, kEveryStep), kNone)
+                << N << " " << quiet << " " << rarity;
+        }
+}
+
+template <class Case, uint32_t... N>
+void expect_bursts_of(std::integer_sequence<uint32_t, N...>) {
+    (expect_bursts<Case, N + 1>(), ...);
+}
+
+template <class Case>
+class TemporalPairWindow : public testing::Test {};
+TYPED_TEST_SUITE(TemporalPairWindow, CasesOf<Value>, temporal::CaseNames);
+
+TYPED_TEST(TemporalPairWindow, HighsPartFromLowsAndMeetAgain) {
+    expect_bursts_of<TypeParam>(std::make_integer_sequence<uint32_t, 14>());
+    expect_bursts<TypeParam, 40>();
+    expect_bursts<TypeParam, 101>();
 }
 
 template <class Case>

@@ -109,21 +109,21 @@ TEST(Views, OneElementThatIsNotFiniteIsMissing) {
 
 TEST(Views, ScalarsAreFiniteAndInRange) {
     for (const std::uint32_t b : kNotFinite) {
-        EXPECT_FALSE(etlmon::present_scalar(from_bits(b))) << b;
-        EXPECT_FALSE(etlmon::present_scalar(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000))) << b;
+        EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(b)))) << b;
+        EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000)))) << b;
     }
     for (const std::uint32_t b : kFinite) {
-        EXPECT_TRUE(etlmon::present_scalar(from_bits(b))) << b;
-        EXPECT_TRUE(etlmon::present_scalar(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000))) << b;
+        EXPECT_FALSE(etlmon::is_nan(etlmon::accept(from_bits(b)))) << b;
+        EXPECT_FALSE(etlmon::is_nan(etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000)))) << b;
     }
-    EXPECT_TRUE(etlmon::present_scalar(0.0F, -0.0F, 1.0F));
-    EXPECT_TRUE(etlmon::present_scalar(-0.0F, 0.0F, 1.0F));
-    EXPECT_TRUE(etlmon::present_scalar(1.0F, 0.0F, 1.0F));
-    EXPECT_FALSE(etlmon::present_scalar(1.00000012F, 0.0F, 1.0F));
-    EXPECT_FALSE(etlmon::present_scalar(from_bits(0x80000001), 0.0F, 1.0F)) << "a negative denormal";
-    EXPECT_FALSE(etlmon::present_scalar(-3.0F, -2.0F, -1.0F));
-    EXPECT_TRUE(etlmon::present_scalar(-1.5F, -2.0F, -1.0F));
-    EXPECT_FALSE(etlmon::present_scalar(kMissing));
+    EXPECT_FALSE(etlmon::is_nan(etlmon::accept(0.0F, -0.0F, 1.0F)));
+    EXPECT_FALSE(etlmon::is_nan(etlmon::accept(-0.0F, 0.0F, 1.0F)));
+    EXPECT_FALSE(etlmon::is_nan(etlmon::accept(1.0F, 0.0F, 1.0F)));
+    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(1.00000012F, 0.0F, 1.0F)));
+    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(0x80000001), 0.0F, 1.0F))) << "a negative denormal";
+    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(-3.0F, -2.0F, -1.0F)));
+    EXPECT_FALSE(etlmon::is_nan(etlmon::accept(-1.5F, -2.0F, -1.0F)));
+    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(kMissing)));
     EXPECT_TRUE(etlmon::is_nan(kMissing));
 }
 

@@ -21,6 +21,13 @@
 #define ETLMON_COLD
 #endif
 
+// What each step calls: where speed counts, part of the caller; where size counts, there once for all callers.
+#if defined(__OPTIMIZE_SIZE__)
+#define ETLMON_STEP inline
+#else
+#define ETLMON_STEP ETLMON_INLINE
+#endif
+
 namespace etlmon {
 
 /// What a sample that is not there looks like: a quiet NaN.
@@ -80,10 +87,11 @@ ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
   return x;
 }
 
-/// An integer that orders floats by value, given their bits; -0 and +0 are one; not for NaN.
+/// An integer that orders floats by value, given their bits; -0 and +0 are one; not for NaN. Without a branch, since
+/// the signs of robustness are what no processor predicts.
 ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
-  const int32_t magnitude = static_cast<int32_t>(bits & ~kSignBit);
-  return (bits & kSignBit) != 0 ? -magnitude : magnitude;
+  const uint32_t negative = 0u - (bits >> 31);  // all ones, or none
+  return static_cast<int32_t>(((bits & ~kSignBit) ^ negative) - negative);
 }
 
 /// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed finite.
@@ -103,6 +111,26 @@ ETLMON_INLINE float rounded(float x) noexcept {
   x = kept;
 #endif
   return x;
+}
+
+/// Two floats as two that nothing is known of, not even whether they are the same: under -ffast-math x - x is 0 and
+/// x / x is 1, whatever x is.
+ETLMON_INLINE void part(float& x, float& y) noexcept {
+#if defined(__GNUC__) && defined(__SSE__)
+  __asm__("" : "+x"(x), "+x"(y));
+#elif defined(__GNUC__) && defined(__aarch64__)
+  __asm__("" : "+w"(x), "+w"(y));
+#elif defined(__GNUC__) && defined(__arm__) && defined(__ARM_FP)
+  __asm__("" : "+t"(x), "+t"(y));
+#elif defined(__GNUC__) && defined(__riscv_flen)
+  __asm__("" : "+f"(x), "+f"(y));
+#elif defined(__GNUC__)
+  __asm__("" : "+m"(x), "+m"(y));
+#else
+  volatile float kept_x = x, kept_y = y;
+  x = kept_x;
+  y = kept_y;
+#endif
 }
 
 /// sqrt of a finite float that is not negative.

@@ -6,12 +6,14 @@
 
 #include <stdint.h>
 
+#include "etlmon/bits.hpp"
+
 namespace etlmon {
 
 /// One step of a delay by n >= 1 over caller-owned storage of n values, all set to the fill at first; cursor starts at
 /// 0.
 template <class V>
-V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noexcept {
+ETLMON_STEP V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noexcept {
   const V past = storage[cursor];
   storage[cursor] = value;
   cursor = cursor + 1 == n ? 0 : cursor + 1;
@@ -32,7 +34,7 @@ class Delay {
   }
 
   /// Takes this step's value, gives that of N pushes ago.
-  V push(V value) noexcept { return delay_push(values_, cursor_, N, value); }
+  ETLMON_STEP V push(V value) noexcept { return delay_push(values_, cursor_, N, value); }
 
  private:
   uint32_t cursor_;

@@ -14,13 +14,15 @@ namespace etlmon {
 
 ETLMON_INLINE float add(float a, float b) noexcept { return detail::rounded(detail::rounded(a) + detail::rounded(b)); }
 ETLMON_INLINE float subtract(float a, float b) noexcept {
-  return detail::rounded(detail::rounded(a) - detail::rounded(b));
+  detail::part(a, b);
+  return detail::rounded(a - b);
 }
 ETLMON_INLINE float multiply(float a, float b) noexcept {
   return detail::rounded(detail::rounded(a) * detail::rounded(b));
 }
 ETLMON_INLINE float divide(float a, float b) noexcept {
-  return detail::rounded(detail::rounded(a) / detail::rounded(b));
+  detail::part(a, b);
+  return detail::rounded(a / b);
 }
 
 ETLMON_INLINE float negate(const float& x) noexcept { return detail::from_bits(detail::observe(x) ^ detail::kSignBit); }

@@ -6,6 +6,8 @@
 
 #include <stdint.h>
 
+#include "etlmon/bits.hpp"
+
 namespace etlmon {
 
 /// D elements of T (float, or uint32_t for a flag), held for at most N steps in a row.
@@ -24,6 +26,13 @@ class Hold {
     if (age_ == N) return nullptr;
     ++age_;
     return values_;
+  }
+
+  /// The same for a scalar, which is missing where it is NaN.
+  ETLMON_INLINE float take(const float& sample) noexcept {
+    static_assert(D == 1, "one number");
+    const float* const taken = take(is_nan(sample) ? nullptr : &sample);
+    return taken != nullptr ? *taken : detail::from_bits(detail::kMissingBits);
   }
 
  private:

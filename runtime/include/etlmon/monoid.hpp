@@ -99,5 +99,7 @@ constexpr Span<Key> high_of(Span<Value> s) noexcept { return {s.value.high, s.gu
 constexpr Span<Value> pair_of(Span<Key> low, Span<Key> high) noexcept {
   return {{low.value, high.value}, {low.guard, high.guard}};
 }
+constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
+constexpr bool same_ends(Span<Value> s) noexcept { return same_ends(s.value) && same_ends(s.guard); }
 
 }  // namespace etlmon

@@ -25,8 +25,9 @@ ETLMON_INLINE Key key_of(const float& robustness) noexcept { return detail::orde
 
 /// The float of a key; 0 is +0.
 ETLMON_INLINE float float_of(Key key) noexcept {
-  const uint32_t magnitude = static_cast<uint32_t>(key < 0 ? -key : key);
-  return float_of_bits(key < 0 ? magnitude | detail::kSignBit : magnitude);
+  const uint32_t bits = static_cast<uint32_t>(key);
+  const uint32_t negative = 0u - (bits >> 31);
+  return float_of_bits(((bits ^ negative) - negative) | (bits & detail::kSignBit));
 }
 
 constexpr Key kTop = 0x7f800000;      ///< +inf: true

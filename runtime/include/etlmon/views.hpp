@@ -143,13 +143,17 @@ ETLMON_INLINE bool present(const Vector<T, D>& x) noexcept {
 
 ETLMON_INLINE constexpr bool present(const Flag& x) noexcept { return x.present(); }
 
-/// The scalar is there: finite.
-ETLMON_INLINE bool present_scalar(const float& x) noexcept { return is_finite(x); }
+/// The scalar; kMissing unless it is finite.
+ETLMON_INLINE float accept(const float& x) noexcept {
+  return detail::from_bits(is_finite(x) ? detail::observe(x) : detail::kMissingBits);
+}
 
-/// The scalar is there: finite and in [low, high]; either bound may be infinite.
-ETLMON_INLINE bool present_scalar(const float& x, const float& low, const float& high) noexcept {
+/// The scalar; kMissing unless it is finite and in [low, high]. Either bound may be infinite.
+ETLMON_INLINE float accept(const float& x, const float& low, const float& high) noexcept {
   const int32_t at = detail::ordered(detail::observe(x));
-  return is_finite(x) && detail::ordered(detail::observe(low)) <= at && at <= detail::ordered(detail::observe(high));
+  const bool inside =
+      is_finite(x) && detail::ordered(detail::observe(low)) <= at && at <= detail::ordered(detail::observe(high));
+  return detail::from_bits(inside ? detail::observe(x) : detail::kMissingBits);
 }
 
 }  // namespace etlmon

@@ -17,13 +17,6 @@
 #include "etlmon/delay.hpp"
 #include "etlmon/monoid.hpp"
 
-// Where speed counts, the length is folded into each window's step; where size counts, all lengths share one.
-#if defined(__OPTIMIZE_SIZE__)
-#define ETLMON_WINDOW_STEP
-#else
-#define ETLMON_WINDOW_STEP ETLMON_INLINE
-#endif
-
 namespace etlmon {
 
 /// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
@@ -50,8 +43,8 @@ constexpr typename Monoid::Element window_total(typename Monoid::Element oldest,
 /// One step of a window over the last n >= 1 elements: the combination of those, this one included.
 /// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring that this step fills.
 template <class Monoid>
-ETLMON_WINDOW_STEP typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n,
-                                                        typename Monoid::Element element) noexcept {
+ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n,
+                                                 typename Monoid::Element element) noexcept {
   using Element = typename Monoid::Element;
   if (n == 1) return element;
   const bool odd = n % 2 != 0;
@@ -99,23 +92,90 @@ class Window {
   Element storage_[window_elements(N)];
 };
 
-/// Over pairs of keys: the lows and the highs never meet, and as two windows they stay in scalar registers, where one
-/// window over pairs makes compilers pack and unpack them (1.5 to 2 times slower on x86-64).
+/// Where the highs of a window over pairs part from its lows: per block the first slot whose ends differ, kNowhere
+/// where all are the same. From that slot on the block's elements, in the oldest block its whole suffix table, stand
+/// among the highs; before it, and in the other blocks, the lows are the highs too.
+struct Parting {
+  static constexpr uint32_t kNowhere = 0xffffffffu;
+  uint32_t newest, middle, oldest;
+
+  void reset() noexcept { newest = middle = oldest = kNowhere; }
+  bool nowhere() const noexcept { return (newest & middle & oldest) == kNowhere; }
+  /// The newest block is full: every block is one older.
+  void next_block() noexcept {
+    oldest = middle == kNowhere ? kNowhere : 0;
+    middle = newest;
+    newest = kNowhere;
+  }
+};
+
+/// The highs' step of a window over pairs of keys, where they part from the lows; to be done before the lows' step.
+/// Both storages as in window_push; step by step the same, but for what is still read among the lows.
+template <class Ends>
+typename Ends::Element window_push_highs(const typename Ends::Element* lows, typename Ends::Element* highs,
+                                         Parting& parting, uint32_t cursor, uint32_t n, typename Ends::Element element,
+                                         bool parts) noexcept {
+  using Element = typename Ends::Element;
+  constexpr uint32_t kNowhere = Parting::kNowhere;
+  const bool odd = n % 2 != 0;
+  const uint32_t slots = n & ~uint32_t{1};
+  const auto suffix = [&](uint32_t slot) noexcept { return (parting.oldest == kNowhere ? lows : highs)[2 + slot]; };
+  const auto middle = [&]() noexcept { return (parting.middle == kNowhere ? lows : highs)[0]; };
+
+  const Element total = Ends::combine((parting.newest == kNowhere ? lows : highs)[1], element);
+  if (parts && parting.newest == kNowhere) parting.newest = cursor;
+  Element aggregate = total;
+  if (odd) aggregate = window_total<Ends>(suffix(cursor), middle(), total);
+  highs[2 + cursor] = element;
+  uint32_t next = cursor + 1;
+  if (n < 4 || next == slots / 2 || next == slots) {
+    if (next == slots) next = 0;
+    highs[0] = total;
+    parting.next_block();
+    if (!odd) aggregate = Ends::combine(suffix(next), total);
+  } else {
+    highs[1] = total;
+    const uint32_t built = slots - 1 - next;
+    if (parting.middle != kNowhere)
+      highs[2 + built] = Ends::combine((built < parting.middle ? lows : highs)[2 + built], highs[3 + built]);
+    if (!odd) aggregate = window_total<Ends>(suffix(next), middle(), total);
+  }
+  return aggregate;
+}
+
+/// Over pairs of keys. The lows and the highs never meet: these are two windows. While no sample in them is missing
+/// they are the same window twice, and only that of the lows is kept up.
 template <template <class> class Operator, uint32_t N>
 class Window<Operator<Value>, N> {
  public:
   using Element = typename Operator<Value>::Element;
 
   void reset() noexcept {
-    low_.reset();
-    high_.reset();
+    window_reset<Ends>(lows_, cursor_, N);
+    parting_.reset();
   }
 
-  Element push(Element element) noexcept { return pair_of(low_.push(low_of(element)), high_.push(high_of(element))); }
+  ETLMON_STEP Element push(Element element) noexcept {
+    if (N == 1) return element;
+    if (!same_ends(element) || !parting_.nowhere()) return push_apart(low_of(element), high_of(element));
+    const EndElement both = window_push<Ends>(lows_, cursor_, N, low_of(element));
+    return pair_of(both, both);
+  }
 
  private:
-  Window<Operator<Key>, N> low_;
-  Window<Operator<Key>, N> high_;
+  using Ends = Operator<Key>;
+  using EndElement = typename Ends::Element;
+
+  ETLMON_COLD Element push_apart(EndElement low, EndElement high) noexcept {
+    const bool parts = !same_ends(pair_of(low, high));
+    const EndElement highs = window_push_highs<Ends>(lows_, highs_, parting_, cursor_, N, high, parts);
+    return pair_of(window_push<Ends>(lows_, cursor_, N, low), highs);
+  }
+
+  uint32_t cursor_;
+  Parting parting_;
+  EndElement lows_[window_elements(N)];
+  EndElement highs_[window_elements(N)];  ///< written before they are read
 };
 
 /// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one combination and a delay by
@@ -133,7 +193,7 @@ class Widening {
   void reset() noexcept { past_.reset(Monoid::identity()); }
 
   /// Takes this step's aggregate of the last M, gives that of the last N.
-  Element push(Element aggregate) noexcept { return Monoid::combine(past_.push(aggregate), aggregate); }
+  ETLMON_STEP Element push(Element aggregate) noexcept { return Monoid::combine(past_.push(aggregate), aggregate); }
 
  private:
   Delay<Element, N - M> past_;
@@ -148,7 +208,11 @@ struct WindowBytes {
 
 template <template <class> class Operator>
 struct WindowBytes<Operator<Value>> {
-  static constexpr uint32_t of(uint32_t n) noexcept { return 2 * WindowBytes<Operator<Key>>::of(n); }
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    using Element = typename Operator<Key>::Element;
+    return storage_bytes(2 * window_elements(n) * static_cast<uint32_t>(sizeof(Element))) +
+           static_cast<uint32_t>(sizeof(Parting));
+  }
 };
 
 /// sizeof(Window<Monoid, n>).
