@@ -94,6 +94,12 @@ std::string Context::literal(plan::Key key) const {
     return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
 }
 
+std::string_view Context::step_qualifier() const {
+    constexpr std::uint64_t kFewOperations = 64;
+    const bool small = plan.cost.distance_operations == 0 && plan.cost.operations <= kFewOperations;
+    return small ? "ETLMON_INLINE " : "";
+}
+
 std::string Context::literal(plan::Value value) const {
     if (value.low == value.high && value.low == etlmon::kTop) return spelling.yes;
     if (value.low == value.high && value.low == etlmon::kBottom) return spelling.no;

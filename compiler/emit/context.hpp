@@ -39,6 +39,8 @@ struct Context {
     bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
+    /// How the functions of a step are declared: where a call would cost as much as they do, part of the caller's loop.
+    std::string_view step_qualifier() const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
@@ -78,6 +80,8 @@ void print_judge(Printer& out, const Context& context);
 /// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is judged.
 void print_advance(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
+/// The formula that a stream is; of one in between, what it holds; empty where its code says that.
+std::string stream_text(const ir::Graph& graph, const plan::Stream& stream);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);

@@ -27,12 +27,6 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
     });
 }
 
-/// A response over several steps.
-bool waits(const plan::Reading& reading) {
-    const plan::Response& response = reading.response;
-    return reading.kind == plan::Reading::Kind::response && response.keeps_pending() && response.patience() > 1;
-}
-
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool boolean = context.boolean();
@@ -53,8 +47,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
         headers.insert("shift");
     if (any_stream(plan, {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since, StreamOp::window_trigger,
-                          StreamOp::window_until, StreamOp::window_release}) ||
-        std::any_of(plan.readings.begin(), plan.readings.end(), waits))
+                          StreamOp::window_until, StreamOp::window_release}))
         headers.insert(boolean ? "boolean_window" : "window");
     if (!context.names.table_locals.empty()) headers.insert("machine");
     if (!context.names.pending.empty()) headers.insert("pending");
@@ -168,7 +161,7 @@ void print_atoms(Printer& out, const Context& context) {
 }
 
 void print_boolean_step(Printer& out, const Context& context) {
-    out.open("Verdicts step(const Inputs& in) noexcept {");
+    out.open(fmt::format("{}Verdicts step(const Inputs& in) noexcept {{", context.step_qualifier()));
     for (const Member& member : telemetry_members(context)) out.line(member.reset);
     out.line("return advance(in);");
     out.close();
@@ -217,7 +210,8 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     if (context.boolean())
         print_boolean_step(out, context);
     else
-        out.line("Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }");
+        out.line("{}Verdicts step(const Inputs& in) noexcept {{ return judge(measure(in)); }}",
+                 context.step_qualifier());
     out.line();
     if (context.plan.has_sliding) {
         out.line(

@@ -77,7 +77,7 @@ void print_advance(Printer& out, const Context& context) {
         "/// One step of every formula: min is \"and\", max is \"or\". A predicate is measured when a verdict that "
         "can");
     out.line("/// still change first depends on it; min and max ask from left to right and stop where one decides.");
-    out.open(fmt::format("Verdicts advance({}const Inputs& in) noexcept {{",
+    out.open(fmt::format("{}Verdicts advance({}const Inputs& in) noexcept {{", context.step_qualifier(),
                          plan.inputs.empty() ? "[[maybe_unused]] " : ""));
     out.line("using etlmon::max;");
     out.line("using etlmon::min;");
@@ -105,7 +105,8 @@ void print_judge(Printer& out, const Context& context) {
         "/// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower "
         "and upper");
     out.line("/// bound that no continuation leaves.");
-    out.open(fmt::format("Verdicts judge({}const Atoms& now) noexcept {{", reads_atoms ? "" : "[[maybe_unused]] "));
+    out.open(fmt::format("{}Verdicts judge({}const Atoms& now) noexcept {{", context.step_qualifier(),
+                         reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max;");
     out.line("using etlmon::min;");
     out.gap();

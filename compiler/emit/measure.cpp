@@ -18,26 +18,29 @@ bool on_demand(const Context& context, Index i) {
     return context.boolean() && context.model.inputs[i].hold == 0;
 }
 
-/// The pointer to this step's sample.
-std::string sample(const Context& context, Index i) {
-    return context.names.input_local.at(i) + (on_demand(context, i) ? "()" : "");
+std::string accepted(const check::Input& input) {
+    if (!input.has_range) return fmt::format("etlmon::accept(in.{})", input.name);
+    return fmt::format("etlmon::accept(in.{}, {}, {})", input.name, float_literal(input.range.low),
+                       float_literal(input.range.high));
 }
 
-/// The conditions under which all of some inputs are there: "z != nullptr && gripper != nullptr".
-std::string all_present(const Context& context, const std::vector<Index>& inputs) {
+/// This step's sample: a number, NaN where it is missing; of an embedding a pointer, null where it is missing.
+std::string sample(const Context& context, Index i) {
+    const auto local = context.names.input_local.find(i);
+    if (local == context.names.input_local.end()) return accepted(context.model.inputs[i]);
+    return local->second + (on_demand(context, i) ? "()" : "");
+}
+
+/// The conditions under which all of some scalars are there: "!etlmon::is_nan(x) && !etlmon::is_nan(y)".
+std::string all_present(const Context& context, const std::vector<Index>& scalars) {
     std::string text;
-    for (Index i : inputs) {
-        if (!text.empty()) text += " && ";
-        text += sample(context, i) + " != nullptr";
-    }
+    for (Index i : scalars)
+        text += fmt::format("{}!etlmon::is_nan({})", text.empty() ? "" : " && ", sample(context, i));
     return text;
 }
 
 std::string present(const check::Input& input) {
-    if (input.type != InputType::scalar) return fmt::format("etlmon::present(in.{})", input.name);
-    if (!input.has_range) return fmt::format("etlmon::present_scalar(in.{})", input.name);
-    return fmt::format("etlmon::present_scalar(in.{}, {}, {})", input.name, float_literal(input.range.low),
-                       float_literal(input.range.high));
+    return fmt::format("etlmon::present(in.{})", input.name);
 }
 
 std::string widening(const Context& context, Index i) {
@@ -97,7 +100,19 @@ void print_flag(Printer& out, const Context& context, Index i) {
 }
 
 std::string data_of(const check::Input& input) {
-    return input.is_embedding() ? fmt::format("in.{}.data()", input.name) : fmt::format("&in.{}", input.name);
+    return fmt::format("in.{}.data()", input.name);
+}
+
+void print_scalar(Printer& out, const Context& context, Index i) {
+    if (context.names.input_local.count(i) == 0) return;  // read in place
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (on_demand(context, i))
+        out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, accepted(input));
+    else if (input.hold > 0)
+        out.line("const float {} = {}.take({});", local, context.names.hold_member.at(i), accepted(input));
+    else
+        out.line("const float {} = {};", local, accepted(input));
 }
 
 void print_input_on_demand(Printer& out, const Context& context, Index i) {
@@ -117,9 +132,10 @@ void print_input_on_demand(Printer& out, const Context& context, Index i) {
 
 void print_input(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
-    const std::string& local = context.names.input_local.at(i);
     if (input.type == InputType::boolean) return print_flag(out, context, i);
+    if (input.type == InputType::scalar) return print_scalar(out, context, i);
     if (on_demand(context, i)) return print_input_on_demand(out, context, i);
+    const std::string& local = context.names.input_local.at(i);
     const bool held = input.hold > 0;
     if (is_widened(input))
         print_widened(out, context, i);
@@ -168,7 +184,7 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
         return;
     }
     std::string elements;
-    for (Index i : distance.point) elements += (elements.empty() ? "*" : ", *") + sample(context, i);
+    for (Index i : distance.point) elements += (elements.empty() ? "" : ", ") + sample(context, i);
     print_wrapped(out, fmt::format("if ({}{}) {{", ready, all_present(context, distance.point)));
     out.indent();
     print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
@@ -186,7 +202,7 @@ std::string expression(const Context& context, const Expr& e) {
     };
     switch (e.kind) {
         case Expr::Kind::number: return float_literal(e.number32);
-        case Expr::Kind::scalar: return "*" + sample(context, e.index);
+        case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance:
             return context.names.distance_local.at(e.index) + (context.boolean() ? "()" : "") + ".delta";
         case Expr::Kind::negate: return apply("negate");
@@ -268,11 +284,6 @@ private:
         out_.line("missing |= etlmon::is_nan({});", delta);
     }
 
-    /// What stands for "not measured" in this step; where it is kept, step() of a Boolean class has said so.
-    void print_unmeasured(const std::string& variable, bool kept, const char* type, const char* nothing) {
-        if (!kept || !context_.boolean()) out_.line("{}{} = etlmon::{};", kept ? "" : type, variable, nothing);
-    }
-
     /// AGG DIST(point, target): kept with its nearest row.
     std::string plain(const check::Predicate& predicate, const std::string& variable, bool kept) {
         const Index d = predicate.expression.index;
@@ -281,18 +292,17 @@ private:
             if (kept) out_.line("{} = {};", variable, shared);
             return (kept ? variable : shared) + ".delta";
         }
-        print_unmeasured(variable, kept, "etlmon::Measured ", "kUnmeasured");
+        // What step() of a Boolean class keeps, it has called unmeasured.
+        if (!kept || !context_.boolean())
+            out_.line("{}{} = etlmon::kUnmeasured;", kept ? "" : "etlmon::Measured ", variable);
         print_distance(out_, context_, d, variable);
         return variable + ".delta";
     }
 
+    /// EXPR: what is not there is NaN, and stays NaN in all arithmetic.
     std::string general(const check::Predicate& predicate, const std::string& variable, bool kept) {
-        print_unmeasured(variable, kept, "float ", "kMissing");
-        const std::string value = expression(context_, predicate.expression);
-        const std::string assignment = fmt::format("{} = {};", variable, value);
-        print_wrapped(out_, predicate.inputs.empty()
-                                ? assignment
-                                : fmt::format("if ({}) {}", all_present(context_, predicate.inputs), assignment));
+        print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const float ", variable,
+                                        expression(context_, predicate.expression)));
         return variable;
     }
 
@@ -306,7 +316,8 @@ private:
 void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
     out.line("/// The robustness of every predicate at this step; counts the step if something was missing.");
-    out.open(fmt::format("Atoms measure({}const Inputs& in) noexcept {{", reads_inputs ? "" : "[[maybe_unused]] "));
+    out.open(fmt::format("{}Atoms measure({}const Inputs& in) noexcept {{", context.step_qualifier(),
+                         reads_inputs ? "" : "[[maybe_unused]] "));
     out.line("Atoms now;");
     out.line("bool missing = false;");
     MeasurePrinter(out, context).print();

@@ -61,6 +61,19 @@ std::string member(Scope& scope, const std::string& name) {
     return scope.claim(without_trailing_underscore(name)) + '_';
 }
 
+/// How often measure() names a scalar; a point is looked at before it is measured.
+std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
+    std::map<check::Index, int> uses;
+    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
+        if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
+        for (const check::Expr& argument : e.arguments) self(self, argument);
+    };
+    for (check::Index p : plan.predicates) visit(visit, plan.model->predicates[p].expression);
+    for (check::Index d : plan.distances)
+        for (check::Index i : plan.model->distances[d].point) uses[i] += 2;
+    return uses;
+}
+
 class Naming {
 public:
     Naming(const plan::Plan& plan, const ir::Graph& graph)
@@ -82,11 +95,14 @@ public:
 
 private:
     void name_measurements() {
+        std::map<check::Index, int> uses = scalar_uses(plan_);
         for (check::Index i : plan_.inputs) {
-            const bool is_atom = &measure_ == &atoms_ && model_.inputs[i].type == check::InputType::boolean;
-            names_.input_local[i] = measure_.claim(model_.inputs[i].name + (is_atom ? "_sample" : ""));
-            names_.input_buffer[i] = measure_.claim(model_.inputs[i].name + "_values");
-            if (model_.inputs[i].hold > 0) names_.hold_member[i] = member(members_, model_.inputs[i].name + "_held");
+            const check::Input& input = model_.inputs[i];
+            if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
+            const bool is_atom = &measure_ == &atoms_ && input.type == check::InputType::boolean;
+            names_.input_local[i] = measure_.claim(input.name + (is_atom ? "_sample" : ""));
+            names_.input_buffer[i] = measure_.claim(input.name + "_values");
+            if (input.hold > 0) names_.hold_member[i] = member(members_, input.name + "_held");
         }
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
@@ -121,19 +137,29 @@ private:
     std::string stream_name(const plan::Stream& stream) const {
         if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
         if (stream.op == plan::StreamOp::predicate) return names_.predicate_atom.at(stream.index);
-        const std::string suffix = suffix_of(stream.op);
+        const std::string suffix = suffix_of(stream);
         if (suffix.empty()) return "value";
-        return without_trailing_underscore(stream_name(plan_.streams[stream.operands[0]])) + suffix;
+        return without_trailing_underscore(stream_name(signal_of(stream))) + suffix;
     }
 
-    /// How a stream that no formula names differs from its operand.
-    static std::string suffix_of(plan::StreamOp op) {
-        switch (op) {
+    /// The last operand; of a window that is widened from a shorter one, what both watch.
+    const plan::Stream& signal_of(const plan::Stream& stream) const {
+        const plan::Stream& operand = plan_.streams[stream.operands.back()];
+        return stream.from_length > 0 ? signal_of(operand) : operand;
+    }
+
+    /// How a stream that no formula names differs from its signal.
+    static std::string suffix_of(const plan::Stream& stream) {
+        switch (stream.op) {
             case plan::StreamOp::within: return "_within";
             case plan::StreamOp::delay: return "_delayed";
             case plan::StreamOp::shift: return "_before";
+            case plan::StreamOp::since:
+            case plan::StreamOp::trigger: return "_pending";
             case plan::StreamOp::window_max:
-            case plan::StreamOp::window_min: return "_recently";
+            case plan::StreamOp::window_min:
+            case plan::StreamOp::widening_max:
+            case plan::StreamOp::widening_min: return fmt::format("_last_{}", stream.length);
             default: return "";
         }
     }
@@ -175,15 +201,10 @@ private:
     void name_registers(std::uint32_t r, const std::string& name) {
         const plan::Reading& reading = plan_.readings[r];
         if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
-            if (reading.kind != plan::Reading::Kind::response) names_.reading_member[r] = member(members_, name);
+            names_.reading_member[r] =
+                member(members_, name + (reading.kind == plan::Reading::Kind::response ? "_settled" : ""));
+            if (reading.kind == plan::Reading::Kind::response) names_.recent_local[r] = judge_.claim(name + "_now");
             if (reading.fold.left != plan::kNone) names_.guard_member[r] = member(members_, name + "_guard");
-            if (reading.kind == plan::Reading::Kind::response) {
-                names_.reading_member[r] = member(members_, name + "_settled");
-                names_.guard_member[r] = member(members_, name + "_pending");
-                names_.recent_local[r] = judge_.claim(name + "_now");
-                names_.waiting_member[r] = member(members_, name + "_waiting");
-                names_.waiting_local[r] = judge_.claim(name + "_passed");
-            }
             if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
             const bool has_table = reading.kind == plan::Reading::Kind::machine ||
                                    (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);

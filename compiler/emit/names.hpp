@@ -28,7 +28,8 @@ private:
 std::string identifier(std::string_view text, const std::string& otherwise);
 
 struct Names {
-    std::map<check::Index, std::string> input_local;          ///< in measure(): the pointer to this step's sample
+    std::map<check::Index, std::string> input_local;          ///< in measure(): this step's sample; of an embedding, a
+                                                              ///< pointer; none for a scalar read once, in place
     std::map<check::Index, std::string> input_buffer;         ///< in measure(): widened elements, or a flag as a word
     std::map<check::Index, std::string> distance_local;       ///< in measure(): what the kernel gave
     std::map<check::Index, std::string> predicate_local;      ///< in measure(): delta of a predicate without telemetry
@@ -42,11 +43,8 @@ struct Names {
     std::map<plan::Slot, std::string> stream_member;
     std::map<std::uint32_t, std::string> reading_local;
     std::map<std::uint32_t, std::string> reading_member;
-    std::map<std::uint32_t, std::string>
-        guard_member;  ///< of folds with two sides and of responses: their second value
-    std::map<std::uint32_t, std::string> recent_local;    ///< of responses that wait before their window
-    std::map<std::uint32_t, std::string> waiting_member;  ///< of responses: the window over what is pending
-    std::map<std::uint32_t, std::string> waiting_local;   ///< and what it says
+    std::map<std::uint32_t, std::string> guard_member;  ///< of folds with two sides: what the left one lets through
+    std::map<std::uint32_t, std::string> recent_local;  ///< of responses that wait before their window
     std::map<std::uint32_t, std::vector<std::string>> register_member;  ///< of unrolled machines, per state
     std::map<std::uint32_t, std::vector<std::string>> register_next;    ///< their values of this step, as locals
     struct TableLocals {

@@ -88,29 +88,13 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Response& response = context.plan.readings[r].response;
     const std::string& settled = context.names.reading_member.at(r);
     const char* worst = response.of_always ? "min" : "max";
-    const char* best = response.of_always ? "max" : "min";
     const char* far_end = response.of_always ? "high" : "low";
-    const std::string answer = context.value(response.answer);
-    const auto assign = [&](const std::string& target, const std::string& value) {
-        return target + " = " + value + ";";
-    };
 
-    std::string now = answer;
-    std::string passed = response.settled == kNone ? "" : context.value(response.settled);
-    if (response.keeps_pending()) {
-        const std::string& pending = context.names.guard_member.at(r);
-        print_wrapped(out,
-                      assign(pending, call(best, {call(worst, {pending, context.value(response.excuse)}), answer})));
-        now = pending;
-        passed = pending;
-        if (response.patience() > 1) {
-            passed = context.names.waiting_local.at(r);
-            out.line("const Value {} = {}.push({});", passed, context.names.waiting_member.at(r), pending);
-        }
-    }
-    print_wrapped(out, conditional(open_condition({response.inner.high, kUnbounded}),
-                                   assign(settled, call(worst, {settled, passed}))));
-    if (response.hopeless_now()) now = response.of_always ? context.spelling.no : context.spelling.yes;
+    print_wrapped(
+        out, conditional(open_condition({response.inner.high, kUnbounded}),
+                         fmt::format("{} = {};", settled, call(worst, {settled, context.value(response.passed)}))));
+    std::string now = response.of_always ? context.spelling.no : context.spelling.yes;
+    if (response.pending != kNone) now = context.value(response.pending);
     if (response.recent != kNone) {
         out.line("const Value {} = {};", context.names.recent_local.at(r),
                  call(worst, {now, context.value(response.recent)}));
@@ -361,16 +345,6 @@ std::vector<Member> reading_members(const Context& context) {
         const std::string second = starts_true ? context.spelling.no : context.spelling.yes;
         result.push_back({"Value", name, text + (response ? ": where the answer's time is over" : ""),
                           fmt::format("{} = {};", name, first)});
-        if (response && reading.response.keeps_pending()) {
-            result.push_back({"Value", context.names.guard_member.at(r), "where it is not",
-                              fmt::format("{} = {};", context.names.guard_member.at(r), first)});
-            const std::uint32_t patience = reading.response.patience();
-            const std::string& waiting = context.names.waiting_member.at(r);
-            if (patience > 1)
-                result.push_back(
-                    {fmt::format("etlmon::Window<etlmon::{}<Value>, {}>", starts_true ? "Greatest" : "Least", patience),
-                     waiting, "whether some window passed without an answer", waiting + ".reset();"});
-        }
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
             result.push_back({"Value", context.names.guard_member.at(r), "what its left side lets through",
                               fmt::format("{} = {};", context.names.guard_member.at(r), second)});

@@ -20,12 +20,18 @@ std::string guarded(const Context& context, const Stream& stream, std::size_t i,
 
 bool is_max(StreamOp op) {
     return op == StreamOp::running_max || op == StreamOp::window_max || op == StreamOp::since ||
-           op == StreamOp::window_since || op == StreamOp::window_until;
+           op == StreamOp::window_since || op == StreamOp::window_until || op == StreamOp::widening_max;
+}
+
+bool is_widening(StreamOp op) {
+    return op == StreamOp::widening_max || op == StreamOp::widening_min;
 }
 
 std::string monoid(StreamOp op) {
     switch (op) {
+        case StreamOp::widening_max:
         case StreamOp::window_max: return "etlmon::Greatest";
+        case StreamOp::widening_min:
         case StreamOp::window_min: return "etlmon::Least";
         case StreamOp::window_since: return "etlmon::Since";
         case StreamOp::window_trigger: return "etlmon::Trigger";
@@ -102,6 +108,8 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
             return fmt::format("{0} = {1}({0}, {2});", kept(), max ? "max" : "min", guarded(context, stream, 0, none));
         case StreamOp::since:
         case StreamOp::trigger: return fmt::format("{} = {};", kept(), since(context, stream, kept()));
+        case StreamOp::widening_max:
+        case StreamOp::widening_min: return fmt::format("{}{}.push({});", local, kept(), at(0));
         case StreamOp::window_max:
         case StreamOp::window_min:
             if (stream.length == 1) return fmt::format("{}{};", local, guarded(context, stream, 0, none));
@@ -117,13 +125,17 @@ std::string type_of(const Stream& stream) {
     if (stream.op == StreamOp::delay || stream.op == StreamOp::shift)
         return fmt::format("etlmon::Delay<Value, {}>", stream.length);
     if (is_window(stream.op)) return fmt::format("etlmon::Window<{}<Value>, {}>", monoid(stream.op), stream.length);
+    if (is_widening(stream.op))
+        return fmt::format("etlmon::Widening<{}<Value>, {}, {}>", monoid(stream.op), stream.from_length, stream.length);
     return "Value";
 }
 
 std::string reset_of(const Context& context, const Stream& stream, const std::string& name) {
     if (stream.op == StreamOp::delay) return fmt::format("{}.reset({});", name, context.spelling.no);
     if (stream.op == StreamOp::shift) return fmt::format("{}.reset({});", name, context.literal(stream.value));
-    if (is_window(stream.op)) return fmt::format("{}.reset();", name);
+    if (is_window(stream.op) || is_widening(stream.op)) return fmt::format("{}.reset();", name);
+    if (stream.op == StreamOp::since || stream.op == StreamOp::trigger)
+        return fmt::format("{} = {};", name, context.literal(stream.value));
     return fmt::format("{} = {};", name, is_max(stream.op) ? context.spelling.no : context.spelling.yes);
 }
 
@@ -144,6 +156,13 @@ std::string whole_statement(const Context& context, Slot slot) {
 
 }  // namespace
 
+std::string stream_text(const ir::Graph& graph, const Stream& stream) {
+    if (stream.node != plan::kNone) return graph.text(stream.node);
+    if (stream.op == StreamOp::since || stream.op == StreamOp::trigger) return "what is asked and not yet answered";
+    if (!is_window(stream.op) && !is_widening(stream.op)) return "";
+    return fmt::format("the {} over the last {} steps", is_max(stream.op) ? "max" : "min", stream.length);
+}
+
 void print_streams(Printer& out, const Context& context) {
     for (Slot slot = 0; slot < context.plan.streams.size(); ++slot) {
         const std::string text = whole_statement(context, slot);
@@ -163,7 +182,7 @@ std::vector<Member> stream_members(const Context& context) {
     std::vector<Member> result;
     for (const auto& [slot, name] : context.names.stream_member) {
         const Stream& stream = context.plan.streams[slot];
-        const std::string comment = stream.node == plan::kNone ? "" : context.graph.text(stream.node);
+        const std::string comment = stream_text(context.graph, stream);
         result.push_back({type_of(stream), name, comment, reset_of(context, stream, name)});
     }
     return result;

@@ -217,8 +217,9 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
     for (const plan::Stream& stream : plan.streams) {
         const plan::Cost cost = plan::cost_of(stream, plan.values);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
-        rows.push_back({stream.node == plan::kNone ? "(in between)" : shortened(graph.text(stream.node)), "stream",
-                        number(cost.state_bytes), number(cost.code_bytes), number(cost.operations)});
+        const std::string text = stream_text(graph, stream);
+        rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream", number(cost.state_bytes),
+                        number(cost.code_bytes), number(cost.operations)});
     }
     if (rows.size() > 1) print_table(out, "  ", rows, 2);
     return out.take();

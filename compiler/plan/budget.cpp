@@ -83,10 +83,10 @@ Cost fold_cost(const Footprint& of, const Fold& fold) {
 }
 
 Cost response_cost(const Footprint& of, const Response& response) {
-    Cost cost = values(of, response.keeps_pending() ? 2 : 1, 4 + (response.recent != kNone ? 1 : 0));
+    Cost cost = values(of, 1, 2 + (response.recent != kNone ? 1 : 0));
     cost.operations += 2 + 3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
     cost.code_bytes += 2 * kCodePerFold;
-    return response.keeps_pending() ? cost + window_cost(of.window, response.patience(), 1) : cost;
+    return cost;
 }
 
 /// Operations on values or readings at one position, in units of the temporal loops of etlmon/pending.hpp.
@@ -284,6 +284,8 @@ Cost cost_of(const Stream& stream, Values kind) {
         case StreamOp::window_trigger: return window_cost(of.since, stream.length, 2);
         case StreamOp::window_until:
         case StreamOp::window_release: return window_cost(of.until, stream.length, 2);
+        case StreamOp::widening_max:
+        case StreamOp::widening_min: return ring_cost(of, stream.length - stream.from_length) + values(of, 0, 1);
     }
     return {};
 }

@@ -205,6 +205,12 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
             return state.values[0] = max(operand(stream, 1, kFalse), min(state.values[0], operand(stream, 0, kTrue)));
         case StreamOp::trigger:
             return state.values[0] = min(operand(stream, 1, kTrue), max(state.values[0], operand(stream, 0, kFalse)));
+        case StreamOp::widening_max:
+            return max(etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
+                       at(0));
+        case StreamOp::widening_min:
+            return min(etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
+                       at(0));
         default: return advance_window(stream, state);
     }
 }
@@ -214,12 +220,14 @@ void Evaluator::reset_stream(const Stream& stream, StreamState& state) {
     switch (stream.op) {
         case StreamOp::delay: state.values.assign(stream.length, kFalse); break;
         case StreamOp::shift: state.values.assign(stream.length, stream.value); break;
-        case StreamOp::running_max:
-        case StreamOp::since: state.values.assign(1, kFalse); break;
-        case StreamOp::running_min:
-        case StreamOp::trigger: state.values.assign(1, kTrue); break;
+        case StreamOp::running_max: state.values.assign(1, kFalse); break;
+        case StreamOp::running_min: state.values.assign(1, kTrue); break;
+        case StreamOp::since:
+        case StreamOp::trigger: state.values.assign(1, stream.value); break;
         case StreamOp::window_max: state.values.assign(etlmon::window_elements(stream.length), kFalse); break;
         case StreamOp::window_min: state.values.assign(etlmon::window_elements(stream.length), kTrue); break;
+        case StreamOp::widening_max: state.values.assign(stream.length - stream.from_length, kFalse); break;
+        case StreamOp::widening_min: state.values.assign(stream.length - stream.from_length, kTrue); break;
         case StreamOp::window_since:
         case StreamOp::window_until:
             state.pairs.assign(etlmon::window_elements(stream.length), etlmon::Until<Value>::identity());
@@ -242,14 +250,7 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
                 ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
             break;
         case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
-        case Reading::Kind::response: {
-            const Response& response = reading.response;
-            state.registers.assign(2, response.of_always ? kTrue : kFalse);
-            state.waiting.cursor = 0;
-            state.waiting.values.assign(etlmon::window_elements(response.patience()),
-                                        response.of_always ? kFalse : kTrue);
-            break;
-        }
+        case Reading::Kind::response: state.registers.assign(1, reading.response.of_always ? kTrue : kFalse); break;
         case Reading::Kind::machine:
             state.registers.assign(reading.machine.states.size(), kFalse);
             state.next = state.registers;
@@ -307,28 +308,14 @@ etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) c
     return reading;
 }
 
-/// registers[0]: settled positions; registers[1]: pending ones. Below, `best` and `worst` are the min and max of an
-/// always.
+/// registers[0]: settled positions. Below, `worst` is the min of an always.
 etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
     const bool always = response.of_always;
     const auto worst = [&](Value a, Value b) { return always ? min(a, b) : max(a, b); };
-    const auto best = [&](Value a, Value b) { return always ? max(a, b) : min(a, b); };
-    const Value idle = always ? kTrue : kFalse;
     const Value hopeless = always ? kFalse : kTrue;
     Value& settled = state.registers[0];
-    Value& pending = state.registers[1];
-    const Value excuse = response.excuse == kNone ? hopeless : streams_[response.excuse];
-    pending = best(worst(pending, excuse), streams_[response.answer]);
-    Value passed = idle;  // what the windows that close at this step came to
-    if (response.settled != kNone) {
-        passed = streams_[response.settled];
-    } else {
-        auto& [values, pairs, cursor] = state.waiting;
-        passed = always ? push<etlmon::Greatest<Value>>(values, cursor, response.patience(), pending)
-                        : push<etlmon::Least<Value>>(values, cursor, response.patience(), pending);
-    }
-    if (steps_ >= response.inner.high) settled = worst(settled, passed);
-    Value now = response.hopeless_now() ? hopeless : pending;
+    if (steps_ >= response.inner.high) settled = worst(settled, streams_[response.passed]);
+    Value now = response.pending == kNone ? hopeless : streams_[response.pending];
     if (response.recent != kNone) now = worst(now, streams_[response.recent]);
 
     etlmon::Reading reading = etlmon::settled(worst(settled, now));

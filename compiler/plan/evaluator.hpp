@@ -66,7 +66,6 @@ private:
     struct ReadingState {
         std::vector<Value> registers;  ///< latch and fold: 1 or 2; machine: one a state
         std::vector<Value> next;       ///< machine: the registers being made
-        StreamState waiting;           ///< response: the window over its pendings
         Table table;
         std::vector<Value> guards;
         std::vector<Key> weak;  ///< this step's keys of the table's lists

@@ -8,6 +8,7 @@
 #include "plan/budget.hpp"
 #include "plan/readings.hpp"
 #include "plan/refusal.hpp"
+#include "plan/share_windows.hpp"
 #include "plan/stored.hpp"
 #include "plan/streams.hpp"
 
@@ -83,7 +84,9 @@ public:
     }
 
     Plan finish() {
-        drop_idle_streams();
+        keep_used_streams();
+        share_windows(plan_);
+        keep_used_streams();
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
@@ -101,22 +104,26 @@ private:
         return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
     }
 
-    /// Folding leaves streams behind that nothing reads.
-    void drop_idle_streams() {
+    /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what uses them.
+    void keep_used_streams() {
         std::vector<bool> used(plan_.streams.size(), false);
-        for_each_slot([&](Slot& slot) { used[slot] = true; });
-        for (Slot slot = static_cast<Slot>(plan_.streams.size()); slot-- > 0;)
-            if (used[slot])
-                for (Slot operand : plan_.streams[slot].operands) used[operand] = true;
+        const auto use = [&](const auto& self, Slot slot) -> void {
+            if (used[slot]) return;
+            used[slot] = true;
+            for (Slot operand : plan_.streams[slot].operands) self(self, operand);
+        };
+        for_each_slot([&](Slot& slot) { use(use, slot); });
 
         std::vector<Slot> renumbered(plan_.streams.size(), kNone);
         std::vector<Stream> kept;
-        for (Slot slot = 0; slot < plan_.streams.size(); ++slot) {
-            if (!used[slot]) continue;
-            renumbered[slot] = static_cast<Slot>(kept.size());
-            for (Slot& operand : plan_.streams[slot].operands) operand = renumbered[operand];
+        const auto keep = [&](const auto& self, Slot slot) -> Slot {
+            if (renumbered[slot] != kNone) return renumbered[slot];
+            for (Slot& operand : plan_.streams[slot].operands) operand = self(self, operand);
             kept.push_back(std::move(plan_.streams[slot]));
-        }
+            return renumbered[slot] = static_cast<Slot>(kept.size() - 1);
+        };
+        for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
+            if (used[slot]) keep(keep, slot);
         plan_.streams = std::move(kept);
         for_each_slot([&](Slot& slot) { slot = renumbered[slot]; });
     }

@@ -47,15 +47,20 @@ enum class StreamOp : std::uint8_t {
     window_trigger,
     window_until,  ///< until, at the first of the last `length` positions
     window_release,
+    widening_max,  ///< over the last `length` positions, from the operand, which is that over fewer
+    widening_min,
 };
 
 struct Stream {
     StreamOp op = StreamOp::constant;
     std::vector<Slot> operands;
     Index index = 0;                ///< predicate or flag
-    std::uint32_t length = 0;       ///< of delays, shifts and windows
+    std::uint32_t length = 0;       ///< of delays, shifts, windows and widenings
+    std::uint32_t from_length = 0;  ///< widening: of the operand's window
     ir::Interval interval;          ///< within: of positions
-    Value value{};                  ///< constant; shift: where there is no earlier position; within: elsewhere
+    /// constant; shift: where there is no earlier position; within: elsewhere; since, trigger: before the first
+    /// position
+    Value value{};
     std::uint32_t lag = 0;          ///< after step i the stream tells about position i - lag
     std::uint32_t operand_lag = 0;  ///< and its operands about position i - operand_lag; a constant is of any lag
     NodeId node = kNone;            ///< the formula it is, for comments; kNone for the values in between
@@ -78,28 +83,21 @@ struct Fold {
 };
 
 /// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. What the positions whose window
-/// is still open say is one recurrence, pending = max(min(pending, f), g). And they are settled by the same value: the
-/// window of some position passed without an answer exactly where pending stayed low for b - a + 1 steps on end, so
-/// settled = min(settled, the max of the last b - a + 1 pendings). (Both sides are made of min and max, so it is enough
-/// to compare them where f and g are only true or false: a run of false pendings begins with a position that asks and
-/// lasts until an answer.) Without f and from every position, pending is g itself and the body's own stream settles.
+/// is still open say is one recurrence, pending = max(min(pending, f), g), true before the first position. And they are
+/// settled by the same value: the window of some position passed without an answer exactly where pending stayed low for
+/// b - a + 1 steps on end, so settled = min(settled, the max of the last b - a + 1 pendings). (Both sides are made of
+/// min and max, so it is enough to compare them where f and g are only true or false: a run of false pendings begins
+/// with a position that asks and lasts until an answer.) Without f and from every position, pending is g itself and the
+/// body's own stream settles.
 struct Response {
     bool of_always = true;  ///< else the dual
     ir::Interval outer;
-    ir::Interval inner;    ///< bounded
-    Slot settled = kNone;  ///< the body, late by inner.high; kNone where pending is kept
-    Slot excuse = kNone;   ///< f within the outer window, inner.low positions earlier; kNone: none, anywhere
-    Slot recent = kNone;   ///< so over the last inner.low positions, whose windows have not begun; kNone: inner.low = 0
-    Slot answer = 0;       ///< g
+    ir::Interval inner;      ///< bounded
+    Slot passed = 0;         ///< what the windows that close at this step came to
+    Slot pending = kNone;    ///< what open windows say; kNone: none has begun at the last positions, which is hopeless
+    Slot recent = kNone;     ///< what speaks for positions whose windows have not begun; kNone: nothing, or none such
     Slot unseen_answer = 0;  ///< lowest and highest unseen value of g
     Slot unseen_body = 0;
-
-    /// Without an excuse, pending is the answer itself.
-    bool keeps_pending() const { return excuse != kNone; }
-    /// Steps that a position waits for its answer.
-    std::uint32_t patience() const { return inner.high - inner.low + 1; }
-    /// A window that begins later has not begun at the last positions: without an excuse nothing speaks for them.
-    bool hopeless_now() const { return excuse == kNone && inner.low > 0; }
 };
 
 /// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.

@@ -38,6 +38,8 @@ const char* name(StreamOp op) {
         case StreamOp::window_trigger: return "window trigger";
         case StreamOp::window_until: return "window until";
         case StreamOp::window_release: return "window release";
+        case StreamOp::widening_max: return "widening max";
+        case StreamOp::widening_min: return "widening min";
     }
     return "";
 }
@@ -60,7 +62,8 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     if (s.op == StreamOp::within)
         text += fmt::format(" positions {} to {}, else {}", s.interval.low,
                             s.interval.bounded() ? fmt::format("{}", s.interval.high) : "the end", value_text(s.value));
-    if (s.op == StreamOp::shift) text += " from " + value_text(s.value);
+    const bool has_past = s.op == StreamOp::shift || s.op == StreamOp::since || s.op == StreamOp::trigger;
+    if (has_past) text += " from " + value_text(s.value);
     if (s.lag != 0) text += fmt::format(", {} steps late", s.lag);
     if (s.node != kNone) text += fmt::format("  // {}", graph.text(s.node));
     return text + "\n";
@@ -115,12 +118,11 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
             return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
         case Reading::Kind::pending: return pending_text(reading.pending, graph);
         case Reading::Kind::response:
-            text = "response";
-            if (reading.response.settled != kNone) text += fmt::format(", settled s{}", reading.response.settled);
-            if (reading.response.excuse != kNone) text += fmt::format(", excuse s{}", reading.response.excuse);
+            text = fmt::format("response, passed s{}", reading.response.passed);
+            if (reading.response.pending != kNone) text += fmt::format(", pending s{}", reading.response.pending);
             if (reading.response.recent != kNone) text += fmt::format(", recent s{}", reading.response.recent);
-            return text + fmt::format(", answer s{}, unseen s{} s{}\n", reading.response.answer,
-                                      reading.response.unseen_answer, reading.response.unseen_body);
+            return text +
+                   fmt::format(", unseen s{} s{}\n", reading.response.unseen_answer, reading.response.unseen_body);
         case Reading::Kind::machine: return machine_text(reading.machine, graph);
         case Reading::Kind::conjunction:
         case Reading::Kind::disjunction: break;

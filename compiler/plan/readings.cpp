@@ -92,23 +92,27 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     if (!answer_is_present || !inner.interval.bounded()) return std::nullopt;
 
     Response result{.of_always = of_always, .outer = node.interval, .inner = inner.interval};
-    result.answer = streams_.of(inner.operands[0]);
+    const Slot answer = streams_.of(inner.operands[0]);
     result.unseen_answer = streams_.unseen(inner.operands[0]);
     result.unseen_body = streams_.unseen(body);
     const etlmon::Value idle = of_always ? etlmon::kTrue : etlmon::kFalse;  // where nothing is asked
     const etlmon::Value urgent = of_always ? etlmon::kFalse : etlmon::kTrue;
-    if (!present.empty() || node.interval != ir::Interval{}) {
-        const Slot stated =
-            present.empty()
-                ? streams_.constant(urgent)
-                : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction, present, node.span));
-        const Slot excuse = streams_.within(stated, node.interval, idle);
-        result.excuse = streams_.shift(excuse, inner.interval.low, 0, idle, kNone);
-        if (inner.interval.low > 0)
-            result.recent =
-                streams_.recent(of_always ? StreamOp::window_min : StreamOp::window_max, excuse, inner.interval.low);
+    const auto [low, high] = inner.interval;
+    if (present.empty() && node.interval == ir::Interval{}) {
+        result.passed = streams_.of(body);
+        if (low == 0) result.pending = answer;
+        return result;
     }
-    if (!result.keeps_pending()) result.settled = streams_.of(body);
+    const Slot stated =
+        present.empty()
+            ? streams_.constant(urgent)
+            : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction, present, node.span));
+    const Slot excuse = streams_.within(stated, node.interval, idle);
+    result.pending = streams_.pending(of_always, streams_.shift(excuse, low, 0, idle, kNone), answer);
+    const StreamOp best = of_always ? StreamOp::window_max : StreamOp::window_min;
+    const StreamOp worst = of_always ? StreamOp::window_min : StreamOp::window_max;
+    result.passed = streams_.recent(best, result.pending, high - low + 1);
+    if (low > 0) result.recent = streams_.recent(worst, excuse, low);
     return result;
 }
 
@@ -274,7 +278,7 @@ std::vector<Slot*> slots_of(Reading& reading) {
         case Reading::Kind::fold: slots = {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}; break;
         case Reading::Kind::response: {
             Response& r = reading.response;
-            slots = {&r.settled, &r.excuse, &r.recent, &r.answer, &r.unseen_answer, &r.unseen_body};
+            slots = {&r.passed, &r.pending, &r.recent, &r.unseen_answer, &r.unseen_body};
             break;
         }
         case Reading::Kind::machine:

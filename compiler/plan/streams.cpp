@@ -149,6 +149,13 @@ Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere) {
     return intern({.op = StreamOp::within, .operands = {slot}, .interval = interval, .value = elsewhere});
 }
 
+/// "Since the last answer", but satisfied where nothing has been asked yet.
+Slot StreamBuilder::pending(bool of_always, Slot excuse, Slot answer) {
+    return intern({.op = of_always ? StreamOp::since : StreamOp::trigger,
+                   .operands = {excuse, answer},
+                   .value = of_always ? kTrue : kFalse});
+}
+
 Slot StreamBuilder::recent(StreamOp op, Slot slot, std::uint32_t length) {
     return length == 1 ? slot : window(op, {slot}, length, 0, 0, kNone);
 }
@@ -179,6 +186,7 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     if (high == kUnbounded)
         slot = intern({.op = max ? StreamOp::since : StreamOp::trigger,
                        .operands = operands,
+                       .value = max ? kFalse : kTrue,
                        .lag = lag,
                        .operand_lag = lag,
                        .node = inner});

@@ -32,6 +32,9 @@ public:
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
     /// A stream without lag at the positions of the interval, `elsewhere` at others.
     Slot within(Slot slot, ir::Interval interval, Value elsewhere);
+    /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that ask (plan::Response).
+    /// Of G (excuse || F answer), or of its dual; both without lag.
+    Slot pending(bool of_always, Slot excuse, Slot answer);
     /// Over the last `length` positions of a stream without lag.
     Slot recent(StreamOp op, Slot slot, std::uint32_t length);
 
