@@ -20,6 +20,8 @@ using check::Values;
 
 constexpr std::uint64_t kWord = sizeof(std::uint32_t);
 constexpr std::uint64_t kKeysPerValue = 2;
+/// Of a window whose highs part from its lows: which blocks have highs of their own, and from where (etlmon::Parting).
+constexpr std::uint64_t kPartingComparisons = 6;
 
 // Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
 constexpr std::uint64_t kCodePerValueOperation = 24;
@@ -67,7 +69,9 @@ Cost values(const Footprint& of, std::uint64_t kept, std::uint64_t combined) {
 Cost window_cost(std::uint32_t (*bytes)(std::uint32_t), std::uint32_t length, std::uint64_t sides) {
     if (length == 1) return {};
     const std::uint64_t combined = etlmon::window_operations(length) * (2 * sides - 1);
-    return {.state_bytes = bytes(length), .code_bytes = kCodePerWindow * sides, .operations = combined * kKeysPerValue};
+    return {.state_bytes = bytes(length),
+            .code_bytes = kCodePerWindow * sides,
+            .operations = combined * kKeysPerValue + kPartingComparisons};
 }
 
 Cost ring_cost(const Footprint& of, std::uint32_t length) {
