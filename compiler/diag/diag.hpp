@@ -59,11 +59,20 @@ struct Diagnostic {
 /// Collects what the stages find. Passed by reference through the pipeline.
 class Sink {
 public:
+    /// -Werror: what warnings find is refused too.
+    explicit Sink(bool warnings_are_errors = false) : warnings_are_errors_(warnings_are_errors) {}
+
     /// The returned reference is good until the next report.
     Diagnostic& report(Code code, source::Span span, std::string message);
     Diagnostic& report(Diagnostic diagnostic);
 
     bool has_errors() const { return errors_ > 0; }
+    /// Warnings count as what -Werror makes of them.
+    Severity severity(const Diagnostic& found) const {
+        return warnings_are_errors_ ? Severity::error : found.severity();
+    }
+    /// Whether nothing may come of the spec. Stages stop at errors, so that the warnings of all of them are told.
+    bool refused() const { return has_errors() || (warnings_are_errors_ && warnings() > 0); }
     std::size_t errors() const { return errors_; }
     std::size_t warnings() const { return diagnostics_.size() - errors_; }
     /// In the order of their places in the spec; those of other files last.
@@ -72,6 +81,7 @@ public:
 private:
     std::vector<Diagnostic> diagnostics_;
     std::size_t errors_ = 0;
+    bool warnings_are_errors_;
 };
 
 /// What went wrong with a file other than the spec, found by a stage that does not know why the file was read.

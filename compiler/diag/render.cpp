@@ -21,11 +21,11 @@ constexpr Palette kColours{"\x1b[1m", "\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", 
 
 class TextRenderer {
 public:
-    TextRenderer(const source::File& spec, RenderOptions options)
-        : spec_(spec), options_(options), palette_(options.colour ? kColours : kPlain) {}
+    TextRenderer(const source::File& spec, Colour colour)
+        : spec_(spec), palette_(colour == Colour::ansi ? kColours : kPlain) {}
 
-    void add(const Diagnostic& diagnostic) {
-        const bool is_error = diagnostic.severity() == Severity::error || options_.warnings_as_errors;
+    void add(const Diagnostic& diagnostic, Severity severity) {
+        const bool is_error = severity == Severity::error;
         const std::string_view colour = is_error ? palette_.error : palette_.warning;
         const bool in_spec = diagnostic.file.empty();
         headline(in_spec ? place(diagnostic.span) : place(diagnostic), is_error ? "error" : "warning", colour,
@@ -86,21 +86,21 @@ private:
     }
 
     const source::File& spec_;
-    RenderOptions options_;
     const Palette& palette_;
     std::string text_;
 };
 
 }  // namespace
 
-std::string render_text(const source::File& spec, const Sink& sink, RenderOptions options) {
+std::string render_text(const source::File& spec, const Sink& sink, Colour colour) {
     const std::vector<Diagnostic> all = sink.sorted();
     if (all.empty()) return {};
-    TextRenderer renderer(spec, options);
+    TextRenderer renderer(spec, colour);
     const std::size_t shown = std::min(all.size(), kMaxShown);
-    for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i]);
-    const std::size_t promoted = options.warnings_as_errors ? sink.warnings() : 0;
-    renderer.add_summary(sink.errors() + promoted, sink.warnings() - promoted, all.size() - shown);
+    for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i], sink.severity(all[i]));
+    const auto errors = static_cast<std::size_t>(std::count_if(
+        all.begin(), all.end(), [&](const Diagnostic& found) { return sink.severity(found) == Severity::error; }));
+    renderer.add_summary(errors, all.size() - errors, all.size() - shown);
     return renderer.take();
 }
 

@@ -9,13 +9,10 @@
 
 namespace etlc::diag {
 
-struct RenderOptions {
-    bool colour = false;              ///< ANSI colours, for terminals
-    bool warnings_as_errors = false;  ///< -Werror: say "error" for warnings
-};
+enum class Colour { none, ansi };
 
-std::string render_text(const source::File& spec, const Sink& sink, RenderOptions options = {});
+std::string render_text(const source::File& spec, const Sink& sink, Colour colour = Colour::none);
 /// {"diagnostics": [{"code", "severity", "message", "file", "line", "column", "end_line", "end_column", "notes"}]}
-std::string render_json(const source::File& spec, const Sink& sink, RenderOptions options = {});
+std::string render_json(const source::File& spec, const Sink& sink);
 
 }  // namespace etlc::diag

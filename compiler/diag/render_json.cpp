@@ -36,12 +36,11 @@ Json note_of(const source::File& spec, const Note& note) {
     return result;
 }
 
-Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, RenderOptions options) {
-    const bool is_error = diagnostic.severity() == Severity::error || options.warnings_as_errors;
+Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, Severity severity) {
     Json result;
     result["code"] = info(diagnostic.code).code;
     result["name"] = info(diagnostic.code).name;
-    result["severity"] = is_error ? "error" : "warning";
+    result["severity"] = severity == Severity::error ? "error" : "warning";
     result["message"] = diagnostic.message;
     const bool in_spec = diagnostic.file.empty();
     if (in_spec)
@@ -56,9 +55,10 @@ Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, Rende
 
 }  // namespace
 
-std::string render_json(const source::File& spec, const Sink& sink, RenderOptions options) {
+std::string render_json(const source::File& spec, const Sink& sink) {
     Json all = Json::array();
-    for (const Diagnostic& diagnostic : sink.sorted()) all.push_back(diagnostic_of(spec, diagnostic, options));
+    for (const Diagnostic& diagnostic : sink.sorted())
+        all.push_back(diagnostic_of(spec, diagnostic, sink.severity(diagnostic)));
     Json document;
     document["diagnostics"] = std::move(all);
     // Paths and quoted words may hold any bytes; those that are not UTF-8 become U+FFFD.

@@ -9,6 +9,7 @@
 #include "data/file.hpp"
 #include "driver/compile.hpp"
 #include "driver/names.hpp"
+#include "driver/progress.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
 
@@ -17,11 +18,6 @@ namespace etlc::driver {
 namespace {
 
 using calibrate::Calibration;
-
-void show_progress(std::size_t done, std::size_t total) {
-    fmt::print(stderr, "\r{} of {} episodes", done, total);
-    if (done == total) fmt::print(stderr, "\r{:40}\r", "");
-}
 
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const calibrate::Request& request, diag::Sink& sink) {
@@ -71,12 +67,12 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     options.allow_uncalibrated = request.thresholds.empty();
     options.allow_uncalibrated_monitors = true;
     const auto model = check::check(spec, file, options, sink);
-    if (!model || sink.has_errors() || (request.warnings_are_errors && sink.warnings() > 0)) return false;
+    if (!model || sink.refused()) return false;
 
     calibrate::Request calibration = request.calibration;
     if (!check_names(*model, calibration.names, sink)) return false;
     calibration.version = kVersion;
-    if (request.progress) calibration.progress = show_progress;
+    calibration.progress = episodes_progress();
     const auto result = calibrate_model(*model, request, calibration, sink);
     if (!result) return false;
 

@@ -15,8 +15,6 @@ struct CalibrateRequest {
     calibrate::Request calibration;  ///< its version and progress are set here
     std::string output;              ///< empty: beside the spec
     std::string thresholds;          ///< those of the predicates; empty: they are calibrated now
-    bool warnings_are_errors = false;
-    bool progress = false;  ///< on stderr
 };
 
 /// False where the sink now says why not.

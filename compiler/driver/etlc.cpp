@@ -6,7 +6,6 @@
 #include <cctype>
 #include <cstdio>
 #include <filesystem>
-#include <list>
 
 #include "data/file.hpp"
 #include "diag/render.hpp"
@@ -14,10 +13,10 @@
 #include "driver/compile.hpp"
 #include "driver/evaluate.hpp"
 #include "driver/names.hpp"
+#include "driver/output.hpp"
 #include "driver/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
-#include "plan/stored.hpp"
 
 namespace {
 
@@ -29,10 +28,7 @@ constexpr int kWrongCall = 2;
 
 struct Call {
     std::string spec;
-    std::string output;
-    std::string depfile;
-    std::string targets_file;    ///< where large target sets go; empty: nowhere
-    bool targets_named = false;  ///< by the call, which then expects the file even where nothing goes to it
+    driver::OutputPaths output;
     std::string diagnostics = "text";
     std::vector<std::string> warnings;
     bool check_only = false;
@@ -42,79 +38,12 @@ struct Call {
     driver::EvaluateRequest evaluate;
 };
 
-bool warnings_are_errors(const Call& call) {
-    return std::find(call.warnings.begin(), call.warnings.end(), "error") != call.warnings.end();
-}
-
 /// Prints the findings; the exit status that they mean.
 int conclude(const Call& call, const source::File& file, const diag::Sink& sink) {
-    diag::RenderOptions options;
-    options.warnings_as_errors = warnings_are_errors(call);
-    options.colour = isatty(STDERR_FILENO) != 0;
+    const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
     const bool json = call.diagnostics == "json";
-    const std::string text = json ? diag::render_json(file, sink, options) : diag::render_text(file, sink, options);
-    fmt::print(stderr, "{}", text);
-    return sink.has_errors() || (options.warnings_as_errors && sink.warnings() > 0) ? kWrongSpec : kOk;
-}
-
-/// "monitor.hpp: spec.etl targets/a.npy", as make and ninja read it.
-std::string dependency_rule(const std::string& output, const std::string& spec, const std::vector<std::string>& files) {
-    const auto escaped = [](const std::string& path) {
-        std::string text;
-        for (char c : path) {
-            if (c == ' ' || c == '#') text += '\\';
-            if (c == '$') text += '$';
-            text += c;
-        }
-        return text;
-    };
-    std::string rule = escaped(output) + ": " + escaped(spec);
-    for (const std::string& file : files) rule += " \\\n  " + escaped(file);
-    return rule + "\n";
-}
-
-/// A file of the output that takes its name only when all others are complete too.
-class OutputFile {
-public:
-    OutputFile(std::string path, diag::Sink& sink) : path_(std::move(path)), sink_(sink) {
-        auto file = data::AtomicFile::create(path_ == "-" ? "/dev/stdout" : path_, diag::Code::unwritable_output);
-        if (file)
-            file_.emplace(std::move(*file));
-        else
-            report(file.failure());
-    }
-    /// False, and reported, where it cannot be written.
-    bool write(std::string_view bytes) { return file_ && succeeds(file_->write(bytes)); }
-    bool commit() { return file_ && succeeds(file_->commit()); }
-
-private:
-    bool succeeds(const std::optional<diag::Failure>& failure) {
-        if (failure) report(*failure);
-        return !failure;
-    }
-    void report(const diag::Failure& failure) { sink_.report(data::in_file(failure, path_)); }
-
-    std::string path_;
-    diag::Sink& sink_;
-    std::optional<data::AtomicFile> file_;
-};
-
-/// The header, the file of targets where there is one, and the dependencies: all of them or none. The header is the
-/// last to appear, so that whoever sees it finds its targets.
-void write_output(const Call& call, const driver::Output& output, diag::Sink& sink) {
-    std::list<OutputFile> files;
-    const auto add = [&](const std::string& path) -> OutputFile& { return files.emplace_back(path, sink); };
-    bool written = true;
-    if (call.request.emit == "hpp" && (call.targets_named || !output.compiled.plan.stored.empty())) {
-        OutputFile& targets = add(call.targets_file);
-        written = plan::store(output.compiled.plan, [&](const std::uint8_t* bytes, std::size_t size) {
-            return targets.write({reinterpret_cast<const char*>(bytes), size});
-        });
-    }
-    if (!call.depfile.empty())
-        written = written && add(call.depfile).write(dependency_rule(call.output, call.spec, output.dependencies));
-    written = written && add(call.output).write(output.text);
-    for (OutputFile& file : files) written = written && file.commit();
+    fmt::print(stderr, "{}", json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
+    return sink.refused() ? kWrongSpec : kOk;
 }
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
@@ -126,38 +55,13 @@ bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
     return static_cast<bool>(text);
 }
 
-int compile_spec(const Call& call) {
-    diag::Sink sink;
+/// Reads the spec and does `work` with it; the exit status.
+template <class Work>
+int with_spec(const Call& call, const Work& work) {
+    const bool warnings_are_errors = !call.warnings.empty();
+    diag::Sink sink(warnings_are_errors);
     source::File file;
-    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
-    const auto output = driver::emit(file, call.request, sink);
-    const bool refused = !output || (warnings_are_errors(call) && sink.warnings() > 0);
-    if (!refused && !call.check_only) write_output(call, *output, sink);
-    return conclude(call, file, sink);
-}
-
-int run_trace(const Call& call) {
-    diag::Sink sink;
-    source::File file;
-    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
-    const auto compiled = driver::compile(file, call.request, sink);
-    const bool refused = !compiled || (warnings_are_errors(call) && sink.warnings() > 0);
-    if (!refused) {
-        driver::RunRequest request = call.run;
-        request.progress = isatty(STDERR_FILENO) != 0;
-        driver::run(*compiled, request, sink);
-    }
-    return conclude(call, file, sink);
-}
-
-int calibrate_spec(const Call& call) {
-    diag::Sink sink;
-    source::File file;
-    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
-    driver::CalibrateRequest request = call.calibrate;
-    request.warnings_are_errors = warnings_are_errors(call);
-    request.progress = isatty(STDERR_FILENO) != 0;
-    driver::calibrate(file, request, sink);
+    if (read_spec(call.spec, file, sink)) work(file, sink);
     return conclude(call, file, sink);
 }
 
@@ -214,7 +118,8 @@ std::string emit_help() {
 void add_compile_options(CLI::App& app, Call& call) {
     std::vector<std::string> stages;
     for (const auto& [name, summary] : driver::emittable()) stages.push_back(name);
-    app.add_option("-o,--output", call.output, "where to write the result; - is standard output")->type_name("FILE");
+    app.add_option("-o,--output", call.output.result, "where to write the result; - is standard output")
+        ->type_name("FILE");
     app.add_flag("--check", call.check_only, "diagnostics only");
     app.add_option("--emit", call.request.emit, emit_help())->check(CLI::IsMember(stages))->type_name("STAGE");
     app.add_flag("--standalone", call.request.standalone, "paste the runtime in: one file to copy into firmware");
@@ -229,24 +134,26 @@ void add_compile_options(CLI::App& app, Call& call) {
                    "target sets of more bytes are not spelled out in the header, but go to a file beside it")
         ->type_name("BYTES")
         ->capture_default_str();
-    app.add_option("--targets-file", call.targets_file,
+    app.add_option("--targets-file", call.output.targets,
                    "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to it); named, it is "
                    "always written, perhaps empty")
         ->type_name("FILE");
-    app.add_option("--depfile", call.depfile, "also write what the output depends on, for make and ninja")
+    app.add_option("--depfile", call.output.depfile, "also write what the output depends on, for make and ninja")
         ->type_name("FILE");
 }
 
 /// The call's own mistakes that CLI11 cannot see; empty where there are none.
 std::string mistake_in(const Call& call, const CLI::App& app) {
     const bool prints_stage = app.count("--emit") > 0;
-    if (call.check_only && (prints_stage || !call.output.empty()))
+    if (call.check_only && (prints_stage || !call.output.result.empty()))
         return "--check goes neither with --emit nor with -o";
-    if (!call.check_only && !prints_stage && call.output.empty())
+    if (!call.check_only && !prints_stage && call.output.result.empty())
         return "say where to write the header with -o, or --check";
-    if (!call.depfile.empty() && (call.output.empty() || call.output == "-")) return "--depfile needs -o FILE";
-    if (app.count("--targets-file") > 0 && (call.targets_file.empty() || call.targets_file == "-" ||
-                                            call.targets_file == call.output || call.targets_file == call.depfile))
+    if (!call.output.depfile.empty() && (call.output.result.empty() || call.output.result == "-"))
+        return "--depfile needs -o FILE";
+    if (app.count("--targets-file") > 0 &&
+        (call.output.targets.empty() || call.output.targets == "-" || call.output.targets == call.output.result ||
+         call.output.targets == call.output.depfile))
         return "--targets-file needs a file of its own";
     if (app.count("--targets-file") > 0 && prints_stage && call.request.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
@@ -258,7 +165,8 @@ int complain(const CLI::App& app, const std::string& mistake) {
     return kWrongCall;
 }
 
-int parse_arguments(CLI::App& app, int argc, char** argv) {
+/// An exit status where the command ends here.
+std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& wish) {  // --help, --version
@@ -267,17 +175,39 @@ int parse_arguments(CLI::App& app, int argc, char** argv) {
     } catch (const CLI::ParseError& error) {
         return complain(app, error.what());
     }
-    return -1;
+    return std::nullopt;
+}
+
+void add_map_option(CLI::App& app, data::NamesInFile& names) {
+    const auto read = [&names](const std::vector<std::string>& words) {
+        std::string mistake;
+        auto parsed = driver::parse_names(words, mistake);
+        if (!parsed) throw CLI::ValidationError(mistake);
+        names = std::move(*parsed);
+    };
+    app.add_option_function<std::vector<std::string>>("--map", read,
+                                                      "what an input is called in the files: --map z=obs/z")
+        ->type_name("NAME=OTHER");
+}
+
+void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups, unsigned& jobs) {
+    app.add_option("--data", data, "episodes: .npz, .csv and .h5 files, folders, 'patterns'")
+        ->type_name("FILE...")
+        ->required();
+    app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")->type_name("PATTERN");
+    app.add_option("-j,--jobs", jobs, "threads (default: as many as the machine has)")
+        ->type_name("N")
+        ->check(CLI::Range(1U, 1024U));
 }
 
 /// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check writes nothing, so any
 /// name does.
 void name_targets_file(Call& call) {
-    call.targets_named = !call.targets_file.empty();
-    const std::filesystem::path header = call.check_only ? call.spec : call.output;
-    if (!call.targets_named && header != "-")
-        call.targets_file = (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
-    call.request.targets_file = std::filesystem::path(call.targets_file).filename().string();
+    call.output.targets_named = !call.output.targets.empty();
+    const std::filesystem::path header = call.check_only ? call.spec : call.output.result;
+    if (!call.output.targets_named && header != "-")
+        call.output.targets = (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
+    call.request.targets_file = std::filesystem::path(call.output.targets).filename().string();
 }
 
 int compile_command(int argc, char** argv) {
@@ -290,11 +220,14 @@ int compile_command(int argc, char** argv) {
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
     add_compile_options(app, call);
-    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
     if (const std::string mistake = mistake_in(call, app); !mistake.empty()) return complain(app, mistake);
-    if (call.output.empty()) call.output = "-";
+    if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
-    return compile_spec(call);
+    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+        const auto output = driver::emit(file, call.request, sink);
+        if (output && !sink.refused() && !call.check_only) driver::write_output(call.output, file, *output, sink);
+    });
 }
 
 int run_command(int argc, char** argv) {
@@ -306,33 +239,26 @@ int run_command(int argc, char** argv) {
                    "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
         ->type_name("FILE")
         ->required();
-    std::vector<std::string> names;
-    app.add_option("--map", names, "what an input is called in the trace: --map z=obs/z")->type_name("NAME=OTHER");
+    add_map_option(app, call.run.names);
     app.add_option("-o,--output", call.run.output, "where to write the verdicts, as CSV; - is standard output")
         ->type_name("FILE")
         ->capture_default_str();
     app.add_flag("--finish", call.run.finish, "after the trace, also report the last positions of sliding monitors");
-    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
-    std::string mistake;
-    const auto parsed = driver::parse_names(names, mistake);
-    if (!parsed) return complain(app, mistake);
-    call.run.names = *parsed;
-    return run_trace(call);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+        const auto compiled = driver::compile(file, call.request, sink);
+        if (compiled && !sink.refused()) driver::run(*compiled, call.run, sink);
+    });
 }
 
 int calibrate_command(int argc, char** argv) {
     Call call;
+    calibrate::Request& calibration = call.calibrate.calibration;
     CLI::App app("Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file.",
                  "etlc calibrate");
     add_spec_options(app, call);
-    std::vector<std::string> names;
-    app.add_option("--data", call.calibrate.calibration.data,
-                   "demonstrations: .npz, .csv and .h5 files, folders, patterns")
-        ->type_name("FILE...")
-        ->required();
-    app.add_option("--episodes", call.calibrate.calibration.groups, "groups of .h5 files that are episodes: 'data/*'")
-        ->type_name("PATTERN");
-    app.add_option("--map", names, "what an input is called in the files: --map z=obs/z")->type_name("NAME=OTHER");
+    add_episode_options(app, calibration.data, calibration.groups, calibration.jobs);
+    add_map_option(app, calibration.names);
     app.add_option(
            "-o,--output", call.calibrate.output,
            "where to write the thresholds (default: SPEC.thresholds.json beside the spec); - is standard output")
@@ -342,51 +268,25 @@ int calibrate_command(int argc, char** argv) {
            "the thresholds of the predicates: then the monitors that are calibrated as a whole are, on episodes "
            "that these thresholds have not seen")
         ->type_name("FILE");
-    app.add_option("-j,--jobs", call.calibrate.calibration.jobs, "threads (default: as many as the machine has)")
-        ->type_name("N")
-        ->check(CLI::Range(1U, 1024U));
-    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
-    std::string mistake;
-    const auto parsed = driver::parse_names(names, mistake);
-    if (!parsed) return complain(app, mistake);
-    call.calibrate.calibration.names = *parsed;
-    return calibrate_spec(call);
-}
-
-int evaluate_spec(const Call& call) {
-    diag::Sink sink;
-    source::File file;
-    if (!read_spec(call.spec, file, sink)) return conclude(call, file, sink);
-    driver::EvaluateRequest request = call.evaluate;
-    request.warnings_are_errors = warnings_are_errors(call);
-    request.progress = isatty(STDERR_FILENO) != 0;
-    driver::evaluate(file, call.request, request, sink);
-    return conclude(call, file, sink);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {  //
+        driver::calibrate(file, call.calibrate, sink);
+    });
 }
 
 int evaluate_command(int argc, char** argv) {
     Call call;
     CLI::App app("Compares a spec's predicates and monitors with ground truth on recorded episodes.", "etlc evaluate");
     add_common_options(app, call);
-    app.add_option("--data", call.evaluate.data, "episodes: files (.npz, .csv, .h5), folders and 'patterns'")
-        ->type_name("FILE")
-        ->required();
-    std::vector<std::string> names;
-    app.add_option("--map", names, "what an input is called in the episodes: --map z=obs/z")->type_name("NAME=OTHER");
-    app.add_option("--episodes", call.evaluate.groups, "of .h5 files, the groups that are episodes: 'data/*'")
-        ->type_name("PATTERN");
+    add_episode_options(app, call.evaluate.data, call.evaluate.groups, call.evaluate.evaluation.jobs);
+    add_map_option(app, call.evaluate.evaluation.names);
     app.add_option("--json", call.evaluate.json, "also write the result as JSON; - is standard output")
         ->type_name("FILE");
     app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")->type_name("FILE");
-    app.add_option("-j,--jobs", call.evaluate.evaluation.jobs, "threads (default: as many as the machine has)")
-        ->type_name("N")
-        ->check(CLI::Range(1U, 1024U));
-    if (const int status = parse_arguments(app, argc, argv); status >= 0) return status;
-    std::string mistake;
-    const auto parsed = driver::parse_names(names, mistake);
-    if (!parsed) return complain(app, mistake);
-    call.evaluate.evaluation.names = *parsed;
-    return evaluate_spec(call);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+        driver::evaluate(file, call.request, call.evaluate, sink);
+    });
 }
 
 }  // namespace

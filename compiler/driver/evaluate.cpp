@@ -8,15 +8,11 @@
 #include "data/episodes.hpp"
 #include "data/file.hpp"
 #include "driver/names.hpp"
+#include "driver/progress.hpp"
 
 namespace etlc::driver {
 
 namespace {
-
-void show_progress(std::size_t done, std::size_t total) {
-    fmt::print(stderr, "\r{} of {} episodes", done, total);
-    if (done == total) fmt::print(stderr, "\r{:40}\r", "");
-}
 
 /// The file that the spec's thresholds were read from; nothing where nothing is calibrated.
 std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
@@ -42,13 +38,13 @@ bool write(const std::string& path, const std::string& text, diag::Sink& sink) {
 
 bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation, diag::Sink& sink) {
     const auto compiled = compile(file, request, sink);
-    if (!compiled || (evaluation.warnings_are_errors && sink.warnings() > 0)) return false;
+    if (!compiled || sink.refused()) return false;
     const check::Model& model = *compiled->model;
     evaluate::Request asked = evaluation.evaluation;
     if (!check_names(model, asked.names, sink)) return false;
     asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
     if (sink.has_errors()) return false;
-    if (evaluation.progress) asked.progress = show_progress;
+    asked.progress = episodes_progress();
 
     auto labelled = evaluate::find_labelled(model, asked, sink);
     if (!labelled) return false;

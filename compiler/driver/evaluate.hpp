@@ -18,8 +18,6 @@ struct EvaluateRequest {
     std::string json;               ///< path; empty: not asked for
     std::string csv;
     evaluate::Request evaluation;  ///< its episodes and progress are set here
-    bool warnings_are_errors = false;
-    bool progress = false;  ///< on stderr
 };
 
 /// False where the sink now says why not.

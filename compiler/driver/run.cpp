@@ -8,6 +8,7 @@
 #include "data/file.hpp"
 #include "data/trace.hpp"
 #include "driver/names.hpp"
+#include "driver/progress.hpp"
 #include "plan/evaluator.hpp"
 
 namespace etlc::driver {
@@ -114,9 +115,9 @@ private:
     }
 
     void show_progress(std::uint64_t length) const {
-        if (!request_.progress || length == 0 || step_ % kStepsPerReport != 0) return;
+        if (!watched_ || length == 0 || step_ % kStepsPerReport != 0) return;
         fmt::print(stderr, "\r{:3}% of {} steps", 100 * step_ / length, length);
-        if (step_ + kStepsPerReport > length) fmt::print(stderr, "\r{:40}\r", "");
+        if (step_ + kStepsPerReport > length) fmt::print(stderr, kEraseProgress);
     }
 
     const plan::Plan& plan_;
@@ -126,6 +127,7 @@ private:
     data::AtomicFile* output_ = nullptr;
     std::string text_;
     std::uint64_t step_ = 0;
+    const bool watched_ = progress_is_seen();
 };
 
 }  // namespace

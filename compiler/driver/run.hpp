@@ -15,8 +15,7 @@ struct RunRequest {
     std::string trace;
     data::NamesInFile names;
     std::string output = "-";
-    bool finish = false;    ///< also the positions that sliding monitors report after the end of the trace
-    bool progress = false;  ///< on stderr
+    bool finish = false;  ///< also the positions that sliding monitors report after the end of the trace
 };
 
 /// False where the sink now says why not.

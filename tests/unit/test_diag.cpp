@@ -167,7 +167,7 @@ TEST(Text, ColoursOnlyWhenAsked) {
     Sink sink;
     sink.report(Code::syntax_error, {0, 1}, "x");
     EXPECT_EQ(diag::render_text(file, sink).find('\x1b'), std::string::npos);
-    EXPECT_NE(diag::render_text(file, sink, {true, false}).find("\x1b[1;31merror:"), std::string::npos);
+    EXPECT_NE(diag::render_text(file, sink, diag::Colour::ansi).find("\x1b[1;31merror:"), std::string::npos);
 }
 
 TEST(Text, ManyFindingsAreCountedNotAllShown) {
@@ -188,16 +188,18 @@ Code some_warning() {
 
 TEST(Text, WarningsAndWerror) {
     const File file("a.etl", "abc");
-    Sink sink;
-    sink.report(Code::syntax_error, {0, 1}, "x");
-    sink.report(some_warning(), {1, 2}, "y");
-    sink.report(some_warning(), {2, 3}, "z");
-    EXPECT_EQ(sink.errors(), 1U);
-    EXPECT_EQ(sink.warnings(), 2U);
-    const std::string plain = diag::render_text(file, sink);
+    const auto text = [&](Sink sink) {
+        sink.report(Code::syntax_error, {0, 1}, "x");
+        sink.report(some_warning(), {1, 2}, "y");
+        sink.report(some_warning(), {2, 3}, "z");
+        EXPECT_EQ(sink.errors(), 1U);
+        EXPECT_EQ(sink.warnings(), 2U);
+        return diag::render_text(file, sink);
+    };
+    const std::string plain = text(Sink());
     EXPECT_NE(plain.find("a.etl:1:2: warning: y"), std::string::npos);
     EXPECT_NE(plain.find("1 error, 2 warnings\n"), std::string::npos);
-    const std::string strict = diag::render_text(file, sink, {false, true});
+    const std::string strict = text(Sink(true));
     EXPECT_NE(strict.find("a.etl:1:2: error: y"), std::string::npos);
     EXPECT_NE(strict.find("3 errors\n"), std::string::npos);
 }
@@ -246,11 +248,15 @@ TEST(Json, SurvivesBytesThatAreNotText) {
 
 TEST(Json, WarningsAsErrors) {
     const File file("a.etl", "abc");
-    Sink sink;
-    sink.report(some_warning(), {1, 2}, "y");
-    EXPECT_EQ(nlohmann::json::parse(diag::render_json(file, sink))["diagnostics"][0]["severity"], "warning");
-    const auto strict = nlohmann::json::parse(diag::render_json(file, sink, {false, true}));
-    EXPECT_EQ(strict["diagnostics"][0]["severity"], "error");
+    const auto severity = [&](Sink sink) {
+        EXPECT_FALSE(sink.refused());
+        sink.report(some_warning(), {1, 2}, "y");
+        EXPECT_FALSE(sink.has_errors());
+        return std::pair(sink.refused(),
+                         nlohmann::json::parse(diag::render_json(file, sink))["diagnostics"][0]["severity"]);
+    };
+    EXPECT_EQ(severity(Sink()), std::pair(false, nlohmann::json("warning")));
+    EXPECT_EQ(severity(Sink(true)), std::pair(true, nlohmann::json("error")));
 }
 
 // ---- nearest names
