@@ -113,7 +113,7 @@ struct Deployed : testing::Test {
     void build(const std::string& flags) {
         GeneratedProgram program(fmt::format("deployed{}", built.size()));
         ASSERT_TRUE(program.add(model));
-        ASSERT_TRUE(program.compile({"g++", flags, false}));
+        ASSERT_TRUE(program.compile({"Gcc", "g++", flags}));
         std::vector<Request> requests;
         constexpr std::size_t kSteps = 500;  // the harness takes no traces of any length
         for (std::size_t at = 0; at < trace.size(); at += kSteps) {

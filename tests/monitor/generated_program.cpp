@@ -48,6 +48,7 @@ bool GeneratedProgram::add(const check::Model& model, check::Values values, cons
 }
 
 bool GeneratedProgram::compile(const Build& build) {
+    emulator_ = build.emulator;
     std::string parts[2];
     std::vector<std::string> names;
     for (std::size_t n = 0; n < models_.size(); ++n) {
@@ -69,7 +70,7 @@ GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& reque
     for (const Request& request : requests) bytes += encode(models_[request.spec], request);
     write_text(folder_ / "requests.bin", bytes);
     Result result;
-    if (!command(fmt::format("./program {} < requests.bin > answers.bin", arguments))) return result;
+    if (!command(fmt::format("{} ./program {} < requests.bin > answers.bin", emulator_, arguments))) return result;
     const std::string answers = read_text((folder_ / "answers.bin").string());
     Decoder decoder(answers);
     for (const Request& request : requests) result.answers.push_back(decoder.answer(models_[request.spec], request));

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <ostream>
 #include <string>
 #include <vector>
 
@@ -13,11 +14,24 @@
 
 namespace etlc::tests {
 
+/// How a program is made and run.
 struct Build {
+    std::string name;      ///< of the test that is instantiated with it
     std::string compiler;  ///< g++, clang++
     std::string flags;
-    bool counts_malloc = false;  ///< not beside AddressSanitizer
+    bool counts_malloc = false;  ///< neither beside AddressSanitizer nor in a static program
+    std::string emulator{};      ///< that runs the program; empty: this machine does
 };
+inline void PrintTo(const Build& build, std::ostream* out) {
+    *out << build.name;
+}
+
+inline constexpr const char* kSanitizers = "-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all";
+inline const Build kGccSanitized{"GccSanitized", "g++", kSanitizers};
+inline const Build kClangSanitized{"ClangSanitized", "clang++", kSanitizers};
+inline const Build kGccFastMath{"GccFastMath", "g++", "-O3 -ffast-math", true};
+inline const Build kClangFastMath{"ClangFastMath", "clang++", "-O3 -ffast-math", true};
+inline const Build kAarch64{"Aarch64", "aarch64-linux-gnu-g++", "-O2 -static", false, "qemu-aarch64"};
 
 class GeneratedProgram {
 public:
@@ -42,6 +56,7 @@ public:
 private:
     std::filesystem::path folder_;
     std::vector<check::Model> models_;
+    std::string emulator_;
 
     bool command(const std::string& line);
 };

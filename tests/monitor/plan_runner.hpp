@@ -15,6 +15,9 @@
 
 namespace etlc::tests {
 
+/// Above what any spec of the tests needs: all operators at once are more than one monitor class should hold.
+constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
+
 class PlanRunner {
 public:
     /// The model must outlive the runner. `limits` as `etlc` takes them.

@@ -26,6 +26,15 @@ struct SpecShape {
     bool exact = true;
 };
 
+/// One spec of each kind of formulas, of a size that compiles in a second.
+inline constexpr SpecShape kSmallShapes[] = {
+    {.formulas = SpecShape::Formulas::unnested, .depth = 3},
+    {.formulas = SpecShape::Formulas::unbounded_nesting, .depth = 3},
+    {.formulas = SpecShape::Formulas::prefix, .monitors = 5, .depth = 3, .window = 3},
+    {.formulas = SpecShape::Formulas::sliding, .depth = 3, .window = 3},
+    {.formulas = SpecShape::Formulas::mixed, .depth = 3, .window = 3},
+};
+
 std::string random_spec(std::uint64_t seed, const SpecShape& shape);
 
 }  // namespace etlc::tests

@@ -20,8 +20,6 @@ using namespace etlc::tests;
 using check::Values;
 using Formulas = SpecShape::Formulas;
 
-constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
-
 void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace) {
     const auto mismatch =
         first_mismatch(model, reference::evaluate(model, trace, Values::boolean), runner.run(trace), {});

@@ -22,9 +22,6 @@ using namespace etlc;
 using namespace etlc::tests;
 using Formulas = SpecShape::Formulas;
 
-/// Above what any spec here needs: all operators at once are more than one monitor class should hold.
-constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
-
 /// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
 constexpr double kRounding = 1e-5;
 

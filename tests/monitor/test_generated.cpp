@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <optional>
-#include <ostream>
 #include <string>
 #include <vector>
 
@@ -26,9 +25,6 @@ using Formulas = SpecShape::Formulas;
 
 /// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
 constexpr double kRounding = 1e-5;
-
-/// Above what any spec here needs: all operators at once are more than one monitor class should hold.
-constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
 
 struct Subject {
     std::string spec;
@@ -106,16 +102,7 @@ struct Expectation {
     }
 };
 
-struct Variant {
-    const char* name;
-    Build build;
-};
-
-void PrintTo(const Variant& variant, std::ostream* out) {
-    *out << variant.name;
-}
-
-class Generated : public testing::TestWithParam<Variant> {};
+class Generated : public testing::TestWithParam<Build> {};
 
 TEST_P(Generated, AgreesWithTheReference) {
     const std::vector<Subject> all = subjects();
@@ -128,7 +115,7 @@ TEST_P(Generated, AgreesWithTheReference) {
         const auto more = requests_for(*model, static_cast<std::uint32_t>(program.size() - 1), subject);
         requests.insert(requests.end(), more.begin(), more.end());
     }
-    ASSERT_TRUE(program.compile(GetParam().build));
+    ASSERT_TRUE(program.compile(GetParam()));
     const auto result = program.run(requests);
     ASSERT_EQ(result.answers.size(), requests.size());
     std::vector<Expectation> expected;
@@ -148,18 +135,11 @@ TEST_P(Generated, AgreesWithTheReference) {
     // The counting works: a program that allocates on purpose is found out, with each way it does.
     const auto control = program.run({requests[0]}, "misbehave");
     const std::uint64_t watched = requests[0].first.size() + 2 * requests[0].second.size() + 3;
-    EXPECT_GE(control.allocations, watched * (GetParam().build.counts_malloc ? 3 : 1));
+    EXPECT_GE(control.allocations, watched * (GetParam().counts_malloc ? 3 : 1));
 }
 
-const std::string kSanitizers = "-O1 -g1 -fsanitize=address,undefined -fno-sanitize-recover=all";
-const Variant kVariants[] = {
-    {"GccSanitized", {"g++", kSanitizers}},
-    {"ClangSanitized", {"clang++", kSanitizers}},
-    {"GccFastMath", {"g++", "-O3 -ffast-math", true}},
-    {"ClangFastMath", {"clang++", "-O3 -ffast-math", true}},
-};
-
-INSTANTIATE_TEST_SUITE_P(Compilers, Generated, testing::ValuesIn(kVariants),
-                         [](const auto& variant) { return std::string(variant.param.name); });
+INSTANTIATE_TEST_SUITE_P(Builds, Generated,
+                         testing::Values(kGccSanitized, kClangSanitized, kGccFastMath, kClangFastMath, kAarch64),
+                         [](const auto& build) { return build.param.name; });
 
 }  // namespace

@@ -11,7 +11,6 @@
 namespace exact {
 namespace {
 
-using Real = long double;
 using Vector = Eigen::Matrix<Real, Eigen::Dynamic, 1>;
 using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using etlmon::AggregationId;

@@ -1,16 +1,21 @@
-// Distances straight from their definitions, in long double with Eigen: the judge of the kernels.
+// Distances straight from their definitions, in Real with Eigen: the judge of the kernels.
 // Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the exact distance and the
 // bound on the kernel's error; the verdict on what a kernel computed. Keeps true: compiled without -ffast-math,
 // whatever the kernels under test are compiled with; shares no arithmetic with them.
 #pragma once
 
+#include <cfloat>
 #include <cstdint>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include "etlmon/error_bounds.hpp"
 
 namespace exact {
+
+/// The widest type that the machine computes with; elsewhere than on x86 long double is emulated, and slow.
+using Real = std::conditional_t<LDBL_MANT_DIG == 64, long double, double>;
 
 struct Case {
     etlmon::MetricId metric = etlmon::MetricId::l2;
@@ -38,7 +43,7 @@ private:
     etlmon::MetricId metric_;
     etlmon::Denormals denormals_;
     bool unknown_ = false;
-    std::vector<long double> low_, exact_, high_;  ///< per row
+    std::vector<Real> low_, exact_, high_;  ///< per row
 };
 
 /// A symmetric positive definite D x D matrix, by the seed.

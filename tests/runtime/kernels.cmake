@@ -62,6 +62,7 @@ else()
   add_test(NAME test_kernels_clang_fast_math
     COMMAND ${CMAKE_CURRENT_BINARY_DIR}/test_kernels_clang_fast_math --gtest_brief=1)
 endif()
+include(aarch64.cmake)
 add_test(NAME runtime_headers
   COMMAND ${CMAKE_CURRENT_SOURCE_DIR}/headers.sh ${PROJECT_SOURCE_DIR} ${kernel_compilers})
 set_tests_properties(runtime_headers PROPERTIES TIMEOUT 900)

@@ -17,7 +17,7 @@ constexpr int kMonitorsPerClass = 20;
 constexpr int kClassesPerProgram = 4;
 constexpr int kShrinkingTries = 150;  // each is a run of the compiler
 constexpr plan::Limits kRoomy{64U << 20U, 64U << 20U, 256U << 20U};
-const Build kBuild{"g++", "-O1"};
+const Build kBuild{"Gcc", "g++", "-O1"};
 
 /// The spec without the monitors that are refused, each under the usual limits for itself.
 std::string without_refused(const std::string& spec, check::Values values) {

@@ -1,0 +1,35 @@
+# The tests of the kernels on AArch64 with NEON: cross-compiled, run by qemu-user. Static, so that no foreign libraries have to be found.
+find_program(ETLC_AARCH64 aarch64-linux-gnu-g++)
+find_program(ETLC_QEMU_AARCH64 qemu-aarch64)
+find_path(ETLC_GTEST_SOURCES src/gtest-all.cc PATHS /usr/src/googletest/googletest)
+mark_as_advanced(ETLC_AARCH64 ETLC_QEMU_AARCH64 ETLC_GTEST_SOURCES)
+if(NOT ETLC_AARCH64 OR NOT ETLC_QEMU_AARCH64 OR NOT ETLC_GTEST_SOURCES)
+  etlc_missing_tool(aarch64-linux-gnu-g++ "g++-aarch64-linux-gnu, qemu-user and googletest")
+  return()
+endif()
+
+file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/* ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+set(objects)
+# etlc_aarch64_object(SOURCE option...): one object of the program.
+function(etlc_aarch64_object source)
+  get_filename_component(name ${source} NAME)
+  add_custom_command(OUTPUT aarch64_${name}.o
+    COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_AARCH64} -std=c++17 -O2 -isystem ${ETLC_GTEST_SOURCES}/include ${ARGN}
+            -c ${source} -o aarch64_${name}.o
+    DEPENDS ${source} ${kernel_headers} VERBATIM)
+  set(objects ${objects} aarch64_${name}.o PARENT_SCOPE)
+endfunction()
+etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest-all.cc -I${ETLC_GTEST_SOURCES} -w)
+etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest_main.cc -I${ETLC_GTEST_SOURCES} -w)
+get_target_property(eigen_headers Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
+foreach(source exact.cpp ${kernel_sources} test_kernel_versions.cpp)
+  etlc_aarch64_object(${CMAKE_CURRENT_SOURCE_DIR}/${source} -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers}
+    ${kernel_warnings})
+endforeach()
+add_custom_command(OUTPUT test_kernels_aarch64
+  # ld warns that gtest's getaddrinfo would need the C library at run time; no test asks for it.
+  COMMAND ${ETLC_AARCH64} -static -Wl,--no-warnings ${objects} -o test_kernels_aarch64
+  DEPENDS ${objects} VERBATIM)
+add_custom_target(kernels_aarch64 ALL DEPENDS test_kernels_aarch64)
+add_test(NAME test_kernels_aarch64
+  COMMAND ${ETLC_QEMU_AARCH64} ${CMAKE_CURRENT_BINARY_DIR}/test_kernels_aarch64 --gtest_brief=1)
