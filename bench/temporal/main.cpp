@@ -46,54 +46,77 @@ std::string figure(const json& row, const char* name, int decimals) {
     return text;
 }
 
+struct Column {
+    const char* head;  ///< two lines
+    const char* below;
+    const char* key;  ///< of the figure
+    int width, decimals;
+};
+constexpr Column kColumns[] = {
+    {"plain", "ns", "plain_ns", 7, 2},
+    {"rho", "ns", "robustness_ns", 7, 2},
+    {"rho/", "plain", "robustness_to_plain", 6, 2},
+    {"verd/", "rho", "verdict_to_robustness", 6, 2},
+    {"rescan/", "rho", "rescan_to_robustness", 8, 1},
+    {"| called", "plain", "plain_called_ns", 9, 2},
+    {"rho", "ns", "robustness_called_ns", 7, 2},
+    {"rho/", "plain", "robustness_called_to_plain", 6, 2},
+    {"verdict", "ns", "verdict_called_ns", 8, 2},
+    {"+-", "%", "spread_percent", 3, 0},
+    {"copilot/", "rho", "copilot_to_robustness_called", 9, 1},
+    {"| worst", "ns", "worst_step_ns", 8, 0},
+    {"state", "bytes", "state_bytes", 8, 0},
+    {"ops", "", "operations", 6, 0},
+};
+
 void print_head() {
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n", "formula", "plain", "rho", "verdict",
-                "+-", "rho/", "verd/", "rescan/", "copilot/", "plain,", "verd,", "worst", "state", "ops");
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n", "", "ns", "ns", "ns", "%", "plain",
-                "rho", "rho", "call ns", "call ns", "ns", "bytes", "");
+    for (const char* Column::*line : {&Column::head, &Column::below}) {
+        std::printf("%-36s", line == &Column::head ? "formula" : "");
+        for (const Column& column : kColumns) std::printf(" %*s", column.width, column.*line);
+        std::printf("\n");
+    }
 }
 
 void print(const json& row) {
-    std::printf("%-37s %7s %7s %7s %5s %6s %6s %7s %8s %7s %7s %7s %8s %7s\n",
-                row["formula"].get<std::string>().c_str(), figure(row, "plain_ns", 2).c_str(),
-                figure(row, "robustness_ns", 2).c_str(), figure(row, "verdict_ns", 2).c_str(),
-                figure(row, "spread_percent", 0).c_str(), figure(row, "robustness_to_plain", 2).c_str(),
-                figure(row, "verdict_to_robustness", 2).c_str(), figure(row, "rescan_to_robustness", 1).c_str(),
-                figure(row, "copilot_to_robustness", 1).c_str(), figure(row, "plain_called_ns", 2).c_str(),
-                figure(row, "verdict_called_ns", 2).c_str(), figure(row, "worst_step_ns", 0).c_str(),
-                figure(row, "state_bytes", 0).c_str(), figure(row, "operations", 0).c_str());
+    std::printf("%-36s", row["formula"].get<std::string>().c_str());
+    for (const Column& column : kColumns)
+        std::printf(" %*s", column.width, figure(row, column.key, column.decimals).c_str());
+    std::printf("\n");
     std::fflush(stdout);
 }
 
 json measured(const Row& row, bench::Effort effort) {
-    std::vector<Routine> routines{row.rho, row.verdict, row.called};
-    for (const std::optional<Routine>& more : {row.plain, row.plain_called, row.rescan, row.copilot})
+    std::vector<Routine> routines{row.rho.loop, row.rho.call, row.verdict.loop, row.verdict.call};
+    for (const std::optional<Routine>& more : {row.plain.loop, row.plain.call, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
-    const Series& rho = series[0];
+    const bench::Ways<Series> rho{series[0], series[1]}, verdict{series[2], series[3]};
     json result{{"formula", row.title},
-                {"robustness_ns", rho.median()},
-                {"verdict_ns", series[1].median()},
-                {"spread_percent", 100 * series[1].spread()},
-                {"verdict_to_robustness", bench::ratio(series[1], rho)},
-                {"verdict_called_ns", series[2].median()},
+                {"robustness_ns", rho.loop.median()},
+                {"robustness_called_ns", rho.call.median()},
+                {"verdict_ns", verdict.loop.median()},
+                {"verdict_called_ns", verdict.call.median()},
+                {"spread_percent", 100 * verdict.call.spread()},
+                {"verdict_to_robustness", bench::ratio(verdict.loop, rho.loop)},
                 {"state_bytes", row.state_bytes},
                 {"operations", row.operations},
                 {"worst_step_ns", row.worst()}};
-    std::size_t next = 3;
-    if (row.plain) {
-        result["plain_ns"] = series[next].median();
-        result["robustness_to_plain"] = bench::ratio(rho, series[next++]);
-        result["plain_called_ns"] = series[next].median();
-        result["verdict_to_plain_called"] = bench::ratio(series[2], series[next++]);
+    std::size_t next = 4;
+    if (row.plain.loop) {
+        const bench::Ways<Series> plain{series[next], series[next + 1]};
+        next += 2;
+        result["plain_ns"] = plain.loop.median();
+        result["plain_called_ns"] = plain.call.median();
+        result["robustness_to_plain"] = bench::ratio(rho.loop, plain.loop);
+        result["robustness_called_to_plain"] = bench::ratio(rho.call, plain.call);
     }
     if (row.rescan) {
         result["rescan_ns"] = series[next].median();
-        result["rescan_to_robustness"] = bench::ratio(series[next++], rho);
+        result["rescan_to_robustness"] = bench::ratio(series[next++], rho.loop);
     }
     if (row.copilot) {
         result["copilot_ns"] = series[next].median();
-        result["copilot_to_robustness"] = bench::ratio(series[next], rho);
+        result["copilot_to_robustness_called"] = bench::ratio(series[next], rho.call);
     }
     return result;
 }

@@ -23,30 +23,38 @@ namespace bench {
 constexpr std::size_t kSteps = 1 << 15;
 constexpr std::size_t kChunk = 512;  ///< results are written over again, so that they stay in the first-level cache
 
+/// The steps in a loop, which keeps the state in registers where it can; or each called by itself, as in a control
+/// loop: it finds the state in memory and leaves it there.
+template <class T>
+struct Ways {
+    T loop, call;
+};
+
 struct Row {
     std::string title;
     std::size_t state_bytes = 0;
     std::uint32_t operations = 0;
-    std::optional<Routine> plain, rescan;  ///< robustness by hand
-    std::optional<Routine> plain_called;   ///< the same, its state in memory between steps
-    std::optional<Routine> copilot;        ///< Copilot's monitor, whose state is in memory too
-    Routine rho;                           ///< the monitor; its user reads `robustness` alone
-    Routine verdict;                       ///< its user reads all of the verdict
-    Routine called;                        ///< the same, its state in memory between steps
-    std::function<double()> worst;         ///< nanoseconds of its slowest step
+    Ways<std::optional<Routine>> plain;  ///< robustness by hand
+    std::optional<Routine> rescan;       ///< the same, with windows gone through anew at each step, in a loop
+    std::optional<Routine> copilot;      ///< Copilot's monitor, called
+    Ways<Routine> rho;                   ///< the monitor; its user reads `robustness` alone
+    Ways<Routine> verdict;               ///< its user reads all of the verdict
+    std::function<double()> worst;       ///< nanoseconds of its slowest step
 };
 
-/// The monitor's user, in a loop: a chunk of steps, robustness alone.
-template <class Case>
+/// The monitor's user: a chunk of steps, robustness alone.
+template <class Case, bool kCalled>
 [[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
                                        float* __restrict out) {
-    for (std::size_t i = 0; i < kChunk; ++i)
+    for (std::size_t i = 0; i < kChunk; ++i) {
         Case::visit(monitor.step(Case::inputs(signals, from + i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
             out[i * Case::kMonitors + m] = verdict.robustness;
         });
+        if (kCalled) settle_memory();
+    }
 }
 
-/// A chunk of steps, all of every verdict. Called: each step finds the state in memory and leaves it there.
+/// A chunk of steps, all of every verdict.
 template <class Case, bool kCalled>
 [[gnu::noinline]] void read_verdict(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
                                     etlmon::Verdict* __restrict out) {
@@ -152,9 +160,8 @@ Row row() {
     if constexpr (!std::is_same_v<typename Case::Plain, NoRescanning>) {
         using Plain = typename Case::Plain;
         check<Case>(*signals, *std::make_unique<Plain>());
-        result.plain = routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>);
-        result.plain_called =
-            routine<float, Plain>("plain, called", kMonitors, signals, by_hand<Plain, kMonitors, true>);
+        result.plain = {routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>),
+                        routine<float, Plain>("plain, called", kMonitors, signals, by_hand<Plain, kMonitors, true>)};
     }
     if constexpr (!std::is_same_v<typename Case::Rescanning, NoRescanning>) {
         using Rescanning = typename Case::Rescanning;
@@ -162,9 +169,13 @@ Row row() {
         result.rescan = routine<float, Rescanning>("rescan", kMonitors, signals, by_hand<Rescanning, kMonitors, false>);
     }
     result.copilot = copilot_routine<Case>(signals);
-    result.rho = routine<float, Monitor>("robustness", kMonitors, signals, read_robustness<Case>);
-    result.verdict = routine<etlmon::Verdict, Monitor>("verdict", kMonitors, signals, read_verdict<Case, false>);
-    result.called = routine<etlmon::Verdict, Monitor>("verdict, called", kMonitors, signals, read_verdict<Case, true>);
+    const auto monitored = [&](auto result_type, const char* name, auto chunk) {
+        return routine<decltype(result_type), Monitor>(name, kMonitors, signals, chunk);
+    };
+    result.rho = {monitored(float{}, "robustness", read_robustness<Case, false>),
+                  monitored(float{}, "robustness, called", read_robustness<Case, true>)};
+    result.verdict = {monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false>),
+                      monitored(etlmon::Verdict{}, "verdict, called", read_verdict<Case, true>)};
     result.worst = slowest_step<Case>;
     return result;
 }
