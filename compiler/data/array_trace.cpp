@@ -19,13 +19,14 @@ using diag::Code;
 using diag::Failure;
 using Kind = Channel::Kind;
 
-/// Without branches: a billion elements pass here.
+/// Without branches or comparisons, several at a time: a billion elements pass here. An exponent of ones alone, to
+/// which one is added, carries into the sign.
 bool all_finite(const std::vector<double>& values) {
     constexpr std::uint64_t kExponent = 0x7ff0000000000000;
+    constexpr std::uint64_t kOne = 0x0010000000000000;
     std::uint64_t found = 0;
-    for (const double value : values)
-        found |= std::uint64_t{(std::bit_cast<std::uint64_t>(value) & kExponent) == kExponent};
-    return found == 0;
+    for (const double value : values) found |= (std::bit_cast<std::uint64_t>(value) & kExponent) + kOne;
+    return found >> 63 == 0;
 }
 
 class ArrayTrace final : public Trace {

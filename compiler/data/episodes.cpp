@@ -107,10 +107,13 @@ void EpisodeHash::add(const Sample& sample) {
     bits_.resize(n);
     auto to = bits_.begin();
     for (const std::size_t c : channels_) {
-        const bool present = sample.present[c];
-        to = std::transform(sample.values[c].begin(), sample.values[c].end(), to, [&](double value) {
-            return present && value == value ? std::bit_cast<std::uint32_t>(static_cast<float>(value)) : kNaN;
-        });
+        const std::vector<double>& values = sample.values[c];
+        const auto bits = [](double value) {
+            const auto narrowed = static_cast<float>(value);
+            return narrowed == narrowed ? std::bit_cast<std::uint32_t>(narrowed) : kNaN;
+        };
+        to = sample.present[c] ? std::transform(values.begin(), values.end(), to, bits)
+                               : std::fill_n(to, values.size(), kNaN);
     }
     if constexpr (std::endian::native == std::endian::big)
         for (std::uint32_t& bits : bits_) bits = __builtin_bswap32(bits);

@@ -7,6 +7,7 @@
 #include "etlmon/delay.hpp"
 #include "etlmon/predicate.hpp"
 #include "etlmon/shift.hpp"
+#include "etlmon/views.hpp"
 #include "etlmon/window.hpp"
 #include "plan/literals.hpp"
 
@@ -85,9 +86,7 @@ void Evaluator::observe(Index predicate, float distance, bool truth) {
 
 bool Evaluator::usable(const check::Input& input, const Sample& sample) const {
     if (!sample.present || sample.values.empty()) return false;
-    const bool finite =
-        std::all_of(sample.values.begin(), sample.values.end(), [](float x) { return std::isfinite(x); });
-    if (!finite) return false;
+    if (!etlmon::finite(sample.values.data(), sample.values.size())) return false;
     if (input.type != check::InputType::scalar) return true;
     return input.range.low <= sample.values[0] && sample.values[0] <= input.range.high;
 }

@@ -28,9 +28,7 @@ std::optional<Sample> narrow(const check::Input& input, bool present, const std:
     if (!present) return sample;
     sample.present = true;
     if (input.type != check::InputType::f16 && input.type != check::InputType::i8) {
-        sample.values.resize(numbers.size());
-        std::transform(numbers.begin(), numbers.end(), sample.values.begin(),
-                       [](double number) { return static_cast<float>(number); });
+        sample.values.assign(numbers.begin(), numbers.end());
         return sample;
     }
     sample.values.reserve(numbers.size());
