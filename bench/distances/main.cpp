@@ -1,12 +1,13 @@
 // min l2 over K targets: nanoseconds per call of every contestant in every cell, in one run, and the ratios that count.
-// Usage: bench_distances [--json FILE] [--rounds N]
+// Usage: bench_distances [--json FILE] [--rounds N] [--cold]
 // Contestants take turns within each round, so that a change of the machine's speed meets all of them; processor time,
 // of which the median round counts. Answers are compared first: a contestant that is wrong is an error, not a result.
+// --cold: a round is one call, after other data went through the caches, by the clock on the wall.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <fstream>
 #include <map>
@@ -15,6 +16,7 @@
 #include <string>
 
 #include "cells.hpp"
+#include "cold.hpp"
 
 namespace {
 
@@ -90,7 +92,7 @@ struct Competitor {
 };
 
 /// ns per call of every contestant, median over the rounds.
-std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants, int rounds) {
+std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants, int rounds, bool cold) {
     const Data data(cell);
     std::vector<Competitor> competitors;
     for (const Contestant& c : contestants) {
@@ -105,19 +107,28 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
                 std::exit(1);
             }
         }
+        if (cold) {
+            volatile float sink = 0;
+            std::uint32_t i = 0;
+            competitors.push_back({c.name, entry->nearest, state, 1, {cold_call(rounds, [&] {
+                                       sink = entry->nearest(data.point(i++), data.targets(), state);
+                                   })}});
+            continue;
+        }
         std::uint64_t calls = 1;
         constexpr double kRound = 2e-3;
         while (seconds(entry->nearest, data, state, calls) < kRound) calls *= 2;
         competitors.push_back({c.name, entry->nearest, state, calls, {}});
     }
-    for (int round = 0; round < rounds; ++round) {
+    for (int round = 0; round < rounds && !cold; ++round) {
         for (Competitor& c : competitors)
             c.rounds.push_back(seconds(c.nearest, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls));
     }
     std::map<std::string, double> medians;
     for (Competitor& c : competitors) {
-        std::nth_element(c.rounds.begin(), c.rounds.begin() + rounds / 2, c.rounds.end());
-        medians[c.name] = c.rounds[static_cast<std::size_t>(rounds / 2)];
+        const std::size_t middle = c.rounds.size() / 2;
+        std::nth_element(c.rounds.begin(), c.rounds.begin() + static_cast<std::ptrdiff_t>(middle), c.rounds.end());
+        medians[c.name] = c.rounds[middle];
     }
     return medians;
 }
@@ -134,10 +145,12 @@ std::string cpu_name() {
 int main(int argc, char** argv) {
     std::string json;
     int rounds = 15;
-    for (int i = 1; i + 1 < argc; i += 2) {
-        if (std::strcmp(argv[i], "--json") == 0) json = argv[i + 1];
-        if (std::strcmp(argv[i], "--rounds") == 0) rounds = std::max(1, std::atoi(argv[i + 1]));
-    }
+    bool cold = false;
+    CLI::App app{"The smallest of K distances, by ours and by peers."};
+    app.add_option("--json", json, "writes the figures there too");
+    app.add_option("--rounds", rounds, "figures are medians over them")->check(CLI::PositiveNumber);
+    app.add_flag("--cold", cold, "calls that find nothing in the caches");
+    CLI11_PARSE(app, argc, argv);
     const std::vector<Contestant> ours {
         etlmon_gxx(), etlmon_gxx_native(),
 #if defined(ETLC_BENCH_CLANG)
@@ -149,8 +162,8 @@ int main(int argc, char** argv) {
     all.insert(all.end(), peers.begin(), peers.end());
     all.insert(all.end(), ours.begin(), ours.end());
 
-    std::printf("min l2 over K targets of D float32, ns per call, median of %d rounds; %s\n", rounds,
-                cpu_name().c_str());
+    std::printf("min l2 over K targets of D float32, ns per call, %s caches, median of %d rounds; %s\n",
+                cold ? "cold" : "warm", rounds, cpu_name().c_str());
     std::printf("%-11s", "D x K");
     for (const Contestant& c : all) std::printf(" %16s", c.name);
     std::printf(" | of ours, the slowest: / best peer, floor /\n");
@@ -160,7 +173,7 @@ int main(int argc, char** argv) {
              ETLC_BENCH_CELLS(CELL)
 #undef CELL
          }) {
-        std::map<std::string, double> ns = measure(cell, all, rounds);
+        std::map<std::string, double> ns = measure(cell, all, rounds, cold);
         const std::string name = std::to_string(cell.dimension) + " x " + std::to_string(cell.rows);
         std::printf("%-11s", name.c_str());
         std::string results;

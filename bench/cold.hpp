@@ -1,0 +1,42 @@
+// Calls that find nothing of their data in the caches.
+#pragma once
+
+#include <algorithm>
+#include <chrono>
+#include <cstddef>
+#include <vector>
+
+namespace bench {
+
+/// Fills the caches with other data, the last level included where it is not beyond `bytes`.
+inline void sweep_caches() {
+    constexpr std::size_t kBytes = std::size_t{128} << 20U;
+    constexpr std::size_t kLine = 64;
+    static std::vector<char> memory(kBytes, 1);
+    for (std::size_t i = 0; i < kBytes; i += kLine) ++memory[i];
+    asm volatile("" ::: "memory");
+}
+
+/// Nanoseconds of a call after the caches were swept, less the cost of reading the clock: the median of `rounds` calls.
+template <class Call>
+double cold_call(int rounds, const Call& call) {
+    using Clock = std::chrono::steady_clock;
+    const auto timed = [](const auto& work) {
+        asm volatile("" ::: "memory");
+        const Clock::time_point start = Clock::now();
+        work();
+        asm volatile("" ::: "memory");
+        return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
+    };
+    std::vector<double> took;
+    for (int round = 0; round < std::max(1, rounds); ++round) {
+        sweep_caches();
+        double clock = timed([] {});
+        for (int i = 0; i < 20; ++i) clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
+        took.push_back(timed(call) - clock);
+    }
+    std::nth_element(took.begin(), took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2), took.end());
+    return took[took.size() / 2];
+}
+
+}  // namespace bench
