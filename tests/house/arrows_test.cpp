@@ -50,6 +50,7 @@ const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "
 /// may use.
 const std::map<std::string, Names> kHosted = {
     {"dynamic.hpp", {"limits"}},
+    {"dynamic_enclosed.hpp", {}},
     {"error_bounds.hpp", {}},
     {"mapped_targets.hpp", {"errno.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h"}}};
 

@@ -4,7 +4,7 @@
 set -eu
 source=$1; shift
 include=$source/runtime/include
-hosted='dynamic.hpp error_bounds.hpp mapped_targets.hpp'
+hosted='dynamic.hpp dynamic_enclosed.hpp error_bounds.hpp mapped_targets.hpp'
 harsh='-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -fno-exceptions -fno-rtti'
 work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT

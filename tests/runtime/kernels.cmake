@@ -1,6 +1,7 @@
 # Distances, aggregates, views and expressions: as the project is built, then where flags or another compiler could change them.
 find_package(Eigen3 REQUIRED)
-set(kernel_sources test_distances.cpp test_expression.cpp test_kernel_twins.cpp test_views.cpp)
+set(kernel_sources test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_views.cpp)
+set(narrow_sources test_narrow_halves.cpp test_narrow_bytes.cpp)
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
 
 # The judge is built once, without the flags under test.
@@ -8,7 +9,7 @@ add_library(exact_distances STATIC exact.cpp)
 target_link_libraries(exact_distances PUBLIC etlmon::etlmon PRIVATE Eigen3::Eigen)
 target_compile_options(exact_distances PRIVATE -O2)
 
-etlc_test(test_kernels SOURCES ${kernel_sources} test_kernel_versions.cpp test_kernel_narrow.cpp LIBRARIES exact_distances)
+etlc_test(test_kernels SOURCES ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp LIBRARIES exact_distances)
 set_target_properties(test_kernels PROPERTIES CXX_STANDARD 17)
 target_compile_options(test_kernels PRIVATE ${kernel_warnings})
 
@@ -32,7 +33,7 @@ endif()
 etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
 set(all_kernel_sources ${kernel_sources})
-set(kernel_sources test_kernel_versions.cpp test_expression.cpp test_views.cpp)
+set(kernel_sources ${narrow_sources} test_kernel_versions.cpp test_expression.cpp test_views.cpp)
 etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
 set(kernel_sources ${all_kernel_sources})
 
@@ -51,6 +52,7 @@ else()
       COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math -DETLMON_NO_DISPATCH ${kernel_warnings}
               -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
       DEPENDS ${source} ${kernel_headers} ${CMAKE_CURRENT_SOURCE_DIR}/exact.hpp ${CMAKE_CURRENT_SOURCE_DIR}/kernel_cases.hpp
+              ${CMAKE_CURRENT_SOURCE_DIR}/kernel_versions.hpp
       VERBATIM)
     list(APPEND objects clang_${source}.o)
   endforeach()

@@ -1,0 +1,216 @@
+// What narrow copies of targets say about the targets: the interval holds the distance in real arithmetic and what
+// every version of the kernel measures on the float32 rows, and a comparison that it leaves open is doubtful.
+#include "etlmon/enclosed.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "kernel_versions.hpp"
+
+namespace {
+
+using namespace kernel_cases;
+using etlmon::Enclosed;
+using etlmon::Measured;
+using etlmon::MetricId;
+using etlmon::detail::Sizes;
+
+/// The distance of two points by its definition, in double; cosine and angular by the chord and Kahan's formula, which
+/// lose nothing near 0.
+double distance_of(const exact::Case& c, const float* g) {
+    double l1 = 0, linf = 0, square = 0, z_square = 0, g_square = 0, apart = 0, along = 0;
+    for (std::size_t i = 0; i < c.dimension; ++i) {
+        const double z = double{c.z[i]}, x = double{g[i]}, e = std::abs(z - x);
+        const double w = c.metric == MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
+        l1 += e, linf = std::max(linf, e), square += w * e * e;
+        z_square += z * z, g_square += x * x;
+    }
+    for (std::size_t i = 0; i < c.dimension; ++i) {
+        const double u = double{c.z[i]} / std::sqrt(z_square), v = double{g[i]} / std::sqrt(g_square);
+        apart += (u - v) * (u - v), along += (u + v) * (u + v);
+    }
+    switch (c.metric) {
+        case MetricId::l1: return l1;
+        case MetricId::linf: return linf;
+        case MetricId::l2sq: return square;
+        case MetricId::cosine: return apart / 2;
+        case MetricId::angular: return 2 * std::atan2(std::sqrt(apart), std::sqrt(along));
+        default: return std::sqrt(square);
+    }
+}
+
+double aggregated(const exact::Case& c, exact::Aggregate aggregate) {
+    std::vector<double> rows;
+    for (std::size_t k = 0; k < c.rows; ++k) rows.push_back(distance_of(c, c.targets.data() + k * c.dimension));
+    if (aggregate.id == etlmon::AggregationId::mean)
+        return std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
+    std::sort(rows.begin(), rows.end());
+    if (aggregate.id == etlmon::AggregationId::max) return rows.back();
+    return rows[aggregate.id == etlmon::AggregationId::kth ? aggregate.n - 1 : 0];
+}
+
+/// Prepared rows, what their narrow copies widen to, and how far these moved. The kernels give narrow rows the bits
+/// that they give widened ones (test_narrow_halves.cpp, test_narrow_bytes.cpp): here the widened ones are measured.
+struct Copies {
+    std::vector<float> rows, halves, bytes;
+    float moved_halves = 0, moved_bytes = 0;
+};
+
+/// Some float16 near x: truncated, so farther off than a rounded one; 0 for subnormal ones.
+float truncated_half(float x) {
+    const std::uint32_t b = bits(x);
+    const int exponent = static_cast<int>((b >> 23) & 0xff) - 112;
+    const std::uint32_t half = exponent <= 0 ? 0 : static_cast<std::uint32_t>(exponent) << 10 | (b >> 13 & 0x3ff);
+    const auto narrow = static_cast<std::uint16_t>((b >> 16 & 0x8000) | half);
+    return etlmon::detail::element(&narrow, 0);
+}
+
+float greatest_move(const exact::Case& c, const std::vector<float>& narrow) {
+    double greatest = 0;
+    for (std::size_t k = 0; k < c.rows; ++k) {
+        double length = 0;
+        for (std::size_t i = 0; i < c.dimension; ++i) length += std::pow(double{c.targets[k * c.dimension + i]}, 2);
+        const bool unit = etlmon::distance(c.metric).prepared == etlmon::Prepared::unit_rows;
+        length = unit ? std::sqrt(length) : 1;
+        double l1 = 0, linf = 0, square = 0;
+        for (std::size_t i = 0; i < c.dimension; ++i) {
+            const std::size_t at = k * c.dimension + i;
+            const double e = std::abs(double{narrow[at]} - double{c.targets[at]} / length);
+            const double w = c.metric == MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
+            l1 += e, linf = std::max(linf, e), square += w * e * e;
+        }
+        greatest = std::max(greatest, c.metric == MetricId::l1     ? l1
+                                      : c.metric == MetricId::linf ? linf
+                                                                   : std::sqrt(square));
+    }
+    return std::nextafter(static_cast<float>(greatest * (1 + 1e-6)), HUGE_VALF);
+}
+
+Copies copies_of(const exact::Case& c) {
+    Copies copies;
+    copies.rows = c.targets;
+    etlmon::prepare(c.metric, copies.rows.data(), c.rows, c.dimension);
+    float greatest = 0;
+    for (const float x : copies.rows) greatest = std::max(greatest, std::abs(x));
+    const float scale = greatest / 127;
+    for (const float x : copies.rows) {
+        copies.halves.push_back(truncated_half(x));
+        copies.bytes.push_back(scale * static_cast<float>(std::lrint(x / scale)));
+    }
+    copies.moved_halves = greatest_move(c, copies.halves);
+    copies.moved_bytes = greatest_move(c, copies.bytes);
+    return copies;
+}
+
+template <class Metric, class Aggregation>
+void expect_enclosed(const exact::Case& c, const std::vector<float>& rows, const std::vector<float>& narrow_rows,
+                     float moved, exact::Aggregate aggregate, Aggregation aggregation, const std::string& what) {
+    const Sizes size{c.rows, c.dimension};
+    const std::uint32_t averaged = aggregate.id == etlmon::AggregationId::mean ? c.rows : 0;
+    const double exact = aggregated(c, aggregate);
+    const auto all = versions<Metric, Aggregation, Sizes, false>();
+    for (const auto& narrow : all) {
+        const Measured m = narrow.run(c.z.data(), narrow_rows.data(), c.weights.data(), size, aggregation);
+        const Enclosed e = etlmon::enclose<Metric>(m, moved, c.dimension, averaged);
+        const bool bounded = etlmon::is_finite(e.high);
+        if (bounded) {
+            ASSERT_LE(double{e.low}, exact * (1 + 1e-12) + 1e-15) << narrow.name << ": " << what;
+            ASSERT_GE(double{e.high}, exact * (1 - 1e-12) - 1e-15) << narrow.name << ": " << what;
+        }
+        for (const auto& wide : all) {
+            const Measured of_rows = wide.run(c.z.data(), rows.data(), c.weights.data(), size, aggregation);
+            const etlmon::Cut at[] = {of_rows.delta};
+            ASSERT_TRUE(e.doubtful(at)) << narrow.name << ", " << wide.name << ": " << what;
+            if (!bounded) continue;
+            ASSERT_LE(e.low, of_rows.delta) << narrow.name << ", " << wide.name << ": " << what;
+            ASSERT_GE(e.high, of_rows.delta) << narrow.name << ", " << wide.name << ": " << what;
+        }
+    }
+}
+
+template <class Metric>
+void expect_case(const exact::Case& c, const Copies& copies, const char* kind) {
+    using Id = etlmon::AggregationId;
+    std::vector<float> scratch(c.rows);
+    const auto expect = [&](exact::Aggregate aggregate, auto aggregation) {
+        const std::string what = describe(c, aggregate, kind);
+        expect_enclosed<Metric>(c, copies.rows, copies.halves, copies.moved_halves, aggregate, aggregation,
+                                "f16, " + what);
+        expect_enclosed<Metric>(c, copies.rows, copies.bytes, copies.moved_bytes, aggregate, aggregation,
+                                "i8, " + what);
+    };
+    expect({Id::min, 1}, etlmon::Min{});
+    expect({Id::mean, 1}, etlmon::Mean{});
+#if !defined(__SANITIZE_ADDRESS__)  // under which a kernel takes seconds to compile
+    const std::uint32_t n = (c.rows + 1) / 2;
+    expect({Id::max, 1}, etlmon::Max{});
+    expect({Id::kth, n}, etlmon::KthOf{scratch.data(), n, 0});
+#endif
+}
+
+/// z on the line through a row and its narrow copy, where the distance changes by all that the row moved, near 0.
+template <class Metric>
+void expect_along_the_move(exact::Case c, const Copies& copies) {
+    for (const auto* narrow : {&copies.halves, &copies.bytes}) {
+        for (const float t : {-3.0F, -0.5F, 0.0F, 0.5F, 0.999F, 1.0F, 1.5F, 4.0F}) {
+            for (std::size_t i = 0; i < c.dimension; ++i) c.z[i] = copies.rows[i] + t * ((*narrow)[i] - copies.rows[i]);
+            if (std::all_of(c.z.begin(), c.z.end(), [](float x) { return x == 0; })) continue;
+            expect_case<Metric>(c, copies, "along the move");
+        }
+    }
+}
+
+template <class Metric>
+void expect_metric(MetricId metric) {
+    for (const std::uint32_t dimension : kDimensions) {
+        for (const std::uint32_t rows : kRows) {
+            for (const Kind kind :
+                 {Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal, Kind::tiny, Kind::opposite}) {
+                if (dimension * rows > 4000 && kind != Kind::ordinary && kind != Kind::equal) continue;
+                const exact::Case c = make(metric, rows, dimension, kind, 41);
+                const Copies copies = copies_of(c);
+                expect_case<Metric>(c, copies, name(kind));
+                if (kind == Kind::ordinary && dimension * rows < 2000) expect_along_the_move<Metric>(c, copies);
+                if (testing::Test::HasFatalFailure()) return;
+            }
+        }
+    }
+}
+
+TEST(Enclosed, L2) {
+    expect_metric<etlmon::L2>(MetricId::l2);
+}
+TEST(Enclosed, L2Sq) {
+    expect_metric<etlmon::L2Sq>(MetricId::l2sq);
+}
+TEST(Enclosed, L1) {
+    expect_metric<etlmon::L1>(MetricId::l1);
+}
+TEST(Enclosed, Linf) {
+    expect_metric<etlmon::Linf>(MetricId::linf);
+}
+TEST(Enclosed, Cosine) {
+    expect_metric<etlmon::Cosine>(MetricId::cosine);
+}
+TEST(Enclosed, Angular) {
+    expect_metric<etlmon::Angular>(MetricId::angular);
+}
+TEST(Enclosed, MahalanobisDiagonal) {
+    expect_metric<etlmon::MahalanobisDiagonal>(MetricId::mahalanobis_diagonal);
+}
+
+TEST(Enclosed, WhatIsNotFiniteIsDoubtful) {
+    const etlmon::Cut far[] = {1.0F, {2.0F, 3.0F}};
+    for (const float delta : {HUGE_VALF, etlmon::kMissing, 3e38F})
+        EXPECT_TRUE(etlmon::enclose<etlmon::L2Sq>({delta, 0}, 1e30F, 384).doubtful(far)) << delta;
+    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384).doubtful(far));      // a square of which overflows
+    EXPECT_TRUE(etlmon::enclose<etlmon::Angular>({0.5F, 0}, 0.3F, 384).doubtful(far));  // the bound is for small moves
+    EXPECT_FALSE(etlmon::enclose<etlmon::L2>({0.5F, 0}, 0.1F, 384).doubtful(far));
+    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.95F, 0}, 0.1F, 384).doubtful(far));
+    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({2.5F, 0}, 0.1F, 384).doubtful(far));  // inside a cut
+}
+
+}  // namespace

@@ -1,0 +1,29 @@
+// Rows of int8: the same bits as the rows of float32 that they widen to, in every version of the kernel, and so
+// within the same bounds.
+#include "narrow_cases.hpp"
+
+namespace {
+
+using namespace narrow_cases;
+
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)            \
+    TEST(Bytes, SameAsWidened_##id) {                                       \
+        expect_metric<etlmon::Type, MetricId::id, ScaledRows>(Storage::i8); \
+    }
+#include "etlmon/distances.def"
+#undef DISTANCE
+
+inline constexpr std::int8_t kBytes[64 * 5] = {1, -128, 127, 0, 5, -7};
+inline constexpr float kWideBytes[64 * 5] = {0.5F, -64.0F, 63.5F, 0.0F, 2.5F, -3.5F};
+
+/// Columns, in which the compiler keeps constants.
+TEST(Bytes, InColumns) {
+    using namespace etlmon;
+    const float z[5] = {1.5F, -0.25F, 3.0F, 1e-3F, -1.0F};
+    const Measured narrow = measure_scaled<L1, Max, 64, 5, kBytes>(z, 0.5F),
+                   wide = measure<L1, Max, 64, 5, kWideBytes>(z);
+    EXPECT_EQ(bits(narrow.delta), bits(wide.delta));
+    EXPECT_EQ(narrow.nearest, wide.nearest);
+}
+
+}  // namespace

@@ -1,0 +1,42 @@
+// Rows of float16: the same bits as the rows of float32 that they widen to, in every version of the kernel, and so
+// within the same bounds.
+#include "narrow_cases.hpp"
+
+namespace {
+
+using namespace narrow_cases;
+
+TEST(Halves, EachWidensToItself) {
+    for (std::uint32_t bits_of_half = 0; bits_of_half < 0x10000; ++bits_of_half) {
+        if ((bits_of_half & 0x7c00) == 0x7c00) continue;  // views.hpp keeps what is not finite from the kernels
+        const auto narrow = static_cast<std::uint16_t>(bits_of_half);
+        const float one = half(narrow);
+        ASSERT_EQ(bits(etlmon::detail::element(&narrow, 0)), bits(one)) << bits_of_half;
+        std::uint16_t many[19];
+        float widened[19];
+        std::fill(many, many + 19, narrow);
+        etlmon::widen_f16(many, widened, 19);
+        for (const float x : widened) ASSERT_EQ(bits(x), bits(one)) << bits_of_half;
+    }
+}
+
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)                       \
+    TEST(Halves, SameAsWidened_##id) {                                                 \
+        expect_metric<etlmon::Type, MetricId::id, const std::uint16_t*>(Storage::f16); \
+    }
+#include "etlmon/distances.def"
+#undef DISTANCE
+
+inline constexpr std::uint16_t kHalves[64 * 5] = {0x3c00, 0x4001, 0x8001, 0x3555, 0xbbbb, 0x7bff, 0x0400};
+inline constexpr float kWideHalves[64 * 5] = {1.0F,        2.001953125F, -5.9604645e-8F, 0.333251953125F,
+                                              -0.9663086F, 65504.0F,     6.1035156e-5F};
+/// Columns, in which the compiler keeps constants.
+TEST(Halves, InColumns) {
+    using namespace etlmon;
+    const float z[5] = {1.5F, -0.25F, 3.0F, 1e-3F, -1.0F};
+    const Measured narrow = measure<L2, Min, 64, 5, kHalves>(z), wide = measure<L2, Min, 64, 5, kWideHalves>(z);
+    EXPECT_EQ(bits(narrow.delta), bits(wide.delta));
+    EXPECT_EQ(narrow.nearest, wide.nearest);
+}
+
+}  // namespace
