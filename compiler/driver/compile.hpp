@@ -26,6 +26,7 @@ struct Request {
     check::Options check;
     plan::Limits limits;
     check::Values values = check::Values::robustness;
+    plan::Storage targets_as = plan::Storage::f32;
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
     bool standalone = false;   ///< the header with the runtime in it
@@ -43,7 +44,8 @@ std::optional<Compiled> compile(const source::File& file, const Request& request
 
 /// A model, as check/ gives it or made from such a one, through the stages after that.
 std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink,
-                                check::Values values = check::Values::robustness);
+                                check::Values values = check::Values::robustness,
+                                plan::Storage targets_as = plan::Storage::f32);
 
 /// Nothing where there was an error.
 std::optional<Output> emit(const source::File& file, const Request& request, diag::Sink& sink);

@@ -87,6 +87,13 @@ void add_common_options(CLI::App& app, Call& call) {
                                                                          {"boolean", check::Values::boolean}})
                 .description("robustness|boolean"))
         ->default_str("robustness");
+    app.add_option("--targets-as", call.request.targets_as,
+                   "how target sets are stored for measuring; what that leaves open is measured in float32 as well")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, plan::Storage>{{"f32", plan::Storage::f32},
+                                                                                 {"f16", plan::Storage::f16},
+                                                                                 {"i8", plan::Storage::i8}})
+                        .description("f32|f16|i8"))
+        ->default_str("f32");
     app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")->capture_default_str();
     app.add_option("--max-code", call.request.limits.code_bytes, "most bytes of code, estimated, targets aside")
         ->capture_default_str();

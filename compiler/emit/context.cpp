@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/narrow_targets.hpp"
+
 namespace etlc::emit {
 
 namespace {
@@ -86,6 +88,15 @@ void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::s
         if (!comment.empty() && declaration.size() <= kWidest) width = std::max(width, declaration.size());
     for (const auto& [declaration, comment] : declarations)
         out.line(comment.empty() ? declaration : fmt::format("{:<{}}  // {}", declaration, width, comment));
+}
+
+bool Context::enclosed(check::Index distance) const {
+    const plan::NarrowSet* set = plan::narrow_set(plan, distance);
+    return set != nullptr && !set->lossless;
+}
+
+bool Context::lossless(check::Index distance) const {
+    return plan::narrow_set(plan, distance) != nullptr && !enclosed(distance);
 }
 
 std::string Context::literal(plan::Key key) const {

@@ -41,6 +41,9 @@ struct Context {
     bool stores_targets() const { return !plan.stored.empty(); }
     /// How the functions of a step are declared: where a call would cost as much as they do, part of the caller's loop.
     std::string_view step_qualifier() const;
+    /// Measured on narrow rows, which leave it open within bounds; or on narrow rows that are the rows exactly.
+    bool enclosed(check::Index distance) const;
+    bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.

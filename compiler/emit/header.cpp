@@ -32,7 +32,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     const bool boolean = context.boolean();
     std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version", "views"};
     for (Index d : plan.distances)
-        headers.insert(plan::stored_set(plan, d) == nullptr ? "kernel"
+        headers.insert(plan::stored_set(plan, d) == nullptr ? (context.enclosed(d) ? "enclosed" : "kernel")
                        : plan::searches(plan, d)            ? "search"
                                                             : "targets");
     for (Index p : plan.predicates)

@@ -1,6 +1,7 @@
 // What the user of the class fills in and gets back, and the constants behind it.
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -31,12 +32,15 @@ std::string remark_on(const check::Input& input) {
     return text;
 }
 
-void print_numbers(Printer& out, const std::string& name, const std::string& size, const std::vector<float>& numbers) {
-    out.line("alignas(64) inline constexpr float {}[{}] = {{", name, size);
+/// `alignas(64) inline constexpr TYPE NAME[SIZE] = {...};`
+template <class Number, class Spell>
+void print_array(Printer& out, const std::string& type_and_name, const std::string& size,
+                 const std::vector<Number>& numbers, Spell spell) {
+    out.line("alignas(64) inline constexpr {}[{}] = {{", type_and_name, size);
     out.indent();
     std::string line;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const std::string number = float_literal(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
+        const std::string number = spell(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
         if (!line.empty() && out.column() + line.size() + 1 + number.size() > kLineWidth) {
             out.line(line);
             line.clear();
@@ -47,12 +51,20 @@ void print_numbers(Printer& out, const std::string& name, const std::string& siz
     out.close("};");
 }
 
+void print_numbers(Printer& out, const std::string& name, const std::string& size, const std::vector<float>& numbers) {
+    print_array(out, "float " + name, size, numbers, float_literal);
+}
+
+std::string rows_of(const check::Target& target, const check::Distance& distance) {
+    return fmt::format("{}: {} of {} elements{}", target.origin,
+                       target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows), target.dimension,
+                       plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+}
+
 void print_rows(Printer& out, const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
-    out.line("/// {}: {} of {} elements{}", target.origin,
-             target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows), target.dimension,
-             plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+    out.line("/// {}", rows_of(target, distance));
     if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
         out.line("inline constexpr size_t {} = {};  // floats from the beginning of {}",
                  context.names.target_array.at(d), set->offset / sizeof(float), context.targets_file);
@@ -60,6 +72,21 @@ void print_rows(Printer& out, const Context& context, Index d) {
     }
     print_numbers(out, context.names.target_array.at(d), fmt::format("{} * {}", target.rows, target.dimension),
                   plan::prepared_rows(context.model, distance));
+}
+
+void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowSet& set) {
+    const check::Distance& distance = context.model.distances[set.distance];
+    const bool halves = set.storage == plan::Storage::f16;
+    out.line("/// {}; as {}{}", rows_of(context.model.targets[distance.target], distance),
+             halves ? "the bits of float16" : fmt::format("int8, value = {} x integer", set.scale),
+             set.lossless ? ", which hold them exactly" : "");
+    const std::string& name = context.names.narrow_array.at(set.distance);
+    const std::string size = fmt::format("{} * {}", set.rows, set.dimension);
+    if (halves)
+        print_array(out, "uint16_t " + name, size, set.halves,
+                    [](std::uint16_t x) { return fmt::format("0x{:04x}", x); });
+    else
+        print_array(out, "int8_t " + name, size, set.bytes, [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
 }  // namespace
@@ -103,7 +130,10 @@ void print_constants(Printer& out, const Context& context) {
     out.line("namespace targets {");
     std::set<std::string> done;
     for (Index d : context.plan.distances) {
-        if (done.insert(context.names.target_array.at(d)).second) print_rows(out, context, d);
+        const plan::NarrowSet* narrow = plan::narrow_set(context.plan, d);
+        if (narrow != nullptr && done.insert(context.names.narrow_array.at(d)).second)
+            print_narrow_rows(out, context, *narrow);
+        if (!context.lossless(d) && done.insert(context.names.target_array.at(d)).second) print_rows(out, context, d);
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;
         const check::Distance& distance = context.model.distances[d];

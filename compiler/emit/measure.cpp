@@ -3,6 +3,7 @@
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
 #include "plan/literals.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -155,40 +156,101 @@ std::string aggregation(const check::Distance& distance) {
     return fmt::format("etlmon::Kth<{}>", distance.kth);
 }
 
-/// The kernel's call on the point that `z` names.
-std::string kernel_call(const Context& context, Index d, const std::string& z) {
+/// "etlmon::L2, etlmon::Min, 64, 384": what the kernels are told about a distance, beside its rows.
+std::string kernel_parameters(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
+    return fmt::format("etlmon::{}, {}, {}, {}", plan::metric_name(distance), aggregation(distance), target.rows,
+                       target.dimension);
+}
+
+std::string weights_argument(const Context& context, Index d) {
     const auto weights = context.names.weight_array.find(d);
+    return weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second;
+}
+
+/// The kernel's call on the point that `z` names, for float32 rows.
+std::string wide_call(const Context& context, Index d, const std::string& z) {
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
-        return fmt::format("{}.nearest<etlmon::{}>({}, {} + targets::{})", search->second, plan::metric_name(distance),
-                           z, context.names.rows_member, context.names.target_array.at(d));
+        return fmt::format("{}.nearest<etlmon::{}>({}, {} + targets::{})", search->second,
+                           plan::metric_name(context.model.distances[d]), z, context.names.rows_member,
+                           context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
-        return fmt::format("etlmon::measure_stored<etlmon::{}, {}, {}, {}>({}, {} + targets::{}{})",
-                           plan::metric_name(distance), aggregation(distance), target.rows, target.dimension, z,
-                           context.names.rows_member, context.names.target_array.at(d),
-                           weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
-    return fmt::format("etlmon::measure<etlmon::{}, {}, {}, {}, targets::{}>({}{})", plan::metric_name(distance),
-                       aggregation(distance), target.rows, target.dimension, context.names.target_array.at(d), z,
-                       weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second);
+        return fmt::format("etlmon::measure_stored<{}>({}, {} + targets::{}{})", kernel_parameters(context, d), z,
+                           context.names.rows_member, context.names.target_array.at(d), weights_argument(context, d));
+    return fmt::format("etlmon::measure<{}, targets::{}>({}{})", kernel_parameters(context, d),
+                       context.names.target_array.at(d), z, weights_argument(context, d));
+}
+
+/// The same for its narrow rows.
+std::string narrow_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
+    const std::string parameters = fmt::format("{}, targets::{}", kernel_parameters(context, set.distance),
+                                               context.names.narrow_array.at(set.distance));
+    const std::string weights = weights_argument(context, set.distance);
+    if (set.storage == plan::Storage::f16) return fmt::format("etlmon::measure<{}>({}{})", parameters, z, weights);
+    return fmt::format("etlmon::measure_scaled<{}>({}, {}{})", parameters, z, float_literal(set.scale), weights);
+}
+
+/// The thresholds that a distance is compared with, by name where they have one, and the other cuts as numbers.
+std::string cuts(const Context& context, const plan::NarrowSet& set) {
+    std::string text;
+    for (const plan::Cut& cut : set.cuts) {
+        std::string one = cut.low == cut.high
+                              ? float_literal(cut.low)
+                              : fmt::format("etlmon::Cut({}, {})", float_literal(cut.low), float_literal(cut.high));
+        for (const auto& [p, name] : context.names.predicate_member) {
+            const check::Predicate& predicate = context.model.predicates[p];
+            const bool compared = predicate.plain_distance() && predicate.expression.index == set.distance;
+            if (compared && predicate.threshold.value == cut.low && cut.low == cut.high)
+                one = fmt::format("threshold_{}()", predicate.name);
+        }
+        text += (text.empty() ? "" : ", ") + one;
+    }
+    return text;
+}
+
+/// `into = ...`, the distance from the point that `z` names.
+void print_measurement(Printer& out, const Context& context, Index d, const std::string& z, const std::string& into) {
+    const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
+    if (!context.enclosed(d)) {
+        const std::string call = set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
+        return print_wrapped(out, fmt::format("{} = {};", into, call));
+    }
+    const check::Distance& distance = context.model.distances[d];
+    const std::string averaged = distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set->rows) : "";
+    print_wrapped(out, fmt::format("{} = etlmon::enclose<etlmon::{}>({}, {}, {}{});", into, plan::metric_name(distance),
+                                   narrow_call(context, *set, z), float_literal(set->moved), set->dimension, averaged));
+    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, *set)));
+    out.indent();
+    print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
+    out.close();
 }
 
 /// `into = measure(...)`, only where the inputs are there.
 void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
     const check::Distance& distance = context.model.distances[d];
     const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
-    if (!distance.point_is_vector) {
+    if (!distance.point_is_vector && !context.enclosed(d)) {
+        const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
         const std::string z = sample(context, distance.point[0]);
-        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, kernel_call(context, d, z)));
+        const std::string call = set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
+        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, call));
         return;
     }
-    std::string elements;
-    for (Index i : distance.point) elements += (elements.empty() ? "" : ", ") + sample(context, i);
-    print_wrapped(out, fmt::format("if ({}{}) {{", ready, all_present(context, distance.point)));
+    std::string z = "point";
+    const std::string present = distance.point_is_vector ? all_present(context, distance.point)
+                                                         : sample(context, distance.point[0]) + " != nullptr";
+    print_wrapped(out, fmt::format("if ({}{}) {{", ready, present));
     out.indent();
-    print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
-    print_wrapped(out, fmt::format("{} = {};", into, kernel_call(context, d, "point")));
+    if (distance.point_is_vector) {
+        std::string elements;
+        for (Index i : distance.point) elements += (elements.empty() ? "" : ", ") + sample(context, i);
+        print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
+    } else {
+        z = sample(context, distance.point[0]);
+    }
+    print_measurement(out, context, d, z, into);
     out.close();
 }
 
@@ -237,24 +299,31 @@ public:
     void print() {
         for (Index i : context_.plan.inputs) print_input(out_, context_, i);
         for (Index d : context_.plan.distances)
-            if (uses_[d] > 1) print_shared(d);
+            if (has_local(d)) print_shared(d);
         for (Index p : context_.plan.predicates) print_predicate(p);
     }
 
 private:
+    /// Distances that an expression or more than one predicate reads, and those known within bounds.
+    bool has_local(Index d) { return uses_[d] > 1 || context_.enclosed(d); }
+
     void print_shared(Index d) {
         const std::string& local = context_.names.distance_local.at(d);
         out_.gap();
         out_.line("// {}", context_.model.distances[d].text);
         if (!context_.boolean()) {
-            out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
+            if (context_.enclosed(d))
+                out_.line("etlmon::Enclosed {};", local);
+            else
+                out_.line("etlmon::Measured {} = etlmon::kUnmeasured;", local);
             print_distance(out_, context_, d, local);
             return;
         }
         out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", local));
-        out_.line("etlmon::Measured measured = etlmon::kUnmeasured;");
+        const bool enclosed = context_.enclosed(d);
+        out_.line(enclosed ? "etlmon::Enclosed measured;" : "etlmon::Measured measured = etlmon::kUnmeasured;");
         print_distance(out_, context_, d, "measured");
-        out_.line("return measured;");
+        out_.line(enclosed ? "return measured.measured;" : "return measured;");
         out_.close("});");
     }
 
@@ -279,16 +348,22 @@ private:
             out_.close("});");
             return;
         }
+        const bool enclosed = predicate.plain_distance() && context_.enclosed(predicate.expression.index);
+        const std::string known = enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
-                                        predicate.upper_bound() ? "at_most" : "at_least", delta, threshold, range));
+                                        predicate.upper_bound() ? "at_most" : "at_least", known, threshold, range));
         out_.line("missing |= etlmon::is_nan({});", delta);
     }
 
     /// AGG DIST(point, target): kept with its nearest row.
     std::string plain(const check::Predicate& predicate, const std::string& variable, bool kept) {
         const Index d = predicate.expression.index;
-        if (uses_[d] > 1) {
-            const std::string shared = context_.names.distance_local.at(d) + (context_.boolean() ? "()" : "");
+        if (has_local(d)) {
+            std::string shared = context_.names.distance_local.at(d);
+            if (context_.boolean())
+                shared += "()";
+            else if (context_.enclosed(d))
+                shared += ".measured";
             if (kept) out_.line("{} = {};", variable, shared);
             return (kept ? variable : shared) + ".delta";
         }

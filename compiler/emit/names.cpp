@@ -7,6 +7,7 @@
 
 #include "plan/budget.hpp"
 #include "plan/kernels.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -247,6 +248,7 @@ private:
 
     void name_constants() {
         std::map<std::pair<check::Index, bool>, std::string> arrays;
+        std::map<std::string, std::string> narrow_arrays;
         for (check::Index d : plan_.distances) {
             const check::Distance& distance = model_.distances[d];
             const bool as_given = plan::rows_as_given(distance);
@@ -255,6 +257,11 @@ private:
             if (added) entry->second = constants_.claim(as_given ? target : target + "_unit");
             names_.target_array[d] = entry->second;
             if (plan::searches(plan_, d)) names_.search_member[d] = member(members_, target + "_search");
+            if (const plan::NarrowSet* set = plan::narrow_set(plan_, d)) {
+                auto [narrow, first] = narrow_arrays.try_emplace(entry->second);
+                if (first) narrow->second = constants_.claim(entry->second + "_" + plan::word(set->storage));
+                names_.narrow_array[d] = narrow->second;
+            }
             if (!distance.weights.empty()) names_.weight_array[d] = constants_.claim(target + "_weights");
         }
     }

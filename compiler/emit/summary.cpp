@@ -4,6 +4,7 @@
 #include "check/guarantees.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -84,6 +85,23 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     return rows;
 }
 
+/// How target sets are stored, where that was asked for.
+std::vector<Row> storage_rows(const plan::Plan& plan) {
+    std::vector<Row> rows{{"distance", "measured on", "bytes", "rows moved by", "also kept"}};
+    for (Index d : plan.distances) {
+        const plan::NarrowSet* set = plan::narrow_set(plan, d);
+        const check::Distance& distance = plan.model->distances[d];
+        const std::uint64_t wide = plan.model->targets[distance.target].values.size() * sizeof(float);
+        if (set == nullptr)
+            rows.push_back({distance.text, "float32", number(wide), "-", "-"});
+        else
+            rows.push_back({distance.text, set->storage == plan::Storage::f16 ? "float16" : "int8",
+                            number(plan::bytes_of(*set)), set->lossless ? "0" : fmt::format("{:.3g}", set->moved),
+                            set->lossless ? "-" : fmt::format("float32, {}", wide)});
+    }
+    return rows;
+}
+
 bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
         return true;
@@ -153,6 +171,10 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_table(out, prefix, monitor_rows(plan), 2);
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
+    if (!plan.narrow.empty()) {
+        out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+        print_table(out, prefix, storage_rows(plan), 2);
+    }
     if (is_calibrated(plan, false)) print_guarantees(out, prefix, plan);
 }
 

@@ -9,6 +9,8 @@
 #include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
 #include "etlmon/window.hpp"
+#include "plan/kernels.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/register_program.hpp"
 #include "plan/stored.hpp"
 
@@ -190,12 +192,28 @@ public:
             sum = sum + distance_cost(model, model.distances[d]);
             if (searches(plan_, d)) sum.state_bytes += search_bytes(model.targets[model.distances[d].target]);
         }
-        for (Index t : targets_) sum.constant_bytes += model.targets[t].values.size() * sizeof(float);
+        sum.constant_bytes += target_bytes();
         for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
         return sum;
     }
 
 private:
+    /// float32 rows once a set, where some distance needs them, and each set's narrow rows.
+    std::uint64_t target_bytes() const {
+        std::set<Index> wide;
+        std::uint64_t bytes = 0;
+        std::set<std::pair<Index, bool>> narrow;
+        for (Index d : distances_) {
+            const check::Distance& distance = plan_.model->distances[d];
+            const NarrowSet* set = narrow_set(plan_, d);
+            if (set == nullptr || !set->lossless) wide.insert(distance.target);
+            if (set != nullptr && narrow.insert({distance.target, rows_as_given(distance)}).second)
+                bytes += bytes_of(*set);
+        }
+        for (Index t : wide) bytes += plan_.model->targets[t].values.size() * sizeof(float);
+        return bytes;
+    }
+
     static Cost telemetry(const check::Predicate& predicate) {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
         Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord, .code_bytes = kCodePerRing};
@@ -211,10 +229,7 @@ private:
     }
 
     void expression(const check::Expr& e) {
-        if (e.kind == check::Expr::Kind::distance) {
-            distances_.insert(e.index);
-            targets_.insert(plan_.model->distances[e.index].target);
-        }
+        if (e.kind == check::Expr::Kind::distance) distances_.insert(e.index);
         for (const check::Expr& argument : e.arguments) expression(argument);
     }
 
@@ -223,7 +238,6 @@ private:
     std::set<std::uint32_t> readings_;
     std::set<Index> predicates_;
     std::set<Index> distances_;
-    std::set<Index> targets_;
     std::set<Index> inputs_;
 };
 

@@ -33,6 +33,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     inputs_.resize(model_.inputs.size());
     held_.resize(model_.inputs.size());
     distances_.resize(model_.distances.size());
+    enclosed_.resize(model_.distances.size());
     measured_.resize(model_.predicates.size());
     for (const check::Predicate& predicate : model_.predicates) thresholds_.push_back(predicate.threshold.value);
     literals_.resize(model_.predicates.size(), kAnything);
@@ -123,6 +124,8 @@ void Evaluator::measure_predicates() {
         if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         literals_[p] = literal(predicate, measured.delta, thresholds_[p], plan_.values);
+        if (predicate.plain_distance() && plan_.values == check::Values::robustness)
+            literals_[p] = literal(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
         if (literal_ && !std::isnan(measured.delta)) literals_[p] = literal_(p);
         missing |= std::isnan(measured.delta);
     }

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "etlmon/kernel.hpp"
+#include "etlmon/enclosed.hpp"
 #include "etlmon/monoid.hpp"
 #include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
@@ -80,6 +80,7 @@ private:
     bool usable(const check::Input& input, const Sample& sample) const;
     void measure_distances();
     void measure_predicates();
+    etlmon::Enclosed measure(Index distance, const float* z);
     float expression(const check::Expr& e) const;
     void advance_streams();
     Value advance(const Stream& stream, StreamState& state) const;
@@ -97,9 +98,11 @@ private:
     const check::Model& model_;
     std::vector<std::vector<float>> points_;    ///< per distance: scratch for vectors of scalars
     std::vector<std::vector<float>> prepared_;  ///< per target and distance: rows as the kernels want them
+    std::vector<std::vector<float>> widened_;   ///< per distance: what its narrow rows stand for, where it has some
     std::vector<const float*> inputs_;          ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<etlmon::Measured> distances_;
+    std::vector<etlmon::Enclosed> enclosed_;  ///< per distance: the same, with what narrow targets leave open
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;  ///< per predicate

@@ -5,22 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/narrow_targets.hpp"
+
 namespace etlc::plan {
-
-namespace {
-
-/// Nearest float16, ties to even, as a double.
-double to_f16(double x) {
-    if (!std::isfinite(x) || x == 0) return x;
-    constexpr int kFractionBits = 10;
-    constexpr int kLeastExponent = -14;
-    constexpr double kLargest = 65504;
-    const double quantum = std::ldexp(1.0, std::max(std::ilogb(x), kLeastExponent) - kFractionBits);
-    const double rounded = std::nearbyint(x / quantum) * quantum;
-    return std::abs(rounded) > kLargest ? std::copysign(HUGE_VAL, x) : rounded;
-}
-
-}  // namespace
 
 std::optional<Sample> narrow(const check::Input& input, bool present, const std::vector<double>& numbers,
                              std::string& why) {

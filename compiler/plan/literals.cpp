@@ -62,4 +62,9 @@ etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool 
             adaptation.grid};
 }
 
+Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
+    const Value range = unseen_range(predicate, Values::robustness);
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range) : etlmon::at_least(delta, epsilon, range);
+}
+
 }  // namespace etlc::plan

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "plan/budget.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/readings.hpp"
 #include "plan/refusal.hpp"
 #include "plan/share_windows.hpp"
@@ -83,12 +84,13 @@ public:
         return true;
     }
 
-    Plan finish() {
+    Plan finish(Storage targets_as, diag::Sink& sink) {
         keep_used_streams();
         share_windows(plan_);
         keep_used_streams();
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
+        narrow_targets(plan_, targets_as, sink);
         plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
                              std::any_of(plan_.streams.begin(), plan_.streams.end(),
                                          [](const Stream& stream) { return stream.op == StreamOp::within; });
@@ -157,12 +159,13 @@ private:
 
 }  // namespace
 
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values) {
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values,
+                         Storage targets_as) {
     Planning planning(program, limits, values);
     bool complete = true;
     for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;
-    Plan result = planning.finish();
+    Plan result = planning.finish(targets_as, sink);
     check_budget(result, program.graph, limits, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;

@@ -180,6 +180,29 @@ struct StoredSet {
     std::uint64_t row_bytes = 0;  ///< from a row to the next
 };
 
+/// How the elements of target sets are kept.
+enum class Storage : std::uint8_t { f32, f16, i8 };
+
+/// A comparison turns at a number, or somewhere in [low, high].
+struct Cut {
+    float low = 0;
+    float high = 0;
+};
+
+/// The narrow copy of a target set on which a distance is measured, see narrow_targets.hpp.
+struct NarrowSet {
+    Index distance = 0;
+    Storage storage = Storage::f16;
+    std::uint32_t rows = 0;
+    std::uint32_t dimension = 0;
+    std::vector<std::uint16_t> halves;  ///< f16: IEEE bits
+    std::vector<std::int8_t> bytes;     ///< i8
+    float scale = 1;                    ///< i8: value = scale x integer
+    float moved = 0;                    ///< no row is farther from its float32 row, in the distance's norm
+    bool lossless = false;              ///< every element widens to the float32 it was: no other copy is kept
+    std::vector<Cut> cuts;              ///< of the distance: where some predicate's comparison turns
+};
+
 struct Plan {
     const check::Model* model = nullptr;
     check::Values values = check::Values::robustness;
@@ -187,6 +210,7 @@ struct Plan {
     std::vector<Index> targets;
     std::vector<Index> distances;
     std::vector<StoredSet> stored;
+    std::vector<NarrowSet> narrow;  ///< of some distances
     std::vector<Index> predicates;
     std::vector<Stream> streams;
     std::vector<Reading> readings;
@@ -206,7 +230,7 @@ struct Limits {
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
 std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
-                         check::Values values = check::Values::robustness);
+                         check::Values values = check::Values::robustness, Storage targets_as = Storage::f32);
 
 /// A plan without monitors: the evaluator then only measures these predicates, as it does for monitors that use them.
 Plan measuring(const check::Model& model, const std::vector<Index>& predicates);

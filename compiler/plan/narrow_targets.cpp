@@ -1,0 +1,255 @@
+#include "plan/narrow_targets.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+
+#include "etlmon/storage.hpp"
+#include "plan/kernels.hpp"
+#include "plan/stored.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+using diag::Code;
+
+constexpr double kLargestHalf = 65504;
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+float rounded_up(double x) {
+    const auto nearest = static_cast<float>(x);
+    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kInfinity) : nearest;
+}
+
+/// The bits of a double that is a finite float16.
+std::uint16_t half_bits(double half) {
+    constexpr int kFractionBits = 10;
+    constexpr int kLeastExponent = -14;
+    const auto sign = static_cast<std::uint16_t>(std::signbit(half) ? 0x8000U : 0U);
+    const double magnitude = std::abs(half);
+    if (magnitude == 0) return sign;
+    const int exponent = std::max(std::ilogb(magnitude), kLeastExponent);
+    // Subnormal ones have no implicit bit: their fraction stays below 2^10 and carries nothing into the exponent.
+    const auto fraction = static_cast<std::uint32_t>(std::ldexp(magnitude, kFractionBits - exponent));
+    return static_cast<std::uint16_t>(sign + fraction +
+                                      (static_cast<std::uint32_t>(exponent - kLeastExponent) << kFractionBits));
+}
+
+bool full_weights(const check::Distance& distance) {
+    return distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
+}
+
+/// Of |e_0|, |e_1|, ...: the norm in which a row's move changes its distance.
+class Norm {
+public:
+    explicit Norm(const check::Distance& distance) : distance_(distance) {}
+
+    void add(double e, std::size_t i) {
+        using enum check::Metric;
+        if (distance_.metric == l1)
+            sum_ += std::abs(e);
+        else if (distance_.metric == linf)
+            sum_ = std::max(sum_, std::abs(e));
+        else
+            sum_ += e * e * (distance_.metric == mahalanobis ? static_cast<double>(distance_.weights[i]) : 1.0);
+    }
+    double value() const {
+        constexpr double kSlack = 1 + 1e-9;  // of the sums here, in double, over up to 2^20 elements
+        const bool plain = distance_.metric == check::Metric::l1 || distance_.metric == check::Metric::linf;
+        return (plain ? sum_ : std::sqrt(sum_)) * kSlack;
+    }
+
+private:
+    const check::Distance& distance_;
+    double sum_ = 0;
+};
+
+/// Fills the rows of one set.
+class Narrowing {
+public:
+    Narrowing(const check::Model& model, NarrowSet& set)
+        : distance_(model.distances[set.distance]),
+          target_(model.targets[distance_.target]),
+          set_(set),
+          rows_(prepared_rows(model, distance_)) {}
+
+    /// The first row with an element that float16 cannot hold; the number of rows where there is none.
+    std::uint32_t run() {
+        set_.rows = target_.rows;
+        set_.dimension = target_.dimension;
+        return set_.storage == Storage::f16 ? to_halves() : to_bytes();
+    }
+
+private:
+    std::uint32_t to_halves() {
+        std::vector<double> narrow;
+        for (const float g : rows_) {
+            const double half = to_f16(static_cast<double>(g));
+            if (std::abs(half) > kLargestHalf) return static_cast<std::uint32_t>(narrow.size() / target_.dimension);
+            set_.halves.push_back(half_bits(half));
+            narrow.push_back(half);
+        }
+        set_move(narrow);
+        return target_.rows;
+    }
+
+    /// One scale for the whole set. What an integer stands for is scale x integer, rounded to float32 by some kernels
+    /// and not by others: that rounding counts as a move.
+    std::uint32_t to_bytes() {
+        constexpr double kLargest = 127;
+        float greatest = 0;
+        for (const float g : rows_) greatest = std::max(greatest, std::abs(g));
+        set_.scale = std::max(rounded_up(static_cast<double>(greatest) / kLargest), FLT_MIN);
+        std::vector<double> narrow;
+        for (const float g : rows_) {
+            const double q = std::nearbyint(static_cast<double>(g) / static_cast<double>(set_.scale));
+            set_.bytes.push_back(static_cast<std::int8_t>(std::clamp(q, -kLargest, kLargest)));
+            narrow.push_back(static_cast<double>(set_.scale * static_cast<float>(set_.bytes.back())));
+        }
+        set_move(narrow);
+        return target_.rows;
+    }
+
+    void set_move(const std::vector<double>& narrow) {
+        const bool lossless = std::equal(narrow.begin(), narrow.end(), rows_.begin(),
+                                         [](double a, float b) { return a == static_cast<double>(b); });
+        const double rounding = set_.storage == Storage::i8 ? 0x1p-24 : 0;
+        double moved = 0;
+        for (std::size_t row = 0; row < target_.rows; ++row) {
+            const std::vector<double> exact = exact_row(row);
+            Norm norm(distance_);
+            for (std::size_t i = 0; i < exact.size(); ++i) {
+                const double there = narrow[row * exact.size() + i];
+                norm.add(std::abs(there - exact[i]) + std::abs(there) * rounding, i);
+            }
+            moved = std::max(moved, norm.value());
+        }
+        set_.lossless = lossless;
+        set_.moved = rounded_up(moved);
+    }
+
+    /// The row that the distance is defined by: of length 1, to the precision of double, for cosine and angular.
+    std::vector<double> exact_row(std::size_t row) const {
+        const auto* begin = target_.values.data() + row * target_.dimension;
+        std::vector<double> exact(begin, begin + target_.dimension);
+        if (rows_as_given(distance_)) return exact;
+        double square = 0;
+        for (const double x : exact) square += x * x;
+        for (double& x : exact) x /= std::sqrt(square);
+        return exact;
+    }
+
+    const check::Distance& distance_;
+    const check::Target& target_;
+    NarrowSet& set_;
+    std::vector<float> rows_;
+};
+
+/// Where the robustness of a predicate changes its sign, and where it passes the shift of a monitor that is calibrated
+/// as a whole, with or without a negation before it: status and finality are decided there and nowhere else. Around a
+/// shift the float32 subtractions leave a few roundings open.
+void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<Cut>& cuts) {
+    const float epsilon = predicate.threshold.value;
+    const auto add = [&](Cut cut) {
+        const auto same = [&](const Cut& c) { return c.low == cut.low && c.high == cut.high; };
+        if (std::none_of(cuts.begin(), cuts.end(), same)) cuts.push_back(cut);
+    };
+    add({epsilon, epsilon});
+    for (const Monitor& monitor : plan.monitors) {
+        if (!monitor.shifted) continue;
+        const double slack = (std::abs(static_cast<double>(monitor.shift)) + std::abs(static_cast<double>(epsilon))) *
+                                 4 * static_cast<double>(FLT_EPSILON) +
+                             4 * static_cast<double>(FLT_MIN);
+        for (const float shift : {monitor.shift, -monitor.shift}) {
+            const double at = static_cast<double>(epsilon) + static_cast<double>(shift);
+            add({-rounded_up(-(at - slack)), rounded_up(at + slack)});
+        }
+    }
+}
+
+bool reads(const check::Expr& e, Index distance) {
+    return (e.kind == check::Expr::Kind::distance && e.index == distance) ||
+           std::any_of(e.arguments.begin(), e.arguments.end(),
+                       [&](const check::Expr& argument) { return reads(argument, distance); });
+}
+
+/// Only predicates that compare it as it is, with a number that stays, read the distance.
+bool compared_as_it_is(const Plan& plan, Index distance) {
+    return std::none_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
+        const check::Predicate& predicate = plan.model->predicates[p];
+        const bool adaptive = predicate.threshold.origin == check::ThresholdOrigin::adaptive;
+        return (adaptive || !predicate.plain_distance()) && reads(predicate.expression, distance);
+    });
+}
+
+void refuse_row(const Plan& plan, const NarrowSet& set, std::uint32_t row, diag::Sink& sink) {
+    const check::Target& target = plan.model->targets[plan.model->distances[set.distance].target];
+    sink.report(Code::targets_not_narrow, target.span,
+                fmt::format("row {} (from 0) of target '{}' has an element beyond {}, the largest float16", row,
+                            target.name, kLargestHalf))
+        .note("leave --targets-as out, or use --targets-as i8, which has a scale for each set");
+}
+
+}  // namespace
+
+double to_f16(double x) {
+    if (!std::isfinite(x) || x == 0) return x;
+    constexpr int kFractionBits = 10;
+    constexpr int kLeastExponent = -14;
+    const double quantum = std::ldexp(1.0, std::max(std::ilogb(x), kLeastExponent) - kFractionBits);
+    const double rounded = std::nearbyint(x / quantum) * quantum;
+    return std::abs(rounded) > kLargestHalf ? std::copysign(HUGE_VAL, x) : rounded;
+}
+
+void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
+    if (storage == Storage::f32) return;
+    for (const Index d : plan.distances) {
+        const bool in_file = stored_set(plan, d) != nullptr;
+        if (in_file || full_weights(plan.model->distances[d]) || !compared_as_it_is(plan, d)) continue;
+        NarrowSet set{.distance = d, .storage = storage};
+        if (const std::uint32_t row = Narrowing(*plan.model, set).run(); row < set.rows) {
+            refuse_row(plan, set, row, sink);
+            continue;
+        }
+        for (const Index p : plan.predicates) {
+            const check::Predicate& predicate = plan.model->predicates[p];
+            if (reads(predicate.expression, d)) add_cuts(plan, predicate, set.cuts);
+        }
+        plan.narrow.push_back(std::move(set));
+    }
+    if (!plan.narrow.empty() || sink.has_errors()) return;
+    sink.report(Code::targets_not_narrow, {}, fmt::format("--targets-as {} changes nothing here", word(storage)))
+        .note(
+            "it is for distances that a predicate compares with a threshold as they are, not for expressions, adaptive "
+            "thresholds or mahalanobis with full weights");
+}
+
+const NarrowSet* narrow_set(const Plan& plan, Index distance) {
+    const auto found = std::find_if(plan.narrow.begin(), plan.narrow.end(),
+                                    [&](const NarrowSet& set) { return set.distance == distance; });
+    return found == plan.narrow.end() ? nullptr : &*found;
+}
+
+std::vector<float> widened_rows(const NarrowSet& set) {
+    std::vector<float> rows(std::size_t{set.rows} * set.dimension);
+    const auto count = static_cast<std::uint32_t>(rows.size());
+    if (set.storage == Storage::f16)
+        etlmon::widen_f16(set.halves.data(), rows.data(), count);
+    else
+        etlmon::widen_i8(set.bytes.data(), set.scale, rows.data(), count);
+    return rows;
+}
+
+std::uint64_t bytes_of(const NarrowSet& set) {
+    return set.halves.size() * sizeof(std::uint16_t) + set.bytes.size();
+}
+
+const char* word(Storage storage) {
+    return storage == Storage::f16 ? "f16" : storage == Storage::i8 ? "i8" : "f32";
+}
+
+}  // namespace etlc::plan

@@ -1,0 +1,20 @@
+# --targets-as where an element is beyond float16, and where no distance can be measured so.
+cat >far.etl <<'END'
+spec far;
+input z : f32[2];
+target a = [[1.5, 2.5], [0.5, 70000]];
+predicate near = min l2(z, a) <= 1;
+monitor m = F near;
+END
+"$ETLC" far.etl --targets-as f16 --check
+"$ETLC" far.etl --targets-as i8 --check && echo "i8: fine"
+cat >expression.etl <<'END'
+spec expression;
+input z : f32[2];
+target a = [[1.5, 2.5]];
+target b = [[0.5, 3]];
+predicate contrast = l2(z, a) - l2(z, b) <= 0.1;
+predicate within = mahalanobis([[2, 0.5], [0.5, 1]])(z, a) <= 1;
+monitor m = F (contrast && within);
+END
+"$ETLC" expression.etl --targets-as f16 --check
