@@ -40,7 +40,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     if (!context.names.threshold_member.empty()) headers.insert("adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];
-        if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("storage");
+        if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("widen");
         if (input.hold > 0) headers.insert("hold");
     }
     if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert(boolean ? "boolean_window" : "delay");

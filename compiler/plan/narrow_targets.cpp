@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "etlmon/storage.hpp"
+#include "etlmon/widen.hpp"
 #include "plan/kernels.hpp"
 #include "plan/stored.hpp"
 

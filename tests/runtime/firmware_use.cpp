@@ -2,9 +2,9 @@
 #include "etlmon/adaptation.hpp"
 #include "etlmon/expression.hpp"
 #include "etlmon/kernel.hpp"
-#include "etlmon/storage.hpp"
 #include "etlmon/version.hpp"
 #include "etlmon/views.hpp"
+#include "etlmon/widen.hpp"
 
 #if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 1
 #error "this test was written for another version"

@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "etlmon/widen.hpp"
 #include "kernel_versions.hpp"
 
 namespace narrow_cases {
@@ -72,6 +73,33 @@ inline Narrow make_narrow(Storage storage, MetricId metric, std::uint32_t rows, 
         if (kind == Kind::near_target) z = narrow.wide.targets[row + i] * (1 + 1e-5F * normal(random));
     }
     return narrow;
+}
+
+/// The versions that widen whole embeddings.
+template <class G>
+std::vector<void (*)(G, float*, std::uint32_t) noexcept> widenings() {
+    std::vector<void (*)(G, float*, std::uint32_t) noexcept> all{etlmon::detail::baseline::widen<G>};
+#if defined(ETLMON_DISPATCH)
+    const std::uint32_t level = etlmon::detail::x86_64_level();
+#if ETLMON_X86_64 < 3
+    if (level >= 3) all.push_back(etlmon::detail::x86_64_v3::widen<G>);
+#endif
+    if (level >= 4) all.push_back(etlmon::detail::x86_64_v4::widen<G>);
+#endif
+    return all;
+}
+
+/// n elements of every length come out as they do one by one, and nothing is written behind them.
+template <class G>
+void expect_widened(G from, std::uint32_t greatest) {
+    for (const auto widen : widenings<G>()) {
+        for (std::uint32_t n = 0; n <= greatest; ++n) {
+            std::vector<float> to(n + 1, -1.0F);
+            widen(from, to.data(), n);
+            for (std::uint32_t i = 0; i < n; ++i) ASSERT_EQ(bits(to[i]), bits(etlmon::detail::element(from, i))) << n;
+            ASSERT_EQ(to[n], -1.0F) << n;
+        }
+    }
 }
 
 /// The versions that are compiled for an aggregation, the `turn`-th of a distance.

@@ -6,6 +6,11 @@ namespace {
 
 using namespace narrow_cases;
 
+TEST(Bytes, WidenWhateverTheirNumber) {
+    const Narrow narrow = make_narrow(Storage::i8, MetricId::l2, 1, 70, Kind::mixed);
+    expect_widened(ScaledRows{narrow.bytes.data(), narrow.scale}, 70);
+}
+
 #define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)            \
     TEST(Bytes, SameAsWidened_##id) {                                       \
         expect_metric<etlmon::Type, MetricId::id, ScaledRows>(Storage::i8); \

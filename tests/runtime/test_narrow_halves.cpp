@@ -15,9 +15,16 @@ TEST(Halves, EachWidensToItself) {
         std::uint16_t many[19];
         float widened[19];
         std::fill(many, many + 19, narrow);
-        etlmon::widen_f16(many, widened, 19);
-        for (const float x : widened) ASSERT_EQ(bits(x), bits(one)) << bits_of_half;
+        for (const auto widen : widenings<const std::uint16_t*>()) {
+            widen(many, widened, 19);
+            for (const float x : widened) ASSERT_EQ(bits(x), bits(one)) << bits_of_half;
+        }
     }
+}
+
+TEST(Halves, WidenWhateverTheirNumber) {
+    const Narrow narrow = make_narrow(Storage::f16, MetricId::l2, 1, 70, Kind::mixed);
+    expect_widened(narrow.halves.data(), 70);
 }
 
 #define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)                       \
@@ -30,6 +37,7 @@ TEST(Halves, EachWidensToItself) {
 inline constexpr std::uint16_t kHalves[64 * 5] = {0x3c00, 0x4001, 0x8001, 0x3555, 0xbbbb, 0x7bff, 0x0400};
 inline constexpr float kWideHalves[64 * 5] = {1.0F,        2.001953125F, -5.9604645e-8F, 0.333251953125F,
                                               -0.9663086F, 65504.0F,     6.1035156e-5F};
+
 /// Columns, in which the compiler keeps constants.
 TEST(Halves, InColumns) {
     using namespace etlmon;

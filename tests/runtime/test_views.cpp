@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
-#include "etlmon/storage.hpp"
 #include "etlmon/views.hpp"
+#include "etlmon/widen.hpp"
 
 namespace {
 

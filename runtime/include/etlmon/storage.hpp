@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // Embeddings and targets in narrow storage, widened to float32.
-// Takes: float16 as their IEEE bits, or int8 and a scale. Gives: one element, four, or n floats.
+// Takes: float16 as their IEEE bits, or int8 and a scale. Gives: one element, or four.
 // Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x integer, rounded once.
 // Machines that widen by an instruction and those that do not get the same bits.
 #pragma once
@@ -93,27 +93,5 @@ ETLMON_INLINE float element(ScaledRows rows, size_t i) noexcept {
 }
 
 }  // namespace detail
-
-inline void widen_f16(const uint16_t* from, float* to, uint32_t n) noexcept {
-  uint32_t i = 0;
-#if defined(ETLMON_HAS_PACKS)
-  for (; i + 4 <= n; i += 4) {
-    const detail::Pack four = detail::widened(from + i);
-    detail::copy_bytes(to + i, &four, sizeof four);
-  }
-#endif
-  for (; i < n; ++i) to[i] = detail::element(from, i);
-}
-
-inline void widen_i8(const int8_t* from, float scale, float* to, uint32_t n) noexcept {
-  uint32_t i = 0;
-#if defined(ETLMON_HAS_PACKS)
-  for (; i + 4 <= n; i += 4) {
-    const detail::Pack four = detail::scaled(from + i, scale);
-    detail::copy_bytes(to + i, &four, sizeof four);
-  }
-#endif
-  for (; i < n; ++i) to[i] = detail::element(detail::ScaledRows{from, scale}, i);
-}
 
 }  // namespace etlmon
