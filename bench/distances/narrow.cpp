@@ -1,5 +1,7 @@
 // min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as gains, without and
-// with the bounds that it needs. Prints ns per call, medians, and the ratio to float32. Usage: bench_narrow [ROUNDS]
+// with the bounds that it needs; and what limits it: the time to do nothing with the rows but widen them to float32, in
+// the registers of AVX-512. At the end, how long narrow embeddings take to widen. Prints ns per call, medians, and the
+// ratio to float32. Usage: bench_narrow [ROUNDS]
 #include <time.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <vector>
 
 #include "etlmon/enclosed.hpp"
+#include "etlmon/widen.hpp"
 
 namespace {
 
@@ -31,6 +34,36 @@ float enclosed(const Measured& measured) {
     const Cut cuts[] = {0.5F};
     return e.doubtful(cuts) ? 0.0F : e.low;
 }
+
+#if defined(ETLMON_DISPATCH)
+/// Rows widened, and no arithmetic: their bits are or-ed, so that none can be left out.
+template <class G>
+__attribute__((noinline, target("avx2,fma,avx512f,avx512vl,avx512bw,avx512dq"))) float widened_only(G rows, size_t n) {
+    using namespace detail::x86_64_v4;
+    WideBits a{}, b{}, c{}, d{};
+    for (size_t i = 0; i + 4 * kWidth <= n; i += 4 * kWidth) {
+        a |= reinterpret_cast<WideBits>(load(rows + i));
+        b |= reinterpret_cast<WideBits>(load(rows + (i + kWidth)));
+        c |= reinterpret_cast<WideBits>(load(rows + (i + 2 * kWidth)));
+        d |= reinterpret_cast<WideBits>(load(rows + (i + 3 * kWidth)));
+    }
+    const WideBits all = a | b | c | d;
+    float first = 0;
+    detail::copy_bytes(&first, &all, sizeof first);
+    return first;
+}
+bool can_widen() {
+    return detail::x86_64_level() >= 4;
+}
+#else
+template <class G>
+float widened_only(G, size_t) {
+    return 0;
+}
+bool can_widen() {
+    return false;
+}
+#endif
 
 template <std::uint32_t K, std::uint32_t D>
 void compare(int rounds) {
@@ -57,32 +90,72 @@ void compare(int rounds) {
         return enclosed<D>(detail::best<L2, Min, Fixed<K, D>, false>(point(call), rows, nullptr, {}, {}));
     };
     volatile float sink = 0;
-    std::vector<double> times[3];
+    const auto f16_only = [&](std::uint32_t) {
+        return widened_only(static_cast<const std::uint16_t*>(halves.data()), halves.size());
+    };
+    const auto i8_only = [&](std::uint32_t) {
+        return widened_only(detail::ScaledRows{bytes.data(), 0.01F}, bytes.size());
+    };
+    std::vector<double> times[5];
     const std::uint32_t calls = std::max(1U, 40000000U / (K * D));
     const auto time = [&](const auto& kernel, std::vector<double>& into) {
         const double start = processor_seconds();
         for (std::uint32_t call = 0; call < calls; ++call) sink = kernel(call);
         into.push_back((processor_seconds() - start) * 1e9 / calls);
     };
-    for (int round = 0; round < rounds; ++round) time(f32, times[0]), time(f16, times[1]), time(i8, times[2]);
+    for (int round = 0; round < rounds; ++round) {
+        time(f32, times[0]), time(f16, times[1]), time(i8, times[2]);
+        if (can_widen()) time(f16_only, times[3]), time(i8_only, times[4]);
+    }
     static_cast<void>(sink);
-    for (auto& t : times) std::nth_element(t.begin(), t.begin() + rounds / 2, t.end());
-    const double of_f32 = times[0][rounds / 2], of_f16 = times[1][rounds / 2], of_i8 = times[2][rounds / 2];
-    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f\n", D, K, of_f32, of_f16, of_f32 / of_f16, of_i8,
-                of_f32 / of_i8);
+    const auto median = [&](std::vector<double>& t) {
+        if (t.empty()) return 0.0;
+        std::nth_element(t.begin(), t.begin() + rounds / 2, t.end());
+        return t[static_cast<size_t>(rounds / 2)];
+    };
+    const double of_f32 = median(times[0]), of_f16 = median(times[1]), of_i8 = median(times[2]);
+    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16, of_f32 / of_f16,
+                of_i8, of_f32 / of_i8, median(times[3]), median(times[4]));
     std::fflush(stdout);
+}
+
+/// Embeddings in narrow storage, widened before anything is measured.
+template <std::uint32_t D>
+void widen_embeddings(int rounds) {
+    static std::uint16_t halves[D];
+    static std::int8_t bytes[D];
+    static float to[D];
+    std::vector<double> times[2];
+    constexpr std::uint32_t kCalls = 100000;
+    const auto time = [&](const auto& widen, std::vector<double>& into) {
+        const double start = processor_seconds();
+        for (std::uint32_t call = 0; call < kCalls; ++call) {
+            widen();
+            __asm__ volatile("" ::"r"(to) : "memory");
+        }
+        into.push_back((processor_seconds() - start) * 1e9 / kCalls);
+    };
+    for (int round = 0; round < rounds; ++round) {
+        time([] { widen_f16(halves, to, D); }, times[0]);
+        time([] { widen_i8(bytes, 0.01F, to, D); }, times[1]);
+    }
+    for (auto& t : times) std::nth_element(t.begin(), t.begin() + rounds / 2, t.end());
+    std::printf("An embedding of %u elements to float32: %.1f from float16, %.1f from int8\n", D,
+                times[0][static_cast<size_t>(rounds / 2)], times[1][static_cast<size_t>(rounds / 2)]);
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 25;
-    std::printf("%-15s %12s %12s %6s %12s %6s\n", "D x K", "float32", "float16", "ratio", "int8", "ratio");
+    std::printf("%-15s %12s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16", "ratio", "int8", "ratio",
+                "widen f16", "widen i8");
     compare<4, 384>(rounds);
     compare<16, 384>(rounds);
     compare<64, 384>(rounds);
     compare<64, 1000>(rounds);
     compare<1000, 384>(rounds);
     compare<10000, 384>(rounds);
+    widen_embeddings<384>(rounds);
     return 0;
 }

@@ -22,7 +22,7 @@ endfunction()
 etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest-all.cc -I${ETLC_GTEST_SOURCES} -w)
 etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest_main.cc -I${ETLC_GTEST_SOURCES} -w)
 get_target_property(eigen_headers Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
-foreach(source exact.cpp ${kernel_sources} test_kernel_versions.cpp)
+foreach(source exact.cpp ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
   etlc_aarch64_object(${CMAKE_CURRENT_SOURCE_DIR}/${source} -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers}
     ${kernel_warnings})
 endforeach()
