@@ -204,9 +204,9 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    Value at_a{};
-    Value at_b{};
-    Value near_c{};
+    Value at_a;
+    Value at_b;
+    Value near_c;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.

@@ -84,7 +84,7 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    Value near_goal{};
+    Value near_goal;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.

@@ -154,8 +154,8 @@ void print_exists(Printer& out, const Context& context) {
 void print_atoms(Printer& out, const Context& context) {
     out.line("/// What this step says about each predicate.");
     out.open("struct Atoms {");
-    for (const auto& [p, name] : context.names.predicate_atom) out.line("Value {}{{}};", name);
-    for (const auto& [i, name] : context.names.flag_atom) out.line("Value {}{{}};", name);
+    for (const auto& [p, name] : context.names.predicate_atom) out.line("Value {};", name);
+    for (const auto& [i, name] : context.names.flag_atom) out.line("Value {};", name);
     out.close("};");
     out.line();
 }
