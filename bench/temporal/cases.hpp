@@ -6,6 +6,8 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <tuple>
+#include <utility>
 
 #include "always_1000.hpp"
 #include "always_eventually_50.hpp"
@@ -165,58 +167,42 @@ struct Until10000 {
     using Rescanning = NoRescanning;
 };
 
+/// The Outer of all positions of what a window about each of them says: settled where the window is past, else the
+/// newest sample decides, since what is to come may be anything.
+template <template <class, uint32_t> class Window, class Outer, class Inner, uint32_t N>
+struct OfEveryWindow {
+    Window<Inner, N + 1> window;
+    float settled;
+    uint32_t steps;
+    void reset() {
+        window.reset();
+        settled = Outer::identity();
+        steps = 0;
+    }
+    void step(const Signals& s, std::size_t i, float* rho) {
+        const float seen = window.push(s.p[i]);
+        if (steps >= N)
+            settled = Outer::combine(settled, seen);
+        else
+            ++steps;
+        *rho = Outer::combine(settled, s.p[i]);
+    }
+};
+
 struct AlwaysEventually50 {
     static constexpr const char* kTitle = "G F[0,50] p";
     static constexpr uint32_t kWindow = 50;
     BENCH_GENERATED(always_eventually_50, BENCH_P)
-    template <template <class, uint32_t> class Window>
-    struct ByHand {
-        Window<PlainMax, 51> window;
-        float settled;
-        uint32_t steps;
-        void reset() {
-            window.reset();
-            settled = kInfinity;
-            steps = 0;
-        }
-        void step(const Signals& s, std::size_t i, float* rho) {
-            const float seen = window.push(s.p[i]);
-            if (steps >= 50)
-                settled = smaller(settled, seen);
-            else
-                ++steps;
-            *rho = smaller(settled, s.p[i]);
-        }
-    };
-    using Plain = ByHand<PlainWindow>;
-    using Rescanning = ByHand<Rescan>;
+    using Plain = OfEveryWindow<PlainWindow, PlainMin, PlainMax, 50>;
+    using Rescanning = OfEveryWindow<Rescan, PlainMin, PlainMax, 50>;
 };
 
 struct EventuallyAlways1000 {
     static constexpr const char* kTitle = "F G[0,1000] p";
     static constexpr uint32_t kWindow = 1000;
     BENCH_GENERATED(eventually_always_1000, BENCH_P)
-    template <template <class, uint32_t> class Window>
-    struct ByHand {
-        Window<PlainMin, 1001> window;
-        float settled;
-        uint32_t steps;
-        void reset() {
-            window.reset();
-            settled = -kInfinity;
-            steps = 0;
-        }
-        void step(const Signals& s, std::size_t i, float* rho) {
-            const float seen = window.push(s.p[i]);
-            if (steps >= 1000)
-                settled = larger(settled, seen);
-            else
-                ++steps;
-            *rho = larger(settled, s.p[i]);
-        }
-    };
-    using Plain = ByHand<PlainWindow>;
-    using Rescanning = ByHand<Rescan>;
+    using Plain = OfEveryWindow<PlainWindow, PlainMax, PlainMin, 1000>;
+    using Rescanning = OfEveryWindow<Rescan, PlainMax, PlainMin, 1000>;
 };
 
 /// On a prefix p U[0,100] q holds everywhere where q is met in time everywhere, and p or q holds everywhere.
@@ -351,31 +337,15 @@ struct Responses {
             if (steps < 100) ++steps;
         }
     };
-    template <template <class, uint32_t> class Window>
-    struct EachOnItsOwn {
-        Responding<Window, 10, 0xffffffff> w10;
-        Responding<Window, 20, 0xffffffff> w20;
-        Responding<Window, 30, 0xffffffff> w30;
-        Responding<Window, 40, 0xffffffff> w40;
-        Responding<Window, 50, 0xffffffff> w50;
-        Responding<Window, 60, 0xffffffff> w60;
-        Responding<Window, 70, 0xffffffff> w70;
-        Responding<Window, 80, 0xffffffff> w80;
-        Responding<Window, 90, 0xffffffff> w90;
-        Responding<Window, 100, 0xffffffff> w100;
-        template <class Visit>
-        void each(const Visit& take) {
-            take(w10), take(w20), take(w30), take(w40), take(w50), take(w60), take(w70), take(w80), take(w90),
-                take(w100);
-        }
-        void reset() {
-            each([](auto& response) { response.reset(); });
-        }
-        void step(const Signals& s, std::size_t i, float* rho) {
-            each([&](auto& response) { response.step(s, i, rho++); });
-        }
+    template <template <class, uint32_t> class Window, class>
+    struct EachOnItsOwn;
+    template <template <class, uint32_t> class Window, std::size_t... M>
+    struct EachOnItsOwn<Window, std::index_sequence<M...>> {
+        std::tuple<Responding<Window, 10 * (M + 1), 0xffffffff>...> all;
+        void reset() { (std::get<M>(all).reset(), ...); }
+        void step(const Signals& s, std::size_t i, float* rho) { (std::get<M>(all).step(s, i, rho + M), ...); }
     };
-    using Rescanning = EachOnItsOwn<Rescan>;
+    using Rescanning = EachOnItsOwn<Rescan, std::make_index_sequence<kMonitors>>;
 };
 
 /// A general state machine: no loop by hand is known to be cheaper than the definition over the horizon.

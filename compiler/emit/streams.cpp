@@ -139,19 +139,24 @@ std::string reset_of(const Context& context, const Stream& stream, const std::st
     return fmt::format("{} = {};", name, is_max(stream.op) ? context.spelling.no : context.spelling.yes);
 }
 
+struct Statement {
+    std::string text;         ///< empty: none is needed
+    std::string declaration;  ///< what has to stand before it, if anything
+};
+
 /// The statement with what it declares. In a Boolean monitor, what must remember is only kept up while some verdict
 /// depends on it, and what need not is found out when it is asked for.
-std::string whole_statement(const Context& context, Slot slot) {
+Statement whole_statement(const Context& context, Slot slot) {
     const std::string& name = context.names.stream_local.at(slot);
     const Stream& stream = context.plan.streams[slot];
-    if (context.lazy(slot) && stream.op == StreamOp::within) return lazy_within(context, stream, name);
-    if (context.lazy(slot)) return statement(context, slot, "const auto " + name + " = ");
+    if (context.lazy(slot) && stream.op == StreamOp::within) return {lazy_within(context, stream, name), ""};
+    if (context.lazy(slot)) return {statement(context, slot, "const auto " + name + " = "), ""};
     const std::string condition = open_monitors(context, context.dependents.of_stream[slot]);
     const bool remembers = context.names.stream_member.count(slot) > 0;
-    if (!remembers || condition.empty()) return statement(context, slot, "const Value " + name + " = ");
+    if (!remembers || condition.empty()) return {statement(context, slot, "const Value " + name + " = "), ""};
     const std::string text = statement(context, slot, name + " = ");
-    const bool is_local = text.compare(0, name.size() + 1, name + " ") == 0;
-    return fmt::format("{}if ({}) {}", is_local ? fmt::format("Value {}{{}};\n", name) : "", condition, text);
+    const bool sets_local = text.starts_with(name + " = ");
+    return {fmt::format("if ({}) {}", condition, text), sets_local ? fmt::format("Value {}{{}};", name) : ""};
 }
 
 }  // namespace
@@ -165,16 +170,15 @@ std::string stream_text(const ir::Graph& graph, const Stream& stream) {
 
 void print_streams(Printer& out, const Context& context) {
     for (Slot slot = 0; slot < context.plan.streams.size(); ++slot) {
-        const std::string text = whole_statement(context, slot);
-        if (text.empty()) continue;
+        const Statement statement = whole_statement(context, slot);
+        if (statement.text.empty()) continue;
         const plan::NodeId node = context.plan.streams[slot].node;
         if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
             out.gap();
             out.line("// {}", context.place(node));
         }
-        const std::size_t line = text.find('\n');
-        if (line != std::string::npos) out.line(text.substr(0, line));
-        print_wrapped(out, line == std::string::npos ? text : text.substr(line + 1));
+        if (!statement.declaration.empty()) out.line(statement.declaration);
+        print_wrapped(out, statement.text);
     }
 }
 
