@@ -138,13 +138,15 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
 }
 
 Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
-    std::vector<Slot> weak;
-    std::vector<Slot> strong;
+    const auto strong = [&](NodeId obligation) { return is_strong(graph_[obligation].op); };
+    Machine::State state{.strong = std::any_of(obligations.begin(), obligations.end(), strong)};
+    // Where something is owed strongly, the lower bound is -inf whatever the weak ones say.
+    std::vector<Slot> unseen;
     for (NodeId obligation : obligations)
-        (is_strong(graph_[obligation].op) ? strong : weak).push_back(streams_.unseen(obligation));
-    Machine::State state{.strong = !strong.empty()};
-    if (!weak.empty()) state.weak_unseen = streams_.combine(StreamOp::conjunction, std::move(weak));
-    if (!strong.empty()) state.strong_unseen = streams_.combine(StreamOp::conjunction, std::move(strong));
+        if (strong(obligation) == state.strong) unseen.push_back(streams_.unseen(obligation));
+    if (unseen.empty()) return state;
+    (state.strong ? state.strong_unseen : state.weak_unseen) =
+        streams_.combine(StreamOp::conjunction, std::move(unseen));
     return state;
 }
 

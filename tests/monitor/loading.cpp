@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -47,6 +48,18 @@ std::optional<check::Model> load_uncalibrated(const std::string& text) {
     options.allow_uncalibrated = true;
     options.allow_uncalibrated_monitors = true;
     return load(text, "test.etl", options);
+}
+
+std::vector<std::string> case_names() {
+    std::vector<std::string> result;
+    for (const auto& entry : std::filesystem::directory_iterator(ETLC_SOURCE_DIR "/tests/monitor/cases"))
+        if (entry.path().extension() == ".etl") result.push_back(entry.path().stem().string());
+    std::sort(result.begin(), result.end());
+    return result;
+}
+
+std::string case_path(const std::string& name) {
+    return ETLC_SOURCE_DIR "/tests/monitor/cases/" + name;
 }
 
 std::string read_text(const std::string& path) {

@@ -4,6 +4,7 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "check/model.hpp"
 
@@ -15,6 +16,11 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
 std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds);
 /// Before there are thresholds: calibrated ones are NaN.
 std::optional<check::Model> load_uncalibrated(const std::string& text);
+
+/// The named cases, sorted: cases/NAME.etl with cases/NAME.csv, each of which once showed a fault.
+std::vector<std::string> case_names();
+/// Path of a case, without the ending.
+std::string case_path(const std::string& name);
 
 /// The bytes of a file; fails the current test where it cannot be read.
 std::string read_text(const std::string& path);

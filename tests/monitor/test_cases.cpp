@@ -1,9 +1,7 @@
-// Named cases, cases/NAME.etl with cases/NAME.csv: each once showed a fault. Expected values come from the reference
-// when the test runs. A new case is two new files.
+// The named cases, each of which once showed a fault. Expected values come from the reference when the test runs; a new
+// case is two new files. test_generated compiles them too.
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <filesystem>
 #include <string>
 #include <vector>
 
@@ -17,20 +15,11 @@ namespace {
 
 using namespace etlc;
 using namespace etlc::tests;
-namespace fs = std::filesystem;
-
-std::vector<std::string> case_names() {
-    std::vector<std::string> result;
-    for (const auto& entry : fs::directory_iterator(fs::path(ETLC_SOURCE_DIR) / "tests/monitor/cases"))
-        if (entry.path().extension() == ".etl") result.push_back(entry.path().stem().string());
-    std::sort(result.begin(), result.end());
-    return result;
-}
 
 class Case : public testing::TestWithParam<std::string> {};
 
 TEST_P(Case, PlanAgreesWithTheReference) {
-    const std::string stem = std::string(ETLC_SOURCE_DIR) + "/tests/monitor/cases/" + GetParam();
+    const std::string stem = case_path(GetParam());
     const auto model = load(read_text(stem + ".etl"), stem + ".etl");
     ASSERT_TRUE(model);
     const reference::Trace trace = read_csv(*model, stem + ".csv");

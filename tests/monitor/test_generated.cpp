@@ -49,6 +49,7 @@ std::vector<Subject> subjects() {
         const SpecShape& shape = shapes[n % shapes.size()];
         result.push_back({random_spec(9000 + n, shape), shape.exact});
     }
+    for (const std::string& name : case_names()) result.push_back({read_text(case_path(name) + ".etl")});
     // Truth values need exact comparisons: numbers on a grid.
     result.push_back({exhaustive_spec("boolean_prefix"), true, true, check::Values::boolean});
     result.push_back({exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});

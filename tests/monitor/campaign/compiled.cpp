@@ -59,7 +59,7 @@ Trial trial_on(check::Values values) {
         const auto model = load(spec);
         if (!model) return {};
         GeneratedProgram program("campaign_shrinking");
-        if (!program.add(*model, values) || !program.compile({"g++", "-O0"})) return "it does not compile";
+        if (!program.add(*model, values) || !program.compile({"Shrinking", "g++", "-O0"})) return "it does not compile";
         const auto result = program.run({{0, trace, trace}});
         if (result.answers.size() != 1) return "it does not run";
         return mismatch_of(*model, values, trace, result.answers[0][0]);
@@ -99,7 +99,12 @@ int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& 
         for (int t = 0; t < 4; ++t)
             requests.push_back(request_for(*model, tried, static_cast<std::uint32_t>(program.size() - 1), t));
     }
-    if (requests.empty() || !program.compile(kBuild)) return 0;
+    if (requests.empty()) return 0;
+    if (!program.compile(kBuild)) {
+        tally.findings.push_back(
+            {std::string(program.model(0).file.text()), {}, "a program with this spec does not compile"});
+        return 0;
+    }
     const auto result = program.run(requests);
     compare(program, values, requests, result, tally);
     return monitors;
