@@ -2,12 +2,10 @@
 // judge() the temporal operators. bench_steps [--json FILE] [--rounds N]
 // Cold: the first step after something else went through the caches, which is how a control loop finds them.
 #include <CLI/CLI.hpp>
-#include <chrono>
 #include <cstdio>
 #include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <vector>
 
 #include "cold.hpp"
