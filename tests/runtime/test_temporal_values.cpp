@@ -6,6 +6,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "etlmon/predicate.hpp"
+#include "etlmon/reading.hpp"
 #include "etlmon/verdict.hpp"
 #include "temporal_streams.hpp"
 
@@ -119,7 +121,35 @@ TEST(TemporalValue, KnownAndBetween) {
     }
 }
 
+/// What a compiler that sees a zero leaves out is what a subtraction of one gives.
+TEST(TemporalValue, ThresholdsOfZero) {
+    volatile float zero = 0.0f;
+    for (const uint32_t bits : ascending_floats()) {
+        const float delta = etlmon::float_of_bits(bits);
+        const bool denormal = (bits & 0x7f800000u) == 0 && (bits << 1) != 0;
+        if (denormal || !etlmon::is_finite(delta)) continue;  // some tests run where differences of these are flushed
+        const float unseen = zero;
+        ASSERT_TRUE(temporal::same(etlmon::at_least(delta, 0.0f, etlmon::kTrue),
+                                   etlmon::at_least(delta, unseen, etlmon::kTrue)));
+        ASSERT_TRUE(
+            temporal::same(etlmon::at_most(delta, 0.0f, etlmon::kTrue), etlmon::at_most(delta, unseen, etlmon::kTrue)));
+        ASSERT_TRUE(temporal::same(etlmon::at_least(delta, -0.0f, etlmon::kTrue), etlmon::known(delta)));
+    }
+}
+
+TEST(TemporalValue, Registers) {
+    etlmon::Register a, b, c;
+    for (const Value value : {etlmon::kTrue, etlmon::kFalse, Value{-3, 7}}) {
+        a = value;
+        b = a;
+        c = min(etlmon::kTrue, b, a, value);
+        EXPECT_TRUE(temporal::same(c, value) && temporal::same(b, value));
+        EXPECT_TRUE(temporal::same(etlmon::settled(c).rho, value));
+    }
+}
+
 static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) == 8, "two keys");
+static_assert(std::is_trivially_copyable_v<etlmon::Register> && sizeof(etlmon::Register) == 8, "a value");
 static_assert(std::is_trivially_copyable_v<Verdict> && std::is_standard_layout_v<Verdict>, "a record");
 static_assert(sizeof(Verdict) == 16 && alignof(Verdict) == 4, "three floats and a status");
 static_assert(max(etlmon::kFalse, etlmon::kTrue).low == etlmon::kTop, "usable in constants");

@@ -8,10 +8,13 @@
 #pragma once
 
 #include <float.h>
-#include <math.h>
 #include <stddef.h>
 #include <stdint.h>
+
+#if !defined(__GNUC__)  // where there are no builtins; in C++, math.h takes longer to read than the rest of a monitor
+#include <math.h>
 #include <string.h>
+#endif
 
 #if defined(__GNUC__)
 #define ETLMON_INLINE inline __attribute__((always_inline))
@@ -139,6 +142,15 @@ ETLMON_INLINE float square_root(float x) noexcept {
   return __builtin_sqrtf(x);
 #else
   return sqrtf(x);
+#endif
+}
+
+/// atan of a finite float; the library's.
+ETLMON_INLINE float arc_tangent(float x) noexcept {
+#if defined(__GNUC__)
+  return __builtin_atanf(x);
+#else
+  return atanf(x);
 #endif
 }
 

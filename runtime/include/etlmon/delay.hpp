@@ -14,9 +14,10 @@ namespace etlmon {
 /// 0.
 template <class V>
 ETLMON_STEP V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noexcept {
-  const V past = storage[cursor];
-  storage[cursor] = value;
-  cursor = cursor + 1 == n ? 0 : cursor + 1;
+  const uint32_t at = cursor;  // read once: for all that a compiler knows, the storage might hold the cursor
+  cursor = at + 1 == n ? 0 : at + 1;
+  const V past = storage[at];
+  storage[at] = value;
   return past;
 }
 

@@ -117,7 +117,9 @@ struct Angular : detail::Additive {
     constexpr float kLeast = 8.67361738e-19f;
     return p.apart / (p.along > kLeast ? p.along : kLeast);
   }
-  ETLMON_INLINE static float finish(float value) noexcept { return 2.0f * atanf(detail::square_root(value)); }
+  ETLMON_INLINE static float finish(float value) noexcept {
+    return 2.0f * detail::arc_tangent(detail::square_root(value));
+  }
 };
 
 }  // namespace etlmon

@@ -5,6 +5,8 @@
 // true: allocates nothing; not part of generated headers.
 #pragma once
 
+#include <math.h>
+
 #include <limits>
 
 #include "etlmon/kernel.hpp"

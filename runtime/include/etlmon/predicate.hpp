@@ -11,17 +11,30 @@
 
 namespace etlmon {
 
+namespace detail {
+/// The compiler sees that x is zero. A threshold of zero is common where the input is a robustness itself, and leaves
+/// nothing to subtract.
+ETLMON_INLINE bool surely_zero(const float& x) noexcept {
+#if defined(__GNUC__)
+  return __builtin_constant_p(x == 0.0f) && x == 0.0f;
+#else
+  (void)x;
+  return false;
+#endif
+}
+}  // namespace detail
+
 /// delta <= epsilon and delta < epsilon (Definition "Embedding Predicate").
 ETLMON_INLINE Value at_most(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
-  const Key robustness = key_of(detail::rounded(epsilon - delta));
+  const Key robustness = detail::surely_zero(epsilon) ? -key_of(delta) : key_of(detail::rounded(epsilon - delta));
   return {robustness, robustness};
 }
 
 /// delta >= epsilon and delta > epsilon.
 ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
-  const Key robustness = key_of(detail::rounded(delta - epsilon));
+  const Key robustness = detail::surely_zero(epsilon) ? key_of(delta) : key_of(detail::rounded(delta - epsilon));
   return {robustness, robustness};
 }
 

@@ -34,6 +34,9 @@ constexpr BasicReading<V> settled(V rho) noexcept {
   return {rho, rho.low, rho.high};
 }
 
+/// A register that is settled by itself.
+constexpr Reading settled(Register kept) noexcept { return settled<Value>(kept); }
+
 /// A register as a reading.
 template <class V>
 constexpr BasicReading<V> reading_of(V settled_value) noexcept {

@@ -53,11 +53,12 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
   Element& newest = storage[1];
   Element* ring = storage + 2;
 
+  const uint32_t at = cursor;
   const Element total = Monoid::combine(newest, element);
   Element aggregate = total;
-  if (odd) aggregate = window_total<Monoid>(ring[cursor], middle, total);  // the slot's suffix, before it is filled
-  ring[cursor] = element;
-  uint32_t next = cursor + 1;
+  if (odd) aggregate = window_total<Monoid>(ring[at], middle, total);  // the slot's suffix, before it is filled
+  ring[at] = element;
+  uint32_t next = at + 1;
   if (n < 4 || next == slots / 2 || next == slots) {  // the newest block is full: every block is one older from here
     if (next == slots) next = 0;
     middle = total;
