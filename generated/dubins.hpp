@@ -277,14 +277,14 @@ class Monitor {
   }
 
  private:
-  Value reach_;               // F at_a
-  Value avoid_;               // G !near_c
-  Value sequential_met_;      // nothing is owed any more
-  Value sequential_owing_1_;  // owed: F at_b
-  etlmon::Measured at_a_;     // telemetry
-  etlmon::Measured at_b_;     // telemetry
-  etlmon::Measured near_c_;   // telemetry
-  uint32_t missing_steps_;    // saturates
+  etlmon::Register reach_;               // F at_a
+  etlmon::Register avoid_;               // G !near_c
+  etlmon::Register sequential_met_;      // nothing is owed any more
+  etlmon::Register sequential_owing_1_;  // owed: F at_b
+  etlmon::Measured at_a_;                // telemetry
+  etlmon::Measured at_b_;                // telemetry
+  etlmon::Measured near_c_;              // telemetry
+  uint32_t missing_steps_;               // saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

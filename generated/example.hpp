@@ -120,7 +120,7 @@ class Monitor {
   }
 
  private:
-  Value stays_;                 // G near_goal
+  etlmon::Register stays_;      // G near_goal
   etlmon::Measured near_goal_;  // telemetry
   uint32_t missing_steps_;      // saturates
 };

@@ -106,7 +106,7 @@ std::string Context::literal(plan::Key key) const {
 }
 
 std::string_view Context::step_qualifier() const {
-    constexpr std::uint64_t kFewOperations = 64;
+    constexpr std::uint64_t kFewOperations = 256;
     const bool small = plan.cost.distance_operations == 0 && plan.cost.operations <= kFewOperations;
     return small ? "ETLMON_INLINE " : "";
 }

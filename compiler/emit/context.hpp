@@ -20,9 +20,10 @@ struct Spelling {
     std::string no = "etlmon::kFalse";
     std::string top = "etlmon::kTop";  ///< one end of them
     std::string bottom = "etlmon::kBottom";
+    std::string kept = "etlmon::Register";  ///< the type of a value that is kept from step to step
 };
 inline Spelling truth_spelling() {
-    return {"etlmon::kYes", "etlmon::kNo", "true", "false"};
+    return {"etlmon::kYes", "etlmon::kNo", "true", "false", "Value"};
 }
 
 struct Context {

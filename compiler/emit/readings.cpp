@@ -325,7 +325,7 @@ std::vector<Member> reading_members(const Context& context) {
             for (std::size_t q = 0; q < registers->second.size(); ++q) {
                 if (reading.machine.states[q].always_true) continue;
                 const std::string& name = registers->second[q];
-                result.push_back({"Value", name, owed_text(context, reading.machine.automaton.states[q]),
+                result.push_back({context.spelling.kept, name, owed_text(context, reading.machine.automaton.states[q]),
                                   fmt::format("{} = {};", name, q == 0 ? context.spelling.yes : context.spelling.no)});
             }
             continue;
@@ -343,10 +343,11 @@ std::vector<Member> reading_members(const Context& context) {
                                           : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
         const std::string first = starts_true ? context.spelling.yes : context.spelling.no;
         const std::string second = starts_true ? context.spelling.no : context.spelling.yes;
-        result.push_back({"Value", name, text + (response ? ": where the answer's time is over" : ""),
+        result.push_back({context.spelling.kept, name, text + (response ? ": where the answer's time is over" : ""),
                           fmt::format("{} = {};", name, first)});
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
-            result.push_back({"Value", context.names.guard_member.at(r), "what its left side lets through",
+            result.push_back({context.spelling.kept, context.names.guard_member.at(r),
+                              "what its left side lets through",
                               fmt::format("{} = {};", context.names.guard_member.at(r), second)});
     }
     return result;

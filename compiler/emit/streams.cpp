@@ -121,13 +121,13 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
     return fmt::format("{}{}.push({{{}, {}}}).value;", local, kept(), right, guarded(context, stream, 0, other));
 }
 
-std::string type_of(const Stream& stream) {
+std::string type_of(const Context& context, const Stream& stream) {
     if (stream.op == StreamOp::delay || stream.op == StreamOp::shift)
         return fmt::format("etlmon::Delay<Value, {}>", stream.length);
     if (is_window(stream.op)) return fmt::format("etlmon::Window<{}<Value>, {}>", monoid(stream.op), stream.length);
     if (is_widening(stream.op))
         return fmt::format("etlmon::Widening<{}<Value>, {}, {}>", monoid(stream.op), stream.from_length, stream.length);
-    return "Value";
+    return context.spelling.kept;
 }
 
 std::string reset_of(const Context& context, const Stream& stream, const std::string& name) {
@@ -187,7 +187,7 @@ std::vector<Member> stream_members(const Context& context) {
     for (const auto& [slot, name] : context.names.stream_member) {
         const Stream& stream = context.plan.streams[slot];
         const std::string comment = stream_text(context.graph, stream);
-        result.push_back({type_of(stream), name, comment, reset_of(context, stream, name)});
+        result.push_back({type_of(context, stream), name, comment, reset_of(context, stream, name)});
     }
     return result;
 }
