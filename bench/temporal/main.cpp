@@ -54,16 +54,20 @@ struct Column {
 };
 constexpr Column kColumns[] = {
     {"plain", "ns", "plain_ns", 7, 2},
-    {"rho", "ns", "robustness_ns", 7, 2},
-    {"rho/", "plain", "robustness_to_plain", 6, 2},
-    {"verd/", "rho", "verdict_to_robustness", 6, 2},
-    {"rescan/", "rho", "rescan_to_robustness", 8, 1},
+    {"ready", "ns", "ready_ns", 7, 2},
+    {"ready/", "plain", "ready_to_plain", 6, 2},
+    {"step", "ns", "robustness_ns", 7, 2},
+    {"step/", "plain", "robustness_to_plain", 6, 2},
+    {"verd/", "step", "verdict_to_robustness", 6, 2},
+    {"rescan/", "step", "rescan_to_robustness", 8, 1},
     {"| called", "plain", "plain_called_ns", 9, 2},
-    {"rho", "ns", "robustness_called_ns", 7, 2},
-    {"rho/", "plain", "robustness_called_to_plain", 6, 2},
+    {"ready", "ns", "ready_called_ns", 7, 2},
+    {"ready/", "plain", "ready_called_to_plain", 6, 2},
+    {"step", "ns", "robustness_called_ns", 7, 2},
+    {"step/", "plain", "robustness_called_to_plain", 6, 2},
     {"verdict", "ns", "verdict_called_ns", 8, 2},
     {"+-", "%", "spread_percent", 3, 0},
-    {"copilot/", "rho", "copilot_to_robustness_called", 9, 1},
+    {"copilot/", "step", "copilot_to_robustness_called", 9, 1},
     {"| worst", "ns", "worst_step_ns", 8, 0},
     {"state", "bytes", "state_bytes", 8, 0},
     {"ops", "", "operations", 6, 0},
@@ -86,12 +90,16 @@ void print(const json& row) {
 }
 
 json measured(const Row& row, bench::Effort effort) {
-    std::vector<Routine> routines{row.rho.loop, row.rho.call, row.verdict.loop, row.verdict.call};
+    std::vector<Routine> routines{row.judge.loop, row.judge.call,   row.rho.loop,
+                                  row.rho.call,   row.verdict.loop, row.verdict.call};
+    std::size_t next = routines.size();
     for (const std::optional<Routine>& more : {row.plain.loop, row.plain.call, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
-    const bench::Ways<Series> rho{series[0], series[1]}, verdict{series[2], series[3]};
+    const bench::Ways<Series> ready{series[0], series[1]}, rho{series[2], series[3]}, verdict{series[4], series[5]};
     json result{{"formula", row.title},
+                {"ready_ns", ready.loop.median()},
+                {"ready_called_ns", ready.call.median()},
                 {"robustness_ns", rho.loop.median()},
                 {"robustness_called_ns", rho.call.median()},
                 {"verdict_ns", verdict.loop.median()},
@@ -101,12 +109,13 @@ json measured(const Row& row, bench::Effort effort) {
                 {"state_bytes", row.state_bytes},
                 {"operations", row.operations},
                 {"worst_step_ns", row.worst()}};
-    std::size_t next = 4;
     if (row.plain.loop) {
         const bench::Ways<Series> plain{series[next], series[next + 1]};
         next += 2;
         result["plain_ns"] = plain.loop.median();
         result["plain_called_ns"] = plain.call.median();
+        result["ready_to_plain"] = bench::ratio(ready.loop, plain.loop);
+        result["ready_called_to_plain"] = bench::ratio(ready.call, plain.call);
         result["robustness_to_plain"] = bench::ratio(rho.loop, plain.loop);
         result["robustness_called_to_plain"] = bench::ratio(rho.call, plain.call);
     }

@@ -37,10 +37,33 @@ struct Row {
     Ways<std::optional<Routine>> plain;  ///< robustness by hand
     std::optional<Routine> rescan;       ///< the same, with windows gone through anew at each step, in a loop
     std::optional<Routine> copilot;      ///< Copilot's monitor, called
-    Ways<Routine> rho;                   ///< the monitor; its user reads `robustness` alone
-    Ways<Routine> verdict;               ///< its user reads all of the verdict
-    std::function<double()> worst;       ///< nanoseconds of its slowest step
+    Ways<Routine> judge;            ///< the monitor on predicates that are ready; its user reads `robustness` alone
+    Ways<Routine> rho;              ///< the monitor's whole step
+    Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
+    std::function<double()> worst;  ///< nanoseconds of its slowest step
 };
+
+/// What the monitor says about each predicate at each step.
+template <class Case>
+std::vector<typename Case::Monitor::Atoms> measured(const Signals& signals) {
+    typename Case::Monitor monitor;
+    std::vector<typename Case::Monitor::Atoms> atoms;
+    for (std::size_t i = 0; i < signals.size(); ++i) atoms.push_back(monitor.measure(Case::inputs(signals, i)));
+    return atoms;
+}
+
+/// A chunk of steps whose predicates are ready, robustness alone.
+template <class Case, bool kCalled>
+[[gnu::noinline]] void judge_robustness(typename Case::Monitor& monitor,
+                                        const std::vector<typename Case::Monitor::Atoms>& atoms, std::size_t from,
+                                        float* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i) {
+        Case::visit(monitor.judge(atoms[from + i]), [&](std::size_t m, const etlmon::Verdict& verdict) {
+            out[i * Case::kMonitors + m] = verdict.robustness;
+        });
+        if (kCalled) settle_memory();
+    }
+}
 
 /// The monitor's user: a chunk of steps, robustness alone.
 template <class Case, bool kCalled>
@@ -78,9 +101,9 @@ template <class ByHand, std::size_t kMonitors, bool kCalled>
     for (std::size_t i = 0; i < kChunk; ++i) out[i] = step(signals, from + i);
 }
 
-/// Goes over all steps, chunk by chunk, with something that takes a chunk.
-template <class Result, class State, class Chunk>
-Routine routine(const std::string& name, std::size_t monitors, const std::shared_ptr<const Signals>& signals,
+/// Goes over all steps of a trace, chunk by chunk, with something that takes a chunk.
+template <class Result, class State, class Trace, class Chunk>
+Routine routine(const std::string& name, std::size_t monitors, const std::shared_ptr<const Trace>& trace,
                 const Chunk& chunk) {
     const auto state = std::make_shared<State>();
     const auto results = std::make_shared<std::vector<Result>>(kChunk * monitors);
@@ -88,7 +111,7 @@ Routine routine(const std::string& name, std::size_t monitors, const std::shared
     return {name,
             [=] {
                 for (std::size_t from = 0; from < kSteps; from += kChunk) {
-                    chunk(*state, *signals, from, results->data());
+                    chunk(*state, *trace, from, results->data());
                     settle_memory();
                 }
             },
@@ -172,6 +195,10 @@ Row row() {
     const auto monitored = [&](auto result_type, const char* name, auto chunk) {
         return routine<decltype(result_type), Monitor>(name, kMonitors, signals, chunk);
     };
+    using Atoms = std::vector<typename Monitor::Atoms>;
+    const auto atoms = std::make_shared<const Atoms>(measured<Case>(*signals));
+    result.judge = {routine<float, Monitor>("ready", kMonitors, atoms, judge_robustness<Case, false>),
+                    routine<float, Monitor>("ready, called", kMonitors, atoms, judge_robustness<Case, true>)};
     result.rho = {monitored(float{}, "robustness", read_robustness<Case, false>),
                   monitored(float{}, "robustness, called", read_robustness<Case, true>)};
     result.verdict = {monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false>),
