@@ -1,7 +1,7 @@
 # Distances, aggregates, views and expressions: as the project is built, then where flags or another compiler could change them.
 find_package(Eigen3 REQUIRED)
-set(kernel_sources test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_views.cpp)
-set(narrow_sources test_narrow_halves.cpp test_narrow_bytes.cpp)
+set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_views.cpp)
+set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp test_narrow_bytes.cpp)
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
 
 # The judge is built once, without the flags under test.
@@ -32,10 +32,11 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
 endif()
 etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
-set(all_kernel_sources ${kernel_sources})
-set(kernel_sources ${narrow_sources} test_kernel_versions.cpp test_expression.cpp test_views.cpp)
-etlc_kernel_variant(test_kernels_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
-set(kernel_sources ${all_kernel_sources})
+set(only_kernel_sources ${kernel_sources})
+list(REMOVE_ITEM kernel_sources test_kernel_twins.cpp)
+list(APPEND kernel_sources ${narrow_sources} test_kernel_versions.cpp)
+etlc_kernel_variant(test_kernels_sanitized ${quick_sanitizers})
+set(kernel_sources ${only_kernel_sources})
 
 # The other compiler at its boldest; and every header alone under both.
 find_program(ETLC_CLANG clang++)
@@ -52,7 +53,7 @@ else()
       COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math -DETLMON_NO_DISPATCH ${kernel_warnings}
               -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
       DEPENDS ${source} ${kernel_headers} ${CMAKE_CURRENT_SOURCE_DIR}/exact.hpp ${CMAKE_CURRENT_SOURCE_DIR}/kernel_cases.hpp
-              ${CMAKE_CURRENT_SOURCE_DIR}/kernel_versions.hpp
+              ${CMAKE_CURRENT_SOURCE_DIR}/kernel_versions.hpp ${CMAKE_CURRENT_SOURCE_DIR}/row_kernels.hpp
       VERBATIM)
     list(APPEND objects clang_${source}.o)
   endforeach()

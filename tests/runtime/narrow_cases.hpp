@@ -1,9 +1,6 @@
 // Rows of float16 and int8 for the kernel tests. Subnormals, zeros and the greatest numbers of either are among them.
 // Takes: a storage, a distance, sizes, a kind of case. Gives: the narrow rows and the float32 rows that they widen to,
 // and a check that every version of the kernel gives both the same bits, within the bounds of the definition.
-// Keeps true: under sanitizers, where a kernel takes seconds to compile, the nearest row is measured by every version
-// and each other aggregation by one, another for every distance; and only where rows have to be of length 1, for which
-// the judge knows nothing of others, float32 rows are measured beside.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -19,13 +16,6 @@ using namespace kernel_cases;
 using etlmon::Measured;
 using etlmon::MetricId;
 using etlmon::detail::ScaledRows;
-using etlmon::detail::Sizes;
-
-#if defined(__SANITIZE_ADDRESS__)
-inline constexpr bool kSanitized = true;
-#else
-inline constexpr bool kSanitized = false;
-#endif
 
 /// A float16 by its definition (IEEE 754, 3.4 and 3.6).
 inline float half(std::uint16_t bits) {
@@ -89,6 +79,12 @@ std::vector<void (*)(G, float*, std::uint32_t) noexcept> widenings() {
     return all;
 }
 
+inline std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
+    if (is_heavy(metric, rows, dimension)) return {Kind::ordinary};
+    if (rows * dimension > 2000) return {Kind::ordinary, Kind::equal};
+    return {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge, Kind::denormal};
+}
+
 /// n elements of every length come out as they do one by one, and nothing is written behind them.
 template <class G>
 void expect_widened(G from, std::uint32_t greatest) {
@@ -102,39 +98,6 @@ void expect_widened(G from, std::uint32_t greatest) {
     }
 }
 
-/// The versions that are compiled for an aggregation, the `turn`-th of a distance.
-template <MetricId Id, int Turn>
-constexpr Which which() {
-    if (!kSanitized || Turn == 0) return Which::all;
-    return static_cast<Which>(1 + (static_cast<int>(Id) + Turn) % 3);
-}
-
-template <class Metric, MetricId Id, int Turn, class Aggregation, class G>
-void expect_same(const Narrow& narrow, G rows, exact::Aggregate aggregate, Aggregation aggregation, const char* kind) {
-    const exact::Case& c = narrow.wide;
-    const exact::Judge judge(c, kDenormals);
-    const Sizes size{c.rows, c.dimension};
-    constexpr Which kWhich = which<Id, Turn>();
-    constexpr bool kAnyLength = etlmon::kDistances[static_cast<int>(Id)].prepared == etlmon::Prepared::as_given;
-    const auto direct = versions<Metric, Aggregation, Sizes, false, G, kWhich>();
-    std::vector<Measured> measured;
-    for (const auto& version : direct) {
-        measured.push_back(version.run(c.z.data(), rows, c.weights.data(), size, aggregation));
-        if (!kAnyLength) continue;
-        ASSERT_EQ(judge.mismatch(aggregate, bits(measured.back().delta), measured.back().nearest), "")
-            << version.name << ": " << describe(c, aggregate, kind);
-    }
-    if constexpr (!kSanitized || !kAnyLength) {
-        const auto wide = versions<Metric, Aggregation, Sizes, false, const float*, kWhich>();
-        for (std::size_t v = 0; v < wide.size(); ++v) {
-            const Measured of_wide = wide[v].run(c.z.data(), c.targets.data(), c.weights.data(), size, aggregation);
-            ASSERT_EQ(bits(measured[v].delta), bits(of_wide.delta))
-                << wide[v].name << ": " << describe(c, aggregate, kind);
-            ASSERT_EQ(measured[v].nearest, of_wide.nearest) << wide[v].name << ": " << describe(c, aggregate, kind);
-        }
-    }
-}
-
 inline const std::uint16_t* rows_in(const Narrow& narrow, const std::uint16_t*) {
     return narrow.halves.data();
 }
@@ -142,28 +105,35 @@ inline ScaledRows rows_in(const Narrow& narrow, ScaledRows) {
     return {narrow.bytes.data(), narrow.scale};
 }
 
-template <class Metric, MetricId Id, class G>
-void expect_every_aggregation(const Narrow& narrow, const char* kind) {
-    using Aggregation = etlmon::AggregationId;
-    const G rows = rows_in(narrow, G{});
-    std::vector<float> scratch(narrow.wide.rows);
-    const std::uint32_t n = (narrow.wide.rows + 1) / 2;
-    expect_same<Metric, Id, 0>(narrow, rows, {Aggregation::min, 1}, etlmon::Min{}, kind);
-    expect_same<Metric, Id, 1>(narrow, rows, {Aggregation::max, 1}, etlmon::Max{}, kind);
-    expect_same<Metric, Id, 2>(narrow, rows, {Aggregation::mean, 1}, etlmon::Mean{}, kind);
-    expect_same<Metric, Id, 3>(narrow, rows, {Aggregation::kth, n}, etlmon::KthOf{scratch.data(), n, 0}, kind);
+/// Rows as G reads them, measured by every version. Where rows have to be of length 1 the judge knows nothing of
+/// others, and what float32 rows give is compared.
+template <class G>
+void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Aggregate aggregate, const char* kind) {
+    const exact::Case& c = narrow.wide;
+    const bool judged = etlmon::distance(c.metric).prepared == etlmon::Prepared::as_given;
+    const auto direct = row_versions<G>(c.metric, aggregate.id);
+    const auto wide = row_versions<const float*>(c.metric, aggregate.id);
+    for (std::size_t v = 0; v < direct.size(); ++v) {
+        const Measured measured = direct[v].measure(c, rows_in(narrow, G{}), aggregate);
+        const Measured of_wide = wide[v].measure(c, c.targets.data(), aggregate);
+        ASSERT_EQ(bits(measured.delta), bits(of_wide.delta)) << direct[v].name << ": " << describe(c, aggregate, kind);
+        ASSERT_EQ(measured.nearest, of_wide.nearest) << direct[v].name << ": " << describe(c, aggregate, kind);
+        if (!judged) continue;
+        ASSERT_EQ(judge.mismatch(aggregate, bits(measured.delta), measured.nearest), "")
+            << direct[v].name << ": " << describe(c, aggregate, kind);
+    }
 }
 
 /// Every size and kind, for rows as G reads them.
-template <class Metric, MetricId Id, class G>
-void expect_metric(Storage storage) {
+template <class G>
+void expect_metric(Storage storage, MetricId metric) {
     for (const std::uint32_t dimension : kDimensions) {
         for (const std::uint32_t rows : kRows) {
-            if (Id == MetricId::mahalanobis && dimension * rows > 1000) continue;
-            for (const Kind kind :
-                 {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge, Kind::denormal}) {
-                if (dimension * rows > 2000 && kind != Kind::ordinary && kind != Kind::equal) continue;
-                expect_every_aggregation<Metric, Id, G>(make_narrow(storage, Id, rows, dimension, kind), name(kind));
+            for (const Kind kind : kinds_of(metric, rows, dimension)) {
+                const Narrow narrow = make_narrow(storage, metric, rows, dimension, kind);
+                const exact::Judge judge(narrow.wide, kDenormals);
+                for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(metric, rows, dimension)))
+                    expect_aggregate<G>(narrow, judge, aggregate, name(kind));
                 if (testing::Test::HasFatalFailure()) return;
             }
         }

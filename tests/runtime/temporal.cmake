@@ -16,7 +16,7 @@ function(etlc_temporal_variant name)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
 etlc_temporal_variant(test_temporal_fast_math -O3 -ffast-math)
-etlc_temporal_variant(test_temporal_sanitized -O1 -g -fsanitize=address,undefined -fno-sanitize-recover=all)
+etlc_temporal_variant(test_temporal_sanitized ${quick_sanitizers})
 
 # The compiler that the project is not built with, at its boldest.
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")

@@ -13,8 +13,7 @@ class Distances : public testing::TestWithParam<MetricId> {};
 TEST_P(Distances, WithinTheirBounds) {
     for (const std::uint32_t dimension : kDimensions) {
         for (const std::uint32_t rows : kRows) {
-            // The judge's matrix products take most of the time: large weights get the kinds that differ most.
-            const bool heavy = GetParam() == MetricId::mahalanobis && dimension * rows > 1000;
+            const bool heavy = is_heavy(GetParam(), rows, dimension);  // test_kernel_versions.cpp has all of them
             if (heavy && rows > 5) continue;
             for (const Kind kind : heavy ? std::vector<Kind>{Kind::ordinary, Kind::touching} : kKinds) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 1);

@@ -10,62 +10,67 @@ using namespace kernel_cases;
 using etlmon::Measured;
 using etlmon::MetricId;
 using etlmon::detail::Fixed;
-using etlmon::detail::Sizes;
 
-/// All versions on one case. `targets`: prepared, in the form that they take.
-template <class Metric, class Aggregation, bool InColumns, class Size>
-void expect_versions(const exact::Case& c, const exact::Judge& judge, exact::Aggregate aggregate, const char* kind,
-                     const float* targets, Size size, Aggregation aggregation) {
-    Measured fused{};
-    bool has_fused = false;
-    for (const auto& version : versions<Metric, Aggregation, Size, InColumns>()) {
-        const Measured m = version.run(c.z.data(), targets, c.weights.data(), size, aggregation);
+/// What a version made of a case.
+struct Answer {
+    const char* version;
+    bool fused;
+    Measured measured;
+};
+
+void expect_answers(const std::vector<Answer>& answers, const exact::Case& c, const exact::Judge& judge,
+                    exact::Aggregate aggregate, const char* kind) {
+    const Answer* fused = nullptr;
+    for (const Answer& answer : answers) {
+        const Measured m = answer.measured;
         ASSERT_EQ(judge.mismatch(aggregate, bits(m.delta), m.nearest), "")
-            << version.name << ": " << describe(c, aggregate, kind);
+            << answer.version << ": " << describe(c, aggregate, kind);
 #if !defined(__FAST_MATH__)
-        if (version.fused && has_fused) {
-            ASSERT_EQ(bits(m.delta), bits(fused.delta)) << version.name << ": " << describe(c, aggregate, kind);
-            ASSERT_EQ(m.nearest, fused.nearest) << version.name << ": " << describe(c, aggregate, kind);
+        if (answer.fused && fused != nullptr) {
+            ASSERT_EQ(bits(m.delta), bits(fused->measured.delta))
+                << answer.version << ": " << describe(c, aggregate, kind);
+            ASSERT_EQ(m.nearest, fused->measured.nearest) << answer.version << ": " << describe(c, aggregate, kind);
         }
 #endif
-        if (version.fused) fused = m, has_fused = true;
+        if (answer.fused) fused = &answer;
     }
 }
 
-template <class Metric>
-void expect_rows(MetricId metric) {
+/// rows: prepared.
+void expect_row_versions(const exact::Case& c, const exact::Judge& judge, const float* rows, exact::Aggregate aggregate,
+                         const char* kind) {
+    std::vector<Answer> answers;
+    for (const auto& version : row_versions<const float*>(c.metric, aggregate.id))
+        answers.push_back({version.name, version.fused, version.measure(c, rows, aggregate)});
+    expect_answers(answers, c, judge, aggregate, kind);
+}
+
+std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
+    if (is_heavy(metric, rows, dimension)) return {Kind::ordinary};
+    if (rows == 64) return {Kind::ordinary, Kind::equal};
+    return {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge};
+}
+
+class KernelVersions : public testing::TestWithParam<MetricId> {};
+
+TEST_P(KernelVersions, EveryAggregationAndSize) {
     for (const std::uint32_t dimension : kDimensions) {
         for (const std::uint32_t rows : kRows) {
-            if (metric == MetricId::mahalanobis && dimension * rows > 1000) continue;
-            for (const Kind kind : {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge}) {
-                if (rows == 64 && kind != Kind::ordinary && kind != Kind::equal) continue;
-                const exact::Case c = make(metric, rows, dimension, kind, 21);
+            for (const Kind kind : kinds_of(GetParam(), rows, dimension)) {
+                const exact::Case c = make(GetParam(), rows, dimension, kind, 21);
                 const exact::Judge judge(c, kDenormals);
                 std::vector<float> prepared = c.targets;
-                etlmon::prepare(metric, prepared.data(), rows, dimension);
-                const Sizes size{rows, dimension};
-                const auto check = [&](exact::Aggregate aggregate, auto aggregation) {
-                    expect_versions<Metric, decltype(aggregation), false>(c, judge, aggregate, name(kind),
-                                                                          prepared.data(), size, aggregation);
-                };
-                std::vector<float> scratch(rows);
-                const std::uint32_t n = (rows + 1) / 2;
-                using Id = etlmon::AggregationId;
-                check({Id::min, 1}, etlmon::Min{});
-                check({Id::max, 1}, etlmon::Max{});
-                check({Id::mean, 1}, etlmon::Mean{});
-                check({Id::kth, n}, etlmon::KthOf{scratch.data(), n, 0});
-                if (testing::Test::HasFatalFailure()) return;
+                etlmon::prepare(c.metric, prepared.data(), rows, dimension);
+                for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(GetParam(), rows, dimension)))
+                    expect_row_versions(c, judge, prepared.data(), aggregate, name(kind));
+                if (HasFatalFailure()) return;
             }
         }
     }
 }
 
-TEST(KernelVersions, EveryDistanceAggregationAndSize) {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) expect_rows<etlmon::Type>(MetricId::id);
-#include "etlmon/distances.def"
-#undef DISTANCE
-}
+INSTANTIATE_TEST_SUITE_P(All, KernelVersions, testing::ValuesIn(metrics()),
+                         [](const auto& of) { return std::string(etlmon::distance(of.param).word); });
 
 template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
 void expect_columns(MetricId metric, exact::Aggregate aggregate) {
@@ -79,8 +84,11 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
         etlmon::prepare(metric, rows, K, D);
         const Columns<K, D> columns = columns_of<K, D>(rows);
         if constexpr (kHasPacks) {
-            expect_versions<Metric, Aggregation, true>(c, judge, aggregate, name(kind), columns.values, Fixed<K, D>{},
-                                                       Aggregation{});
+            std::vector<Answer> answers;
+            for (const auto& version : versions<Metric, Aggregation, Fixed<K, D>, true>())
+                answers.push_back(
+                    {version.name, version.fused, version.run(c.z.data(), columns.values, c.weights.data(), {}, {})});
+            expect_answers(answers, c, judge, aggregate, name(kind));
             // The same rows, not in columns: the same bits.
             const Measured in_rows =
                 best<Metric, Aggregation, Fixed<K, D>, false>(c.z.data(), rows, c.weights.data(), {}, {});
@@ -94,7 +102,7 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
     }
 }
 
-TEST(KernelVersions, Columns) {
+TEST(ColumnVersions, WithinTheirBounds) {
     using Id = etlmon::AggregationId;
     expect_columns<etlmon::L2, etlmon::Min, 64, 2>(MetricId::l2, {});
     expect_columns<etlmon::L2, etlmon::Mean, 5, 7>(MetricId::l2, {Id::mean, 1});
@@ -106,14 +114,13 @@ TEST(KernelVersions, Columns) {
     expect_columns<etlmon::MahalanobisDiagonal, etlmon::Min, 8, 3>(MetricId::mahalanobis_diagonal, {});
 }
 
-TEST(KernelVersions, LargeSetsAreReadInOneStream) {
+TEST(LargeSetVersions, AreReadInOneStream) {
     constexpr std::uint32_t kRowsOfStream = 530, kDimension = 1000;
     static_assert(etlmon::detail::order(kRowsOfStream, kDimension) == etlmon::detail::Order::four_chunks ||
                   !etlmon::detail::kHasPacks);
     const exact::Case c = make(MetricId::l2, kRowsOfStream, kDimension, Kind::near_target, 23);
     const exact::Judge judge(c, kDenormals);
-    expect_versions<etlmon::L2, etlmon::Min, false>(c, judge, {}, "large", c.targets.data(),
-                                                    Sizes{kRowsOfStream, kDimension}, etlmon::Min{});
+    expect_row_versions(c, judge, c.targets.data(), {}, "large");
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ TEST(Halves, WidenWhateverTheirNumber) {
     expect_widened(narrow.halves.data(), 70);
 }
 
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)                       \
-    TEST(Halves, SameAsWidened_##id) {                                                 \
-        expect_metric<etlmon::Type, MetricId::id, const std::uint16_t*>(Storage::f16); \
+#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)         \
+    TEST(Halves, SameAsWidened_##id) {                                   \
+        expect_metric<const std::uint16_t*>(Storage::f16, MetricId::id); \
     }
 #include "etlmon/distances.def"
 #undef DISTANCE

@@ -1,0 +1,6 @@
+// The kernels on rows of int8.
+#include "row_kernels.hpp"
+
+namespace kernel_cases {
+template std::vector<RowVersion<etlmon::detail::ScaledRows>> row_versions(etlmon::MetricId, etlmon::AggregationId);
+}  // namespace kernel_cases
