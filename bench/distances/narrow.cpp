@@ -1,7 +1,7 @@
-// min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as gains, without and
-// with the bounds that it needs; and what limits it: the time to do nothing with the rows but widen them to float32, in
-// the registers of AVX-512. At the end, how long narrow embeddings take to widen. Prints ns per call, medians, and the
-// ratio to float32. Usage: bench_narrow [ROUNDS]
+// min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as gains, with the
+// bounds that it needs, int8 both widened and in integers (bytes.hpp); and what limits widening: the time to do nothing
+// with the rows but widen them to float32, in the registers of AVX-512. At the end, how long narrow embeddings take to
+// widen. Prints ns per call, medians, and the ratio to float32. Usage: bench_narrow [ROUNDS]
 #include <time.h>
 
 #include <algorithm>
@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "etlmon/enclosed.hpp"
+#include "etlmon/bytes.hpp"
 #include "etlmon/widen.hpp"
 
 namespace {
@@ -27,12 +27,15 @@ double processor_seconds() {
 
 constexpr std::uint32_t kPoints = 16;
 
+float doubtful(const Enclosed& e) {
+    const Cut cuts[] = {0.5F};
+    return e.doubtful(cuts) ? 0.0F : e.low;
+}
+
 /// What a monitor does with a distance: bounds, and whether a threshold lies within them.
 template <std::uint32_t D>
 float enclosed(const Measured& measured) {
-    const Enclosed e = enclose<L2>(measured, 0.01F, D);
-    const Cut cuts[] = {0.5F};
-    return e.doubtful(cuts) ? 0.0F : e.low;
+    return doubtful(enclose<L2>(measured, 0.01F, D));
 }
 
 #if defined(ETLMON_DISPATCH)
@@ -72,11 +75,14 @@ void compare(int rounds) {
     std::vector<float> z(kPoints * D), wide(std::size_t{K} * D);
     std::vector<std::uint16_t> halves(wide.size());
     std::vector<std::int8_t> bytes(wide.size());
+    std::vector<std::int32_t> sums(2 * std::size_t{K});
     for (float& x : z) x = normal(random);
     for (std::size_t i = 0; i < wide.size(); ++i) {
         bytes[i] = static_cast<std::int8_t>(static_cast<int>(random() % 255) - 127);
         halves[i] = static_cast<std::uint16_t>(0x3800 + random() % 0x400 + (random() % 2) * 0x8000);
         wide[i] = detail::element(halves.data(), i);
+        sums[i / D] += bytes[i] * bytes[i];
+        sums[K + i / D] += bytes[i];
     }
     const auto point = [&](std::uint32_t call) { return z.data() + call % kPoints * D; };
     const auto f32 = [&](std::uint32_t call) {
@@ -89,6 +95,17 @@ void compare(int rounds) {
         const detail::ScaledRows rows{bytes.data(), 0.01F};
         return enclosed<D>(detail::best<L2, Min, Fixed<K, D>, false>(point(call), rows, nullptr, {}, {}));
     };
+#if defined(ETLMON_X86_64)
+    const auto integers = [&](std::uint32_t call) {
+        alignas(64) std::uint8_t scratch[detail::bytes_scratch(D)];
+        const auto run = detail::BytesDispatch<L2, Min, Fixed<K, D>>::best();
+        const detail::ScaledRows rows{bytes.data(), 0.01F};
+        return doubtful(
+            detail::enclose_integers<L2>(run(point(call), rows, sums.data(), scratch, {}, {}), 0.01F, D, 0));
+    };
+#else
+    const auto& integers = i8;
+#endif
     volatile float sink = 0;
     const auto f16_only = [&](std::uint32_t) {
         return widened_only(static_cast<const std::uint16_t*>(halves.data()), halves.size());
@@ -96,7 +113,7 @@ void compare(int rounds) {
     const auto i8_only = [&](std::uint32_t) {
         return widened_only(detail::ScaledRows{bytes.data(), 0.01F}, bytes.size());
     };
-    std::vector<double> times[5];
+    std::vector<double> times[6];
     const std::uint32_t calls = std::max(1U, 40000000U / (K * D));
     const auto time = [&](const auto& kernel, std::vector<double>& into) {
         const double start = processor_seconds();
@@ -104,7 +121,7 @@ void compare(int rounds) {
         into.push_back((processor_seconds() - start) * 1e9 / calls);
     };
     for (int round = 0; round < rounds; ++round) {
-        time(f32, times[0]), time(f16, times[1]), time(i8, times[2]);
+        time(f32, times[0]), time(f16, times[1]), time(i8, times[2]), time(integers, times[5]);
         if (can_widen()) time(f16_only, times[3]), time(i8_only, times[4]);
     }
     static_cast<void>(sink);
@@ -114,8 +131,10 @@ void compare(int rounds) {
         return t[static_cast<size_t>(rounds / 2)];
     };
     const double of_f32 = median(times[0]), of_f16 = median(times[1]), of_i8 = median(times[2]);
-    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16, of_f32 / of_f16,
-                of_i8, of_f32 / of_i8, median(times[3]), median(times[4]));
+    const double of_integers = median(times[5]);
+    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16,
+                of_f32 / of_f16, of_i8, of_f32 / of_i8, of_integers, of_f32 / of_integers, median(times[3]),
+                median(times[4]));
     std::fflush(stdout);
 }
 
@@ -148,8 +167,8 @@ void widen_embeddings(int rounds) {
 
 int main(int argc, char** argv) {
     const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 25;
-    std::printf("%-15s %12s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16", "ratio", "int8", "ratio",
-                "widen f16", "widen i8");
+    std::printf("%-15s %12s %12s %6s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16", "ratio",
+                "int8 widened", "ratio", "in integers", "ratio", "widen f16", "widen i8");
     compare<4, 384>(rounds);
     compare<16, 384>(rounds);
     compare<64, 384>(rounds);

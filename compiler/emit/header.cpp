@@ -5,6 +5,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -27,14 +28,18 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
     });
 }
 
+/// What measures a distance.
+const char* header_of(const Context& context, Index d) {
+    if (context.enclosed(d)) return plan::in_integers(*plan::narrow_set(context.plan, d)) ? "bytes" : "enclosed";
+    if (plan::stored_set(context.plan, d) == nullptr) return "kernel";
+    return plan::searches(context.plan, d) ? "search" : "targets";
+}
+
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool boolean = context.boolean();
     std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version", "views"};
-    for (Index d : plan.distances)
-        headers.insert(plan::stored_set(plan, d) == nullptr ? (context.enclosed(d) ? "enclosed" : "kernel")
-                       : plan::searches(plan, d)            ? "search"
-                                                            : "targets");
+    for (Index d : plan.distances) headers.insert(header_of(context, d));
     for (Index p : plan.predicates)
         if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
     if (!context.names.threshold_member.empty()) headers.insert("adaptation");

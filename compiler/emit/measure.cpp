@@ -192,6 +192,19 @@ std::string narrow_call(const Context& context, const plan::NarrowSet& set, cons
     return fmt::format("etlmon::measure_scaled<{}>({}, {}{})", parameters, z, float_literal(set.scale), weights);
 }
 
+/// What its narrow rows say of the distance: the call that gives the interval.
+std::string enclosing_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
+    const check::Distance& distance = context.model.distances[set.distance];
+    const std::string& rows = context.names.narrow_array.at(set.distance);
+    if (plan::in_integers(set))
+        return fmt::format("etlmon::measure_bytes<{}, targets::{}, targets::{}>({}, {}, {})",
+                           kernel_parameters(context, set.distance), rows, context.names.sums_array.at(set.distance), z,
+                           float_literal(set.scale), float_literal(set.moved));
+    const std::string averaged = distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set.rows) : "";
+    return fmt::format("etlmon::enclose<etlmon::{}>({}, {}, {}{})", plan::metric_name(distance),
+                       narrow_call(context, set, z), float_literal(set.moved), set.dimension, averaged);
+}
+
 /// The thresholds that a distance is compared with, by name where they have one, and the other cuts as numbers.
 std::string cuts(const Context& context, const plan::NarrowSet& set) {
     std::string text;
@@ -217,10 +230,7 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
         const std::string call = set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
         return print_wrapped(out, fmt::format("{} = {};", into, call));
     }
-    const check::Distance& distance = context.model.distances[d];
-    const std::string averaged = distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set->rows) : "";
-    print_wrapped(out, fmt::format("{} = etlmon::enclose<etlmon::{}>({}, {}, {}{});", into, plan::metric_name(distance),
-                                   narrow_call(context, *set, z), float_literal(set->moved), set->dimension, averaged));
+    print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, *set, z)));
     print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, *set)));
     out.indent();
     print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));

@@ -10,12 +10,16 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# The distances to float32 targets are not known here: the trace walks through every threshold, in steps that shrink to roundings of it.
+# The distances to float32 targets are not known here: the trace walks through every threshold, in steps that shrink to roundings of it. z is measured on few short rows, which are
+# widened; y on rows that are measured in integers where they are int8.
 awk 'BEGIN {
-  srand(7); D = 37; K = 5; steps = 900
+  srand(7); D = 37; K = 5; steps = 900; E = 70; L = 9
   for (k = 0; k < K; ++k) for (i = 0; i < D; ++i) g[k, i] = sprintf("%.6f", 2 * rand() - 1)
-  printf "spec narrow;\ninput z : f32[%d];\ntarget a = [", D > "narrow.etl"
+  for (k = 0; k < L; ++k) for (i = 0; i < E; ++i) h[k, i] = sprintf("%.6f", 2 * rand() - 1)
+  printf "spec narrow;\ninput z : f32[%d];\ninput y : f32[%d];\ntarget a = [", D, E > "narrow.etl"
   for (k = 0; k < K; ++k) { printf "%s[", k ? ", " : "" > "narrow.etl"; for (i = 0; i < D; ++i) printf "%s%s", i ? ", " : "", g[k, i] > "narrow.etl"; printf "]" > "narrow.etl" }
+  printf "];\ntarget b = [" > "narrow.etl"
+  for (k = 0; k < L; ++k) { printf "%s[", k ? ", " : "" > "narrow.etl"; for (i = 0; i < E; ++i) printf "%s%s", i ? ", " : "", h[k, i] > "narrow.etl"; printf "]" > "narrow.etl" }
   print "];" > "narrow.etl"
   print "predicate near = min l2(z, a) <= 0.5;\npredicate square = min l2sq(z, a) < 0.25;\npredicate sum = min l1(z, a) > 2.5;" > "narrow.etl"
   print "predicate greatest = min linf(z, a) >= 0.15;\npredicate far = max l2(z, a) <= 5.25;\npredicate average = mean l2(z, a) < 4.1;" > "narrow.etl"
@@ -23,12 +27,19 @@ awk 'BEGIN {
   print "monitor soon = F near;\nmonitor kept = G (square -> F[0, 3] !near);\nmonitor all = G (near && square && along && angle) || F (sum && O[0, 2] greatest);" > "narrow.etl"
   print "sliding monitor each = near && far && average && second || along && F[0, 1] angle;\nsliding monitor one = near;\nsliding monitor two = !square;\nsliding monitor three = sum;" > "narrow.etl"
   print "sliding monitor four = greatest;\nsliding monitor five = along;\nsliding monitor six = angle;\nsliding monitor seven = far;\nsliding monitor eight = average;\nsliding monitor nine = second;" > "narrow.etl"
+  print "predicate near_y = min l2(y, b) <= 0.5;\npredicate square_y = min l2sq(y, b) < 0.25;\npredicate average_y = mean l2(y, b) < 6.1;\npredicate second_y = kth(2) l2(y, b) <= 6.3;" > "narrow.etl"
+  print "predicate far_y = max l2(y, b) <= 7.4;\npredicate along_y = min cosine(y, b) <= 0.0054;\npredicate angle_y = min angular(y, b) <= 0.1035;" > "narrow.etl"
+  print "sliding monitor ten = near_y;\nsliding monitor eleven = !square_y;\nsliding monitor twelve = average_y;\nsliding monitor thirteen = second_y;\nsliding monitor fourteen = far_y;" > "narrow.etl"
+  print "sliding monitor fifteen = along_y;\nsliding monitor sixteen = angle_y;" > "narrow.etl"
   for (i = 0; i < D; ++i) printf "%sz[%d]", i ? "," : "", i > "narrow.csv"
+  for (i = 0; i < E; ++i) printf ",y[%d]", i > "narrow.csv"
   printf "\n" > "narrow.csv"
   for (t = 0; t < steps; ++t) {
     if (t % 9 == 0) { k = int(K * rand()); n = 0; for (i = 0; i < D; ++i) { u[i] = 2 * rand() - 1; n += u[i] * u[i] } n = sqrt(n) }
+    if (t % 9 == 0) { l = int(L * rand()); m = 0; for (i = 0; i < E; ++i) { v[i] = 2 * rand() - 1; m += v[i] * v[i] } m = sqrt(m) }
     r = 0.5 * (1 + (rand() - 0.5) * 10 ^ (-1 - t % 9))
     for (i = 0; i < D; ++i) printf "%s%s", i ? "," : "", t % 101 == 100 ? "" : sprintf("%.9g", g[k, i] + r * u[i] / n) > "narrow.csv"
+    for (i = 0; i < E; ++i) printf ",%s", t % 101 == 100 ? "" : sprintf("%.9g", h[l, i] + r * v[i] / m) > "narrow.csv"
     printf "\n" > "narrow.csv"
   }
 }'
@@ -39,7 +50,7 @@ awk 'BEGIN {
 # differ by those bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the robustness is within them. They have to be rare.
 encloses() {
   paste -d, "$1" "$2" | awk -F, -v rounded="${3:-}" 'BEGIN {
-    split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 seven 5.25 eight 5.25 nine 5.25", words, " ")
+    split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 seven 5.25 eight 5.25 nine 5.25 ten .5 eleven .25 twelve 6.1 thirteen 6.3 fourteen 7.4 fifteen .01 sixteen 1", words, " ")
     for (i = 1; i in words; i += 2) scale[words[i]] = words[i + 1]
   }
   function size(x) { return x < 0 ? -x : x }
@@ -48,7 +59,7 @@ encloses() {
     enclosed = $6 == "undecided" || ($10 <= $3 && $11 <= $4 && $12 >= $5)
     if ($11 < $4) ++wider
     if (verdict && enclosed) next
-    bound = 2 * (0.75 * 37 + 16) * 2 ^ -23 * (scale[$2] + size($4))
+    bound = 2 * (0.75 * 70 + 16) * 2 ^ -23 * (scale[$2] + size($4))
     one_line = rounded && $1 == $8 && $2 == $9 && $6 != "undecided" && $13 != "undecided"
     if (!one_line || (!verdict && size($4) > bound)) { print "not the verdict of float32: " $0; exit 1 }
     if ($10 - $3 > bound || $11 - $4 > bound || $5 - $12 > bound) { print "does not enclose float32: " $0; exit 1 }
@@ -80,18 +91,22 @@ int main() {
   static char line[1 << 16];
   if (std::fgets(line, sizeof line, stdin) == nullptr) return 1;
   for (int step = 0; std::fgets(line, sizeof line, stdin) != nullptr; ++step) {
-    float z[37];
+    float z[37], y[70];
     narrow::Inputs in;
     char* at = line;
     if (*at != ',') {
       for (float& x : z) x = std::strtof(at, &at), ++at;
       in.z = z;
+      for (float& x : y) x = std::strtof(at, &at), ++at;
+      in.y = y;
     }
     const narrow::Verdicts v = monitor.step(in);
     show(step, "soon", v.soon), show(step, "kept", v.kept), show(step, "all", v.all), show(step, "each", v.each);
     show(step, "one", v.one), show(step, "two", v.two), show(step, "three", v.three), show(step, "four", v.four);
     show(step, "five", v.five), show(step, "six", v.six), show(step, "seven", v.seven), show(step, "eight", v.eight);
-    show(step, "nine", v.nine);
+    show(step, "nine", v.nine), show(step, "ten", v.ten), show(step, "eleven", v.eleven), show(step, "twelve", v.twelve);
+    show(step, "thirteen", v.thirteen), show(step, "fourteen", v.fourteen), show(step, "fifteen", v.fifteen);
+    show(step, "sixteen", v.sixteen);
   }
 }
 END
@@ -108,6 +123,7 @@ for storage in f16 i8; do
   "$etlc" run narrow.etl --trace narrow.csv --values boolean --targets-as $storage -o $storage.boolean.csv
   cmp boolean.csv $storage.boolean.csv
   "$etlc" narrow.etl --targets-as $storage -o narrow.hpp
+  [[ $storage != i8 ]] || grep -q 'measure_bytes<etlmon::Angular' narrow.hpp
   for compiler in "$@"; do
     "$compiler" -std=c++17 -O2 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -I "$runtime" -I . source/main.cpp -o compiled \
       2>errors || { cat errors >&2; exit 1; }

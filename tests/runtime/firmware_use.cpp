@@ -1,5 +1,6 @@
 // Everything of the distance side that generated code may call, instantiated once: what does its object refer to?
 #include "etlmon/adaptation.hpp"
+#include "etlmon/bytes.hpp"
 #include "etlmon/expression.hpp"
 #include "etlmon/kernel.hpp"
 #include "etlmon/version.hpp"
@@ -13,6 +14,9 @@
 namespace {
 
 constexpr uint32_t kK = 5, kD = 35;
+constexpr uint32_t kManyK = 9, kLongD = 70;
+constexpr int8_t kBytes[kManyK * kLongD] = {1};
+constexpr int32_t kSums[2 * kManyK] = {1};
 const float kTargets[kK * kD] = {1.0f, 2.0f};
 const float kDiagonal[kD] = {1.0f};
 const float kFull[kD * kD] = {1.0f};
@@ -37,6 +41,7 @@ struct Inputs {
 
 etlmon::Measured distances(const float* z, int which);
 bool usable(const Inputs& in);
+etlmon::Enclosed in_integers(const float* z);
 void widen(const Inputs& in, float* to);
 void observe(float& threshold, const float& distance, bool truth, const etlmon::Adaptation& by);
 
@@ -55,6 +60,14 @@ etlmon::Measured distances(const float* z, int which) {
 #endif
         default: return {negate(divide(multiply(z[0], z[1]), subtract(z[0], z[1]))), 0};
     }
+}
+
+etlmon::Enclosed in_integers(const float* z) {
+    using namespace etlmon;
+    const Enclosed a = measure_bytes<L2, Min, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
+    const Enclosed b = measure_bytes<L2Sq, Mean, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
+    const Enclosed c = measure_bytes<Cosine, Kth<3>, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.125f);
+    return a.doubtful({1.0f}) ? b.doubtful({1.0f}) ? c : b : a;
 }
 
 bool usable(const Inputs& in) {

@@ -37,6 +37,9 @@ inline uint32_t x86_64_level() noexcept {
   return (has & kAvx512) == kAvx512 && (kept & kZmm) == kZmm ? 4 : 3;
 }
 
+/// Whether a CPU of level 4 has AVX512_VNNI, which multiplies bytes.
+inline bool multiplies_bytes() noexcept { return (cpu_id(7).c & 1u << 11) != 0; }
+
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 struct Dispatch {
   using Run = Measured (*)(const float*, G, const float*, Size, Aggregation) noexcept;
