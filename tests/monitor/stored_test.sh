@@ -11,7 +11,7 @@ trap 'rm -rf "$box"' EXIT
 cd "$box"
 
 "$1" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
-./arrays wide.npy 1400 384   # more than 2 MiB: read in one stream
+./arrays wide.npy 1400 384   # more than 64 KiB: read in one stream
 ./arrays middle.npy 300 33
 ./arrays narrow.npy 400 7
 ./arrays scalars.npy 300 2

@@ -16,7 +16,7 @@ enum class Order : uint8_t {
   sequential,  ///< element after element, into one sum
   lanes,       ///< element i into sum i mod 16
   two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an addition's latency
-  four_chunks  ///< element i into sum i mod 64; and for sets beyond the caches, which are best read in one stream
+  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, best read in one stream
 };
 
 /// Rows of a column: K, and copies of the last row up to whole vectors.
@@ -32,7 +32,7 @@ constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
 
 constexpr Order order(uint32_t K, uint32_t D) noexcept {
   if (!kHasPacks || D < kLanes || in_columns(K, D)) return Order::sequential;
-  constexpr uint32_t kCached = 1u << 19;  // 2 MiB
+  constexpr uint32_t kCached = 1u << 14;  // 64 KiB
   if (K == 1 || K > kCached / D) return Order::four_chunks;
   return K == 2 ? Order::two_chunks : Order::lanes;
 }
