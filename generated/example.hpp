@@ -91,11 +91,9 @@ class Monitor {
   Atoms measure(const Inputs& in) noexcept {
     Atoms now;
     bool missing = false;
-    const float* const z = etlmon::present(in.z) ? in.z.data() : nullptr;
 
     // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
-    near_goal_ = etlmon::kUnmeasured;
-    if (z != nullptr) near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(z);
+    near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
     now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom,
         etlmon::key_of(0.409f)});
     missing |= etlmon::is_nan(near_goal_.delta);

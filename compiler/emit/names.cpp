@@ -100,6 +100,7 @@ private:
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
             if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
+            if (input.type == check::InputType::f32 && left_to_kernels(plan_, i)) continue;
             const bool is_atom = &measure_ == &atoms_ && input.type == check::InputType::boolean;
             names_.input_local[i] = measure_.claim(input.name + (is_atom ? "_sample" : ""));
             names_.input_buffer[i] = measure_.claim(input.name + "_values");
@@ -287,6 +288,19 @@ private:
 };
 
 }  // namespace
+
+bool checks_point(const plan::Plan& plan, check::Index distance) {
+    return plan::stored_set(plan, distance) == nullptr && plan::narrow_set(plan, distance) == nullptr;
+}
+
+bool left_to_kernels(const plan::Plan& plan, check::Index embedding) {
+    const auto leaves = [&](check::Index d) {
+        const check::Distance& distance = plan.model->distances[d];
+        return distance.point_is_vector || distance.point[0] != embedding || checks_point(plan, d);
+    };
+    const check::Input& input = plan.model->inputs[embedding];
+    return input.is_embedding() && input.hold == 0 && std::all_of(plan.distances.begin(), plan.distances.end(), leaves);
+}
 
 std::string Scope::claim(const std::string& wanted) {
     std::string name = wanted;

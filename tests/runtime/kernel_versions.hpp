@@ -15,7 +15,7 @@ template <class Metric, class Aggregation, class Size, bool InColumns, class G =
 struct Version {
     const char* name;
     bool fused;
-    etlmon::Measured (*run)(const float*, G, const float*, Size, Aggregation) noexcept;
+    etlmon::detail::MeasuredBits (*run)(const float*, G, const float*, Size, Aggregation) noexcept;
 };
 
 /// The versions of a kernel that is compiled for the asking.

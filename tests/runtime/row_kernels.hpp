@@ -16,7 +16,8 @@ std::vector<RowVersion<G>> row_versions_of() {
             std::vector<float> smallest(aggregate.n);
             Aggregation aggregation{};
             if constexpr (std::is_same_v<Aggregation, etlmon::KthOf>) aggregation = {smallest.data(), aggregate.n, 0};
-            return run(c.z.data(), rows, c.weights.data(), {c.rows, c.dimension}, aggregation);
+            return etlmon::detail::unpacked(
+                run(c.z.data(), rows, c.weights.data(), {c.rows, c.dimension}, aggregation));
         };
         found.push_back({version.name, version.fused, measure});
     }

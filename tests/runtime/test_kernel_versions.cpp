@@ -86,8 +86,8 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
         if constexpr (kHasPacks) {
             std::vector<Answer> answers;
             for (const auto& version : versions<Metric, Aggregation, Fixed<K, D>, true>())
-                answers.push_back(
-                    {version.name, version.fused, version.run(c.z.data(), columns.values, c.weights.data(), {}, {})});
+                answers.push_back({version.name, version.fused,
+                                   unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
             expect_answers(answers, c, judge, aggregate, name(kind));
             // The same rows, not in columns: the same bits.
             const Measured in_rows =

@@ -8,16 +8,23 @@ using namespace narrow_cases;
 
 TEST(Halves, EachWidensToItself) {
     for (std::uint32_t bits_of_half = 0; bits_of_half < 0x10000; ++bits_of_half) {
-        if ((bits_of_half & 0x7c00) == 0x7c00) continue;  // views.hpp keeps what is not finite from the kernels
         const auto narrow = static_cast<std::uint16_t>(bits_of_half);
-        const float one = half(narrow);
+        const bool is_finite = (bits_of_half & 0x7c00) != 0x7c00;
+        const float one = is_finite ? half(narrow) : etlmon::detail::element(&narrow, 0);
         ASSERT_EQ(bits(etlmon::detail::element(&narrow, 0)), bits(one)) << bits_of_half;
+        ASSERT_EQ(etlmon::is_finite(one), is_finite) << bits_of_half;
         std::uint16_t many[19];
         float widened[19];
         std::fill(many, many + 19, narrow);
         for (const auto widen : widenings<const std::uint16_t*>()) {
             widen(many, widened, 19);
-            for (const float x : widened) ASSERT_EQ(bits(x), bits(one)) << bits_of_half;
+            for (const float& x : widened) {
+                if (is_finite) {
+                    ASSERT_EQ(bits(x), bits(one)) << bits_of_half;
+                } else {  // a NaN may come back with another payload
+                    ASSERT_FALSE(etlmon::is_finite(x)) << bits_of_half;
+                }
+            }
         }
     }
 }

@@ -15,7 +15,21 @@ struct Measured {
   uint32_t nearest;  ///< row of the nearest target, the lowest on ties; 0 where delta is unknown
 };
 
+/// What a predicate's distance is where its input is missing.
+constexpr Measured kUnmeasured{kMissing, 0};
+
 namespace detail {
+
+/// A Measured as kernels return it: the bits of delta, above them the row. An integer comes back in registers on every
+/// machine, and what calls another kernel for its result can jump there, so that it needs no frame.
+using MeasuredBits = uint64_t;
+ETLMON_INLINE MeasuredBits packed(uint32_t delta, uint32_t nearest) noexcept {
+  return static_cast<MeasuredBits>(nearest) << 32 | delta;
+}
+ETLMON_INLINE MeasuredBits packed(Measured m) noexcept { return packed(observe(m.delta), m.nearest); }
+ETLMON_INLINE Measured unpacked(MeasuredBits m) noexcept {
+  return {from_bits(static_cast<uint32_t>(m)), static_cast<uint32_t>(m >> 32)};
+}
 
 /// The nearest row so far.
 struct Nearest {
@@ -23,8 +37,18 @@ struct Nearest {
   uint32_t row = 0;
 
   ETLMON_INLINE void add(uint32_t bits, uint32_t at) noexcept {
+#if defined(__OPTIMIZE_SIZE__)
+    if (bits < least) {
+      least = bits;
+      row = at;
+    }
+#else  // without a branch: any row is as likely as any other
+#if defined(__GNUC__) && !defined(__clang__)
+    __asm__("" : "+r"(at));  // g++ jumps around a constant
+#endif
     row = bits < least ? at : row;
     least = bits < least ? bits : least;
+#endif
   }
 };
 

@@ -24,7 +24,7 @@ inline CpuId cpu_id(uint32_t leaf) noexcept {
 /// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA, F16C) or 4 (AVX-512 F, VL, BW, DQ), where
 /// the operating system keeps the registers. (Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1,
 /// sections 14.3 and 15.2.)
-inline uint32_t x86_64_level() noexcept {
+ETLMON_COLD inline uint32_t x86_64_level() noexcept {
   constexpr uint32_t kFma = 1u << 12, kOsxsave = 1u << 27, kAvx = 1u << 28, kF16c = 1u << 29;
   constexpr uint32_t kAvx2 = 1u << 5, kAvx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
   constexpr uint32_t kYmm = 0x6, kZmm = 0xe6;
@@ -42,18 +42,20 @@ inline bool multiplies_bytes() noexcept { return (cpu_id(7).c & 1u << 11) != 0; 
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 struct Dispatch {
-  using Run = Measured (*)(const float*, G, const float*, Size, Aggregation) noexcept;
+  using Run = MeasuredBits (*)(const float*, G, const float*, Size, Aggregation) noexcept;
 
   static Run choice() noexcept {
     const uint32_t level = x86_64_level();
-    if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>;
+    if constexpr (!Size::is_small()) {
+      if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>;
+    }
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>;
 #endif
     return baseline::run<Metric, Aggregation, Size, InColumns, G>;
   }
-  ETLMON_COLD static Measured choose(const float* z, G targets, const float* weights, Size size,
-                                     Aggregation aggregation) noexcept {
+  ETLMON_COLD static MeasuredBits choose(const float* z, G targets, const float* weights, Size size,
+                                         Aggregation aggregation) noexcept {
     const Run run = choice();
     __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
     return run(z, targets, weights, size, aggregation);
@@ -65,7 +67,7 @@ template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
   using Kernel = Dispatch<Metric, Aggregation, Size, InColumns, G>;
-  return __atomic_load_n(&Kernel::chosen, __ATOMIC_RELAXED)(z, targets, weights, size, aggregation);
+  return unpacked(__atomic_load_n(&Kernel::chosen, __ATOMIC_RELAXED)(z, targets, weights, size, aggregation));
 }
 
 #else
@@ -73,7 +75,7 @@ ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
-  return baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);
+  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation));
 }
 
 #endif

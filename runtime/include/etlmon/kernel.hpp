@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: MIT
 // The distance kernel: one embedding against K targets, aggregated.
-// Takes: z of D finite floats; targets K x D row-major, prepared as distances.def says (unit rows for cosine and
+// Takes: z of D floats; targets K x D row-major, prepared as distances.def says (unit rows for cosine and
 // angular); weights D x D or D where the distance has some. Gives: the aggregated distance and the nearest row. Keeps
 // true: the order of additions depends on K and D alone, not on what is known at compile time, so generated code and
 // `etlc run` agree bit for bit on one machine; nothing is allocated; the time depends on the data only where a sum of
@@ -9,11 +9,9 @@
 
 #include "etlmon/dispatch.hpp"
 #include "etlmon/rescaled.hpp"
+#include "etlmon/views.hpp"
 
 namespace etlmon {
-/// What a predicate's distance is where its input is missing.
-constexpr Measured kUnmeasured{kMissing, 0};
-
 namespace detail {
 
 /// Weights as the kernels take them: none, D (MahalanobisDiagonal) or D x D symmetric positive definite (Mahalanobis).
@@ -24,10 +22,10 @@ constexpr uint32_t weights_of() noexcept {
 
 }  // namespace detail
 
-/// The aggregated distance from z, of D finite elements, to K targets: for generated code, whose sizes and targets are
-/// constants; the compiler lays the targets out as the machine likes them best. Errors: none; delta is NaN where z is
-/// zero under cosine and angular, +inf where it, or for the mean one of the distances, exceeds FLT_MAX; distances that
-/// do are taken for equal.
+/// The aggregated distance from z, of D elements, to K targets: for generated code, whose sizes and targets are
+/// constants; the compiler lays the targets out as the machine likes them best. Errors: none; delta is NaN where an
+/// element of z is not finite and where z is zero under cosine and angular, +inf where it, or for the mean one of the
+/// distances, exceeds FLT_MAX; distances that do are taken for equal.
 /// Targets may be float32, or float16 as their bits, which are widened as they are read: the same distances.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
@@ -39,6 +37,16 @@ ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) n
   } else {
     return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, rows, weights, {}, {});
   }
+}
+
+/// The same for a sample of this step, or a point made of some: unmeasured where it, or one of them, is missing.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
+ETLMON_INLINE Measured measure(Vector<float, D> z, const float* weights = nullptr) noexcept {
+  return z.present() ? measure<Metric, Aggregation, K, D, Targets>(z.data(), weights) : kUnmeasured;
+}
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
+ETLMON_INLINE Measured measure(const Point<D>& point, const float* weights = nullptr) noexcept {
+  return measure<Metric, Aggregation, K, D, Targets>(point.elements, weights);
 }
 
 /// The same for targets of int8, each worth `scale` times itself, rounded once.

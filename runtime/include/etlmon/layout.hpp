@@ -67,6 +67,8 @@ struct Fixed {
   static constexpr uint32_t dimension() noexcept { return D; }
   static constexpr uint32_t stride() noexcept { return D; }
   static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
+  /// Too few elements for vectors of 64 bytes to gain anything.
+  static constexpr bool is_small() noexcept { return !in_columns(K, D) && uint64_t{K} * D <= 256; }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
 };
@@ -82,6 +84,7 @@ struct Sizes {
   constexpr uint32_t dimension() const noexcept { return D; }
   constexpr uint32_t stride() const noexcept { return D; }
   static constexpr bool may_be(Order) noexcept { return true; }
+  static constexpr bool is_small() noexcept { return false; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
 };
 

@@ -172,10 +172,10 @@ template <class Metric>
 using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
 
 template <class Metric, class Aggregation, bool InColumns, class G>
-Measured measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
-                          Aggregation aggregation) noexcept {
+MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
+                              Aggregation aggregation) noexcept {
   const Rescaled<Metric> distance(z, weights, set.dimension);
-  if (!distance.known()) return {from_bits(kMissingBits), 0};
+  if (!distance.known()) return packed(kUnmeasured);
   Nearest nearest;
   typename Set<InColumns, G>::Buffer buffer;
   for (uint32_t row = 0; row < set.rows; ++row) {
@@ -188,9 +188,9 @@ Measured measure_rescaled(const float* z, const Set<InColumns, G>& set, const fl
     }
   }
   if constexpr (Aggregation::kOfDistances) {
-    return {from_bits(observe(aggregation.result(1))), nearest.row};
+    return packed(observe(aggregation.result(1)), nearest.row);
   } else {
-    return {from_bits(aggregation.result(nearest)), nearest.row};
+    return packed(aggregation.result(nearest), nearest.row);
   }
 }
 
@@ -204,11 +204,13 @@ ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t
 }
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-Measured measure_again(const float* z, G targets, const float* weights, Size size, Aggregation aggregation) noexcept {
+MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
+                           Aggregation aggregation) noexcept {
+  if (!all_finite(z, size.dimension())) return packed(kUnmeasured);
   const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {
-      if (is_row(z, set, row)) return {0.0f, row};
+      if (is_row(z, set, row)) return packed({0.0f, row});
     }
   }
   return measure_rescaled<Metric>(z, set, weights, aggregation);

@@ -23,7 +23,7 @@ namespace detail {
 /// As Dispatch, for the search.
 template <class Metric, class Size>
 struct SearchDispatch {
-  using Run = Measured (*)(const float*, const float*, SearchView) noexcept;
+  using Run = MeasuredBits (*)(const float*, const float*, SearchView) noexcept;
 
   static Run choice() noexcept {
     const uint32_t level = x86_64_level();
@@ -33,7 +33,7 @@ struct SearchDispatch {
 #endif
     return baseline::search<Metric, Size>;
   }
-  ETLMON_COLD static Measured choose(const float* z, const float* targets, SearchView state) noexcept {
+  ETLMON_COLD static MeasuredBits choose(const float* z, const float* targets, SearchView state) noexcept {
     const Run run = choice();
     __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
     return run(z, targets, state);
@@ -43,7 +43,7 @@ struct SearchDispatch {
 #endif
 
 template <class Metric, class Size>
-ETLMON_INLINE Measured best_search(const float* z, const float* targets, SearchView state) noexcept {
+ETLMON_INLINE MeasuredBits best_search(const float* z, const float* targets, SearchView state) noexcept {
 #if defined(ETLMON_DISPATCH)
   return __atomic_load_n(&SearchDispatch<Metric, Size>::chosen, __ATOMIC_RELAXED)(z, targets, state);
 #else
@@ -64,7 +64,8 @@ class Search {
   /// `rows`: K rows of D elements, each at a multiple of 64 bytes; the same ones since reset().
   template <class Metric>
   Measured nearest(const float* z, const float* rows) noexcept {
-    return detail::best_search<Metric, detail::Padded<K, D>>(z, rows, {anchor_, least_, &nearest_, &measured_});
+    return detail::unpacked(
+        detail::best_search<Metric, detail::Padded<K, D>>(z, rows, {anchor_, least_, &nearest_, &measured_}));
   }
 
  private:

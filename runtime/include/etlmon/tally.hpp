@@ -2,13 +2,15 @@
 // From the values of K rows to the distance of a predicate, and whether they can be trusted.
 // Takes: the values of all rows in row order. Gives: the aggregated distance and the nearest row. Keeps true: where a
 // square left [2^-80, FLT_MAX] and that could matter, the scaled form (rescaled.hpp) decides; a distance of exactly 0
-// is recognised without it.
+// is recognised without it; where an element of z is not finite, which makes the value of every row not finite, the
+// distance is unknown.
 #pragma once
 
 #include "etlmon/aggregate.hpp"
 #include "etlmon/distances.hpp"
 #include "etlmon/layout.hpp"
 #include "etlmon/storage.hpp"
+#include "etlmon/views.hpp"
 
 namespace etlmon {
 namespace detail {
@@ -65,10 +67,13 @@ struct Tally {
       return aggregation.result(nearest);
     }
   }
-  /// No square that matters was lost, and no sum of distances overflowed that may have a representable mean. Weights
-  /// can make a far row near: with them no row may have overflowed.
+  /// No element of z can have been other than finite, no square that matters was lost, and no sum of distances
+  /// overflowed that may have a representable mean. Weights can make a far row near: with them no row may have
+  /// overflowed.
   ETLMON_INLINE bool sound(uint32_t result) const noexcept {
-    if (!Metric::kRescales) return result <= kGreatest || !Aggregation::kOfDistances;
+    // Values decide, not their roots: clang's -ffast-math takes the root of a NaN for 0.
+    if (Aggregation::kOfDistances && nearest.least > kGreatest) return false;
+    if (!Metric::kRescales) return result <= kGreatest;
     return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
   }
   /// The same, for other aggregations than min, where the nearest row turns out to be z itself: its 0 is exact, and no
@@ -79,10 +84,19 @@ struct Tally {
   }
 };
 
-/// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form.
+/// Every element of z is finite; out of line, since it is asked where a distance is not.
+ETLMON_COLD inline bool all_finite(const float* z, uint32_t dimension) noexcept { return finite(z, dimension); }
+
+/// `measured`, or unknown where an element of z is not finite.
+ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimension, MeasuredBits measured) noexcept {
+  return all_finite(z, dimension) ? measured : packed(kUnmeasured);
+}
+
+/// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form. Unknown
+/// where an element of z is not finite.
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_COLD Measured measure_again(const float* z, G targets, const float* weights, Size size,
-                                   Aggregation aggregation) noexcept;
+ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
+                                       Aggregation aggregation) noexcept;
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
 template <bool InColumns, class G>
@@ -90,20 +104,24 @@ ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t
 
 /// What the values say together. `aggregation`: as it was before it saw any.
 template <bool InColumns, class Metric, class Aggregation, class Size, class G>
-ETLMON_INLINE Measured conclude(const Tally<Metric, Aggregation>& tally, const float* z, G targets,
-                                const float* weights, Size size, Aggregation aggregation) noexcept {
+ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, const float* z, G targets,
+                                    const float* weights, Size size, Aggregation aggregation) noexcept {
   const uint32_t result = tally.result(size.rows());
-  if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
-    bool sound = tally.sound(result);
-    if constexpr (Metric::kRescales && !Aggregation::kNearest) {
-      if (!sound && tally.sound_if_equal(result)) {
-        sound = is_equal<InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
-      }
+  bool sound = tally.sound(result);
+  if constexpr (Metric::kRescales && !Aggregation::kNearest) {
+    if (!sound && tally.sound_if_equal(result)) {
+      sound = is_equal<InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
     }
+  }
+  if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
     if (!sound) return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);
   }
   const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
-  return {delta, tally.nearest.row};
+  const MeasuredBits measured = packed({delta, tally.nearest.row});
+  if constexpr (!Metric::kDirection) {  // else the length of z has said so
+    if (!sound) return unless_unknown(z, size.dimension(), measured);
+  }
+  return measured;
 }
 
 }  // namespace detail

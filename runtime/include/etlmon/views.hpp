@@ -74,6 +74,12 @@ class Vector {
   const T* data_ = nullptr;
 };
 
+/// D scalars as an embedding; each kMissing where it is missing.
+template <size_t D>
+struct Point {
+  float elements[D];
+};
+
 /// A bool that may be missing. Only a bool converts to it: an int or a pointer is more often a mistake than a flag.
 class Flag {
  public:
@@ -91,12 +97,12 @@ class Flag {
 
 #if defined(ETLMON_HAS_PACKS)
 namespace detail {
-/// Bits that have their sign set where one of four floats is not finite: where its exponent is beyond the greatest
-/// finite.
+/// Bits that have their sign set where one of four floats is not finite: one more carries an exponent of ones into it.
 ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
-  PackBits bits;
+  typedef uint32_t PackExponents __attribute__((vector_size(16)));
+  PackExponents bits;
   copy_bytes(&bits, x, sizeof bits);
-  return 0x7f000000 - (bits & 0x7f800000);
+  return reinterpret_cast<PackBits>((bits & kInfinityBits) + 0x00800000u);
 }
 }  // namespace detail
 #endif
@@ -150,9 +156,10 @@ ETLMON_INLINE float accept(const float& x) noexcept {
 
 /// The scalar; kMissing unless it is finite and in [low, high]. Either bound may be infinite.
 ETLMON_INLINE float accept(const float& x, const float& low, const float& high) noexcept {
-  const int32_t at = detail::ordered(detail::observe(x));
-  const bool inside =
-      is_finite(x) && detail::ordered(detail::observe(low)) <= at && at <= detail::ordered(detail::observe(high));
+  constexpr int32_t kMost = static_cast<int32_t>(detail::kInfinityBits) - 1;
+  const int32_t from = detail::ordered(detail::observe(low)), to = detail::ordered(detail::observe(high));
+  const int32_t at = detail::ordered(detail::observe(x));  // of a NaN beyond the infinities
+  const bool inside = (from < -kMost ? -kMost : from) <= at && at <= (to > kMost ? kMost : to);
   return detail::from_bits(inside ? detail::observe(x) : detail::kMissingBits);
 }
 

@@ -1,0 +1,145 @@
+// The samples of a step in measure(): what of an input counts as there, and what stands for it.
+#include "emit/measurements.hpp"
+
+namespace etlc::emit {
+
+using check::Index;
+using check::InputType;
+
+namespace {
+
+/// An input that is looked at on demand; one that is held is looked at on every step.
+bool on_demand(const Context& context, Index i) {
+    return context.boolean() && context.model.inputs[i].hold == 0;
+}
+
+std::string accepted(const check::Input& input) {
+    if (!input.has_range) return fmt::format("etlmon::accept(in.{})", input.name);
+    return fmt::format("etlmon::accept(in.{}, {}, {})", input.name, float_literal(input.range.low),
+                       float_literal(input.range.high));
+}
+
+/// Whether the embedding is there, as far as its kernels do not find out.
+std::string present(const Context& context, Index i) {
+    const std::string& name = context.model.inputs[i].name;
+    return left_to_kernels(context.plan, i) ? fmt::format("in.{}.present()", name)
+                                            : fmt::format("etlmon::present(in.{})", name);
+}
+
+std::string widening(const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& buffer = context.names.input_buffer.at(i);
+    if (input.type == InputType::f16)
+        return fmt::format("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer, input.dimension);
+    return fmt::format("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name, float_literal(input.scale), buffer,
+                       input.dimension);
+}
+
+bool is_widened(const check::Input& input) {
+    return input.type == InputType::f16 || input.type == InputType::i8;
+}
+
+void print_widened(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    const std::string& buffer = context.names.input_buffer.at(i);
+    out.line("float {}[{}];", buffer, input.dimension);
+    out.line("const float* {} = nullptr;", local);
+    out.open(fmt::format("if ({}) {{", present(context, i)));
+    out.line(widening(context, i));
+    out.line("{} = {};", local, buffer);
+    out.close();
+}
+
+void print_flag(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (on_demand(context, i)) {
+        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.line("missing |= !in.{}.present();", input.name);
+        out.line("return etlmon::truth_of(in.{});", input.name);
+        out.close("});");
+        return;
+    }
+    if (input.hold == 0) {
+        out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
+        out.line("missing |= !in.{}.present();", input.name);
+        return;
+    }
+    const std::string& word = context.names.input_buffer.at(i);
+    out.line("const uint32_t {} = in.{}.value();", word, input.name);
+    out.line("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : nullptr);", local,
+             context.names.hold_member.at(i), input.name, word);
+    if (context.boolean()) {
+        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.line("missing |= {} == nullptr;", local);
+        out.line("return etlmon::truth_of({0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag());", local);
+        out.close("});");
+        return;
+    }
+    out.line("now.{} = etlmon::value_of({} != nullptr ? etlmon::Flag(*{} != 0) : etlmon::Flag());",
+             context.names.flag_atom.at(i), local, local);
+    out.line("missing |= {} == nullptr;", local);
+}
+
+void print_scalar(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (on_demand(context, i))
+        out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, accepted(input));
+    else if (input.hold > 0)
+        out.line("const float {} = {}.take({});", local, context.names.hold_member.at(i), accepted(input));
+    else
+        out.line("const float {} = {};", local, accepted(input));
+}
+
+/// The elements as float32, null where they are missing.
+std::string elements(const Context& context, Index i) {
+    return fmt::format("{} ? in.{}.data() : nullptr", present(context, i), context.model.inputs[i].name);
+}
+
+void print_embedding_on_demand(Printer& out, const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    if (!is_widened(input))
+        return out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, elements(context, i));
+    const std::string& buffer = context.names.input_buffer.at(i);
+    out.line("float {}[{}];", buffer, input.dimension);
+    out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept -> const float* {{", local));
+    out.line("if (!{}) return nullptr;", present(context, i));
+    out.line(widening(context, i));
+    out.line("return {};", buffer);
+    out.close("});");
+}
+
+void print_embedding(Printer& out, const Context& context, Index i) {
+    if (on_demand(context, i)) return print_embedding_on_demand(out, context, i);
+    const check::Input& input = context.model.inputs[i];
+    const std::string& local = context.names.input_local.at(i);
+    const bool held = input.hold > 0;
+    if (is_widened(input))
+        print_widened(out, context, i);
+    else
+        out.line("const float* {}{} = {};", held ? "" : "const ", local, elements(context, i));
+    if (held) out.line("{} = {}.take({});", local, context.names.hold_member.at(i), local);
+}
+
+}  // namespace
+
+std::string sample(const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    const auto local = context.names.input_local.find(i);
+    if (local != context.names.input_local.end()) return local->second + (on_demand(context, i) ? "()" : "");
+    return input.type == InputType::scalar ? accepted(input) : "in." + input.name;
+}
+
+void print_input(Printer& out, const Context& context, Index i) {
+    if (context.names.input_local.count(i) == 0) return;  // read in place
+    switch (context.model.inputs[i].type) {
+        case InputType::boolean: return print_flag(out, context, i);
+        case InputType::scalar: return print_scalar(out, context, i);
+        default: return print_embedding(out, context, i);
+    }
+}
+
+}  // namespace etlc::emit
