@@ -67,15 +67,16 @@ double ratio(const Series& a, const Series& b) {
     return quantile(ratios, 0.5);
 }
 
-double worst_step(std::size_t steps, const std::function<void()>& reset, const std::function<void(std::size_t)>& step) {
+double worst_step(std::size_t steps, const Stepped& stepped) {
     std::vector<double> fastest(steps, 1e9);
     double clock = 1e9;
     for (int pass = 0; pass < 25; ++pass) {
-        reset();
+        stepped.reset();
         for (std::size_t i = 0; i < steps; ++i) {
+            stepped.sample(i);
             settle_memory();
             const Clock::time_point start = Clock::now();
-            step(i);
+            stepped.step();
             settle_memory();
             const Clock::time_point end = Clock::now();
             fastest[i] = std::min(fastest[i], nanoseconds(end - start));

@@ -40,8 +40,16 @@ inline void settle_memory() {
     asm volatile("" ::: "memory");
 }
 
-/// The slowest of `steps` calls of step(i), less the cost of reading the clock, in nanoseconds. Each is timed in
-/// several passes, which begin with reset(), and its fastest time counts: so what the machine does meanwhile does not.
-double worst_step(std::size_t steps, const std::function<void()>& reset, const std::function<void(std::size_t)>& step);
+/// A monitor, or an operator of one, step by step. sample(i) brings what step i takes, which a control loop has at
+/// hand.
+struct Stepped {
+    std::function<void()> reset;
+    std::function<void(std::size_t i)> sample;
+    std::function<void()> step;
+};
+
+/// The slowest of `steps` calls of step(), less the cost of reading the clock, in nanoseconds. Each is timed in several
+/// passes, which begin with reset(), and its fastest time counts: so what the machine does meanwhile does not.
+double worst_step(std::size_t steps, const Stepped& stepped);
 
 }  // namespace bench

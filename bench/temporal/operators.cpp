@@ -100,12 +100,13 @@ double slowest(uint32_t n) {
     using Element = typename Operator::Element;
     const std::vector<float> samples = saw(4 * std::size_t{n}, 2 * std::size_t{n});
     const auto op = std::make_unique<Operator>();
-    return worst_step(
-        samples.size(), [&] { op->reset(); },
-        [&](std::size_t i) {
-            auto result = Sampled<Element>::result(op->push(Sampled<Element>::element(samples[i], -samples[i])));
-            asm volatile("" : : "r"(&result) : "memory");
-        });
+    Element element{};
+    const auto sample = [&](std::size_t i) { element = Sampled<Element>::element(samples[i], -samples[i]); };
+    const auto step = [&] {
+        auto result = Sampled<Element>::result(op->push(element));
+        asm volatile("" : : "r"(&result) : "memory");
+    };
+    return worst_step(samples.size(), {[&] { op->reset(); }, sample, step});
 }
 
 struct Contender {

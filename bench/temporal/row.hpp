@@ -162,13 +162,12 @@ template <class Case>
 double slowest_step() {
     const Signals signals = saws(std::max<std::size_t>(Case::kWindow, 1024));
     const auto monitor = std::make_unique<typename Case::Monitor>();
+    auto inputs = Case::inputs(signals, 0);
     std::vector<etlmon::Verdict> verdicts(Case::kMonitors);
-    return worst_step(
-        signals.size(), [&] { monitor->reset(); },
-        [&](std::size_t i) {
-            Case::visit(monitor->step(Case::inputs(signals, i)),
-                        [&](std::size_t m, const etlmon::Verdict& verdict) { verdicts[m] = verdict; });
-        });
+    const auto keep = [&](std::size_t m, const etlmon::Verdict& verdict) { verdicts[m] = verdict; };
+    return worst_step(signals.size(),
+                      {[&] { monitor->reset(); }, [&](std::size_t i) { inputs = Case::inputs(signals, i); },
+                       [&] { Case::visit(monitor->step(inputs), keep); }});
 }
 
 template <class Case>
