@@ -30,10 +30,34 @@ struct Cell {
 using Nearest = float (*)(const float* z, const float* targets, const void* state);
 using Setup = const void* (*)(const float* targets, std::uint32_t rows, std::uint32_t dimension);
 
+/// Points that are asked about in turn.
+struct Points {
+    const float* first;
+    std::size_t stride;  ///< floats from one to the next
+    std::size_t number;
+
+    const float* operator[](std::size_t i) const { return first + i % number * stride; }
+};
+
 struct Entry {
     Cell cell;
     Nearest nearest;
+    void (*repeat)(Points points, const float* targets, const void* state, std::uint64_t calls);
 };
+
+/// Calls one after the other, as a program has them that is compiled like the contestant: what the compiler can inline
+/// is part of the loop.
+template <Nearest kNearest>
+void repeat(Points points, const float* targets, const void* state, std::uint64_t calls) {
+    volatile float sink = 0;
+    for (std::uint64_t i = 0; i < calls; ++i) sink = kNearest(points[i], targets, state);
+    static_cast<void>(sink);
+}
+
+template <Nearest kNearest>
+Entry entry(Cell cell) {
+    return {cell, kNearest, repeat<kNearest>};
+}
 
 struct Contestant {
     const char* name;

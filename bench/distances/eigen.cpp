@@ -38,12 +38,12 @@ struct Forms {
 }  // namespace
 
 Contestant eigen_gemv() {
-#define CELL(D, K) {{D, K}, Forms<K, D>::gemv},
+#define CELL(D, K) entry<Forms<K, D>::gemv>({D, K}),
     return {"Eigen GEMV", squared_lengths, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }
 Contestant eigen_direct() {
-#define CELL(D, K) {{D, K}, Forms<K, D>::direct},
+#define CELL(D, K) entry<Forms<K, D>::direct>({D, K}),
     return {"Eigen direct", nullptr, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }

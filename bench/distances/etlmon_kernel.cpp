@@ -19,7 +19,8 @@ struct Kernel {
         }
         return made.values;
     }
-    __attribute__((noinline)) static float nearest(const float* z, const float* targets, const void* state) {
+    __attribute__((always_inline)) static inline float nearest(const float* z, const float* targets,
+                                                               const void* state) {
         using namespace etlmon;
         if constexpr (detail::in_columns(K, D)) {
             const auto* columns = static_cast<const float*>(state);
@@ -48,7 +49,7 @@ bench::Contestant bench::ETLC_BENCH_NAME() {
     return {ETLC_BENCH_TITLE,
             setup,
             {
-#define CELL(D, K) {{D, K}, Kernel<K, D>::nearest},
+#define CELL(D, K) entry<Kernel<K, D>::nearest>({D, K}),
                 ETLC_BENCH_CELLS(CELL)
 #undef CELL
             }};

@@ -40,7 +40,7 @@ __attribute__((noinline)) float direct(const float* z, const float* targets, con
 }  // namespace
 
 Contestant highway() {
-#define CELL(D, K) {{D, K}, direct<K, D>},
+#define CELL(D, K) entry<direct<K, D>>({D, K}),
     return {"Highway", nullptr, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }

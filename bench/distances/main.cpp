@@ -11,10 +11,10 @@
 #include <ctime>
 #include <fstream>
 #include <map>
-#include <memory>
 #include <random>
 #include <string>
 
+#include "aligned.hpp"
 #include "cells.hpp"
 #include "cold.hpp"
 
@@ -33,20 +33,17 @@ public:
         targets_ = make(std::size_t{cell.rows} * cell.dimension, [&] { return normal(random); });
         points_ = make(std::size_t{kPoints} * stride(), [&] { return normal(random); });
     }
-    const float* targets() const { return targets_.get(); }
-    const float* point(std::uint32_t i) const { return points_.get() + std::size_t{i % kPoints} * stride(); }
+    const float* targets() const { return targets_.data(); }
+    Points points() const { return {points_.data(), stride(), kPoints}; }
 
 private:
-    struct Free {
-        void operator()(float* p) const { std::free(p); }
-    };
-    using Floats = std::unique_ptr<float, Free>;
+    using Floats = AlignedVector<float>;
 
     std::size_t stride() const { return (cell_.dimension + 15) / 16 * 16; }
     template <class Draw>
     static Floats make(std::size_t n, const Draw& draw) {
-        Floats floats(static_cast<float*>(std::aligned_alloc(64, (n * sizeof(float) + 63) / 64 * 64)));
-        std::generate_n(floats.get(), n, draw);
+        Floats floats(n);
+        std::generate(floats.begin(), floats.end(), draw);
         return floats;
     }
 
@@ -55,11 +52,12 @@ private:
 };
 
 double exact(const Data& data, Cell cell, std::uint32_t point) {
+    const float* z = data.points()[point];
     double least = HUGE_VAL;
     for (std::uint32_t k = 0; k < cell.rows; ++k) {
         double sum = 0;
         for (std::uint32_t i = 0; i < cell.dimension; ++i) {
-            const double d = double{data.point(point)[i]} - double{data.targets()[std::size_t{k} * cell.dimension + i]};
+            const double d = double{z[i]} - double{data.targets()[std::size_t{k} * cell.dimension + i]};
             sum += d * d;
         }
         least = std::min(least, sum);
@@ -74,18 +72,15 @@ double processor_seconds() {
     return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double seconds(Nearest nearest, const Data& data, const void* state, std::uint64_t calls) {
-    volatile float sink = 0;
+double seconds(const Entry& entry, const Data& data, const void* state, std::uint64_t calls) {
     const double start = processor_seconds();
-    for (std::uint64_t i = 0; i < calls; ++i)
-        sink = nearest(data.point(static_cast<std::uint32_t>(i)), data.targets(), state);
-    static_cast<void>(sink);
+    entry.repeat(data.points(), data.targets(), state, calls);
     return processor_seconds() - start;
 }
 
 struct Competitor {
     std::string name;
-    Nearest nearest;
+    Entry entry;
     const void* state;
     std::uint64_t calls;
     std::vector<double> rounds;  ///< ns per call
@@ -101,7 +96,7 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
         });
         const void* state = c.setup != nullptr ? c.setup(data.targets(), cell.rows, cell.dimension) : nullptr;
         for (std::uint32_t i = 0; i < kPoints && c.name != std::string("read floor"); ++i) {
-            const double got = entry->nearest(data.point(i), data.targets(), state), want = exact(data, cell, i);
+            const double got = entry->nearest(data.points()[i], data.targets(), state), want = exact(data, cell, i);
             if (std::abs(got - want) > 1e-3 * want) {
                 std::fprintf(stderr, "%s at %u x %u: %g, expected %g\n", c.name, cell.dimension, cell.rows, got, want);
                 std::exit(1);
@@ -110,19 +105,19 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
         if (cold) {
             volatile float sink = 0;
             std::uint32_t i = 0;
-            competitors.push_back({c.name, entry->nearest, state, 1, {cold_call(rounds, [&] {
-                                       sink = entry->nearest(data.point(i++), data.targets(), state);
+            competitors.push_back({c.name, *entry, state, 1, {cold_call(rounds, [&] {
+                                       sink = entry->nearest(data.points()[i++], data.targets(), state);
                                    })}});
             continue;
         }
         std::uint64_t calls = 1;
         constexpr double kRound = 2e-3;
-        while (seconds(entry->nearest, data, state, calls) < kRound) calls *= 2;
-        competitors.push_back({c.name, entry->nearest, state, calls, {}});
+        while (seconds(*entry, data, state, calls) < kRound) calls *= 2;
+        competitors.push_back({c.name, *entry, state, calls, {}});
     }
     for (int round = 0; round < rounds && !cold; ++round) {
         for (Competitor& c : competitors)
-            c.rounds.push_back(seconds(c.nearest, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls));
+            c.rounds.push_back(seconds(c.entry, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls));
     }
     std::map<std::string, double> medians;
     for (Competitor& c : competitors) {

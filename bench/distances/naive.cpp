@@ -23,7 +23,7 @@ __attribute__((noinline)) float direct(const float* z, const float* targets, con
 }  // namespace
 
 bench::Contestant bench::ETLC_BENCH_NAME() {
-#define CELL(D, K) {{D, K}, direct<K, D>},
+#define CELL(D, K) entry<direct<K, D>>({D, K}),
     return {ETLC_BENCH_TITLE, nullptr, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }

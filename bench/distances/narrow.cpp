@@ -11,6 +11,7 @@
 #include <random>
 #include <vector>
 
+#include "../aligned.hpp"
 #include "etlmon/bytes.hpp"
 #include "etlmon/widen.hpp"
 
@@ -72,10 +73,10 @@ template <std::uint32_t K, std::uint32_t D>
 void compare(int rounds) {
     std::mt19937 random(K + D);
     std::normal_distribution<float> normal;
-    std::vector<float> z(kPoints * D), wide(std::size_t{K} * D);
-    std::vector<std::uint16_t> halves(wide.size());
-    std::vector<std::int8_t> bytes(wide.size());
-    std::vector<std::int32_t> sums(2 * std::size_t{K});
+    bench::AlignedVector<float> z(kPoints * D), wide(std::size_t{K} * D);
+    bench::AlignedVector<std::uint16_t> halves(wide.size());
+    bench::AlignedVector<std::int8_t> bytes(wide.size());
+    bench::AlignedVector<std::int32_t> sums(2 * std::size_t{K});
     for (float& x : z) x = normal(random);
     for (std::size_t i = 0; i < wide.size(); ++i) {
         bytes[i] = static_cast<std::int8_t>(static_cast<int>(random() % 255) - 127);

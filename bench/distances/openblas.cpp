@@ -26,7 +26,7 @@ __attribute__((noinline)) float gemv(const float* z, const float* targets, const
 }  // namespace
 
 Contestant openblas() {
-#define CELL(D, K) {{D, K}, gemv<K, D>},
+#define CELL(D, K) entry<gemv<K, D>>({D, K}),
     return {"OpenBLAS", setup, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }

@@ -33,7 +33,7 @@ __attribute__((noinline)) float read(const float*, const float* targets, const v
 }  // namespace
 
 Contestant read_floor() {
-#define CELL(D, K) {{D, K}, read<K, D>},
+#define CELL(D, K) entry<read<K, D>>({D, K}),
     return {"read floor", nullptr, {ETLC_BENCH_CELLS(CELL)}};
 #undef CELL
 }

@@ -84,21 +84,19 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
         return etlmon::measure(metric, aggregation, distance.kth, z, rows.data(), target.rows, target.dimension,
                                distance.weights.data(), scratch_.data());
     };
-    if (const NarrowSet* set = narrow_set(plan_, d)) {
-        if (in_integers(*set)) {
-            const etlmon::ByteRows rows{set->bytes.data(), set->sums.data(), set->scale,
-                                        set->moved,        set->rows,        set->dimension};
-            const etlmon::Enclosed enclosed =
-                etlmon::measure_bytes(metric, aggregation, distance.kth, z, rows, integers_.data(), scratch_.data());
-            return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;
-        }
-        const etlmon::Measured narrow = measured_on(widened_[d]);
-        if (set->lossless) return etlmon::exactly(narrow);
-        const etlmon::Enclosed enclosed =
-            etlmon::enclose(metric, aggregation, narrow, set->moved, set->rows, set->dimension);
-        if (!doubtful(enclosed, set->cuts)) return enclosed;
-    }
-    return etlmon::exactly(measured_on(prepared_[d]));
+    const NarrowSet* set = narrow_set(plan_, d);
+    if (set == nullptr) return etlmon::exactly(measured_on(prepared_[d]));
+    if (set->lossless) return etlmon::exactly(measured_on(widened_[d]));
+    const auto in_bytes = [&] {
+        const etlmon::ByteRows rows{set->bytes.data(), set->sums.data(), set->scale,
+                                    set->moved,        set->rows,        set->dimension};
+        return etlmon::measure_bytes(metric, aggregation, distance.kth, z, rows, integers_.data(), scratch_.data());
+    };
+    const auto widened = [&] {
+        return etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows, set->dimension);
+    };
+    const etlmon::Enclosed enclosed = in_integers(*set) ? in_bytes() : widened();
+    return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;
 }
 
 /// EXPR in float32, each operation rounded once; NaN where an operand is.

@@ -26,14 +26,8 @@ inline void PrintTo(const Build& build, std::ostream* out) {
     *out << build.name;
 }
 
-// Cheap to compile, for the reasons in tests/runtime/CMakeLists.txt.
-inline const std::string kSanitizers =
-    "-O1 -fsanitize=address,undefined -fno-sanitize=null,object-size,vptr -fno-sanitize-recover=all";
-inline const Build kGccSanitized{
-    "GccSanitized", "g++",
-    kSanitizers + " --param=asan-instrumentation-with-call-threshold=0 -fno-tree-pta -fira-algorithm=priority"};
-inline const Build kClangSanitized{"ClangSanitized", "clang++",
-                                   kSanitizers + " -mllvm -asan-instrumentation-with-call-threshold=0"};
+inline const Build kGccSanitized{"GccSanitized", "g++", ETLC_GCC_SANITIZERS};
+inline const Build kClangSanitized{"ClangSanitized", "clang++", ETLC_CLANG_SANITIZERS};
 inline const Build kGccFastMath{"GccFastMath", "g++", "-O3 -ffast-math", true};
 inline const Build kClangFastMath{"ClangFastMath", "clang++", "-O3 -ffast-math", true};
 inline const Build kAarch64{"Aarch64", "aarch64-linux-gnu-g++", "-O2 -static", false, "qemu-aarch64"};

@@ -36,7 +36,7 @@ etlc_kernel_variant(test_kernels_native -O2 -march=native)
 set(only_kernel_sources ${kernel_sources})
 list(REMOVE_ITEM kernel_sources test_kernel_twins.cpp)
 list(APPEND kernel_sources ${narrow_sources} test_kernel_versions.cpp)
-etlc_kernel_variant(test_kernels_sanitized ${quick_sanitizers})
+etlc_kernel_variant(test_kernels_sanitized ${quick_sanitizers_gcc})
 set(kernel_sources ${only_kernel_sources})
 
 # The other compiler at its boldest; and every header alone under both.

@@ -16,7 +16,7 @@ function(etlc_temporal_variant name)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
 etlc_temporal_variant(test_temporal_fast_math -O3 -ffast-math)
-etlc_temporal_variant(test_temporal_sanitized ${quick_sanitizers})
+etlc_temporal_variant(test_temporal_sanitized ${quick_sanitizers_gcc})
 
 # The compiler that the project is not built with, at its boldest.
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")

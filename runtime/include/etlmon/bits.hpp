@@ -140,10 +140,16 @@ ETLMON_INLINE void part(float& x, float& y) noexcept {
 #endif
 }
 
+#if defined(__SSE__) && defined(__has_builtin)
+#if __has_builtin(__builtin_ia32_sqrtss)
+#define ETLMON_HAS_SQRTSS 1
+#endif
+#endif
+
 /// sqrt of a float that is not negative. By the instruction on x86, where a compiler would add a call of the library's
 /// for the sake of errno, and with -ffast-math an approximation.
 ETLMON_INLINE float square_root(float x) noexcept {
-#if defined(__GNUC__) && defined(__SSE__)
+#if defined(ETLMON_HAS_SQRTSS)
   using Four = float __attribute__((vector_size(16)));
   return __builtin_ia32_sqrtss(Four{x})[0];
 #elif defined(__GNUC__)
