@@ -32,11 +32,11 @@ using Setup = const void* (*)(const float* targets, std::uint32_t rows, std::uin
 
 /// Points that are asked about in turn.
 struct Points {
+    static constexpr std::size_t kNumber = 8;
     const float* first;
     std::size_t stride;  ///< floats from one to the next
-    std::size_t number;
 
-    const float* operator[](std::size_t i) const { return first + i % number * stride; }
+    const float* operator[](std::size_t i) const { return first + i % kNumber * stride; }
 };
 
 struct Entry {

@@ -22,8 +22,6 @@ namespace {
 
 using namespace bench;
 
-constexpr std::uint32_t kPoints = 8;
-
 /// A set of targets and points among them, 64-byte aligned.
 class Data {
 public:
@@ -31,10 +29,10 @@ public:
         std::mt19937 random(cell.dimension * 31 + cell.rows);
         std::normal_distribution<float> normal;
         targets_ = make(std::size_t{cell.rows} * cell.dimension, [&] { return normal(random); });
-        points_ = make(std::size_t{kPoints} * stride(), [&] { return normal(random); });
+        points_ = make(std::size_t{Points::kNumber} * stride(), [&] { return normal(random); });
     }
     const float* targets() const { return targets_.data(); }
-    Points points() const { return {points_.data(), stride(), kPoints}; }
+    Points points() const { return {points_.data(), stride()}; }
 
 private:
     using Floats = AlignedVector<float>;
@@ -95,7 +93,7 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
             return e.cell.dimension == cell.dimension && e.cell.rows == cell.rows;
         });
         const void* state = c.setup != nullptr ? c.setup(data.targets(), cell.rows, cell.dimension) : nullptr;
-        for (std::uint32_t i = 0; i < kPoints && c.name != std::string("read floor"); ++i) {
+        for (std::uint32_t i = 0; i < Points::kNumber && c.name != std::string("read floor"); ++i) {
             const double got = entry->nearest(data.points()[i], data.targets(), state), want = exact(data, cell, i);
             if (std::abs(got - want) > 1e-3 * want) {
                 std::fprintf(stderr, "%s at %u x %u: %g, expected %g\n", c.name, cell.dimension, cell.rows, got, want);

@@ -105,4 +105,16 @@ TEST(NotFinite, SamplesAndPoints) {
     EXPECT_TRUE(is_nan(measure<L2, Min, 2, 2, kTargets>({z[0], missing}).delta));
 }
 
+/// What a compiler that assumes NaN away sees of a scalar outside its range: a choice between a number and a NaN.
+TEST(NotFinite, ScalarsOutsideTheirRanges) {
+    using namespace etlmon;
+    volatile float outside = 2, inside = 0.5F;
+    const auto measured = [](const float& x, const float& y) {
+        return measure<L2, Min, 2, 2, kTargets>({accept(x, 0.0F, 1.0F), accept(y)}).delta;
+    };
+    const float two = outside, half = inside;
+    EXPECT_TRUE(is_nan(measured(two, half)));
+    EXPECT_NEAR(measured(half, two), 2.0615528F, 1e-5F);
+}
+
 }  // namespace

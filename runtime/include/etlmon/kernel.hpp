@@ -31,6 +31,7 @@ template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& T
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
   static_assert(sizeof(Targets) / sizeof(Targets[0]) == K * D, "K rows of D elements");
   const auto* rows = &Targets[0];
+  z = detail::unforeseen(z);
   if constexpr (detail::in_columns(K, D) && !Metric::kQuadratic) {
     rows = detail::ColumnsOf<K, D, Targets>::kColumns.values;
     return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, rows, weights, {}, {});

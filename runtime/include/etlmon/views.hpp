@@ -95,6 +95,17 @@ class Flag {
   uint8_t state_ = kNone;
 };
 
+namespace detail {
+/// Elements of which the compiler does not know where they come from. Where NaN is assumed away it must not conclude
+/// from a choice between a number and a NaN that it was the number.
+ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
+#if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+  __asm__("" : "+r"(elements) : : "memory");
+#endif
+  return elements;
+}
+}  // namespace detail
+
 #if defined(ETLMON_HAS_PACKS)
 namespace detail {
 /// Bits that have their sign set where one of four floats is not finite: one more carries an exponent of ones into it.
