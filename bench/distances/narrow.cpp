@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "../aligned.hpp"
+#include "aligned.hpp"
 #include "etlmon/bytes.hpp"
 #include "etlmon/widen.hpp"
 

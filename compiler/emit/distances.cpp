@@ -57,6 +57,12 @@ std::string narrow_call(const Context& context, const plan::NarrowSet& set, cons
     return fmt::format("etlmon::measure_scaled<{}>({}, {}{})", parameters, z, float_literal(set.scale), weights);
 }
 
+/// The kernel's call on the only rows that the distance has.
+std::string only_call(const Context& context, Index d, const std::string& z) {
+    const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
+    return set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
+}
+
 /// What its narrow rows say of the distance: the call that gives the interval.
 std::string enclosing_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
     const check::Distance& distance = context.model.distances[set.distance];
@@ -105,13 +111,10 @@ std::string scalars_of(const Context& context, const check::Distance& distance) 
 
 /// `into = ...`, the distance from the point that `z` names.
 void print_measurement(Printer& out, const Context& context, Index d, const std::string& z, const std::string& into) {
-    const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
-    if (!context.enclosed(d)) {
-        const std::string call = set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
-        return print_wrapped(out, fmt::format("{} = {};", into, call));
-    }
-    print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, *set, z)));
-    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, *set)));
+    if (!context.enclosed(d)) return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
+    const plan::NarrowSet& set = *plan::narrow_set(context.plan, d);
+    print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, set, z)));
+    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, set)));
     out.indent();
     print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
     out.close();
@@ -132,10 +135,8 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
     const check::Distance& distance = context.model.distances[d];
     const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
     if (!distance.point_is_vector && !context.enclosed(d)) {
-        const plan::NarrowSet* set = plan::narrow_set(context.plan, d);
         const std::string z = sample(context, distance.point[0]);
-        const std::string call = set != nullptr ? narrow_call(context, *set, z) : wide_call(context, d, z);
-        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, call));
+        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, only_call(context, d, z)));
         return;
     }
     std::string z = "point";

@@ -107,8 +107,8 @@ Measured measure_as(MetricId metric, AggregationId aggregation, uint32_t n, cons
 
 }  // namespace detail
 
-/// The aggregated distance from z (D finite floats) to K prepared targets. weights: D x D for mahalanobis, D for
-/// mahalanobis_diagonal, else unread. kth takes n in [1, K] and scratch of n floats, else unread.
+/// The aggregated distance from z (D floats; NaN where one is not finite) to K prepared targets. weights: D x D for
+/// mahalanobis, D for mahalanobis_diagonal, else unread. kth takes n in [1, K] and scratch of n floats, else unread.
 inline Measured measure(MetricId metric, AggregationId aggregation, uint32_t n, const float* z, const float* targets,
                         uint32_t K, uint32_t D, const float* weights, float* scratch) noexcept {
   return detail::measure_as(metric, aggregation, n, z, targets, K, D, weights, scratch);

@@ -2,10 +2,10 @@
 // The kernel once per instruction set, and which of them runs.
 // Gives: `baseline`, the version for the machine that the program is built for; on hosted x86-64 the versions above it
 // (x86-64-v3: AVX2, FMA and F16C; x86-64-v4: AVX-512), and the pointer through which the best one that the CPU has is
-// called. Keeps true: the pointer is a constant until the first call, and whichever thread sets it writes the same; no
-// version runs on a CPU, or under an operating system, that lacks it. v3 and v4 give equal bits; baseline x86-64, which
-// cannot fuse, differs from them within error_bounds.hpp. Without dispatch: freestanding programs, and
-// ETLMON_NO_DISPATCH.
+// called (small sets have no third one). Keeps true: the pointer is a constant until the first call, and whichever
+// thread sets it writes the same; no version runs on a CPU, or under an operating system, that lacks it. v3 and v4 give
+// equal bits; baseline x86-64, which cannot fuse, differs from them within error_bounds.hpp. Without dispatch:
+// freestanding programs, and ETLMON_NO_DISPATCH.
 #pragma once
 
 #include "etlmon/reach.hpp"
