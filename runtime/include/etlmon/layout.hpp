@@ -16,7 +16,8 @@ enum class Order : uint8_t {
   sequential,  ///< element after element, into one sum
   lanes,       ///< element i into sum i mod 16
   two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an addition's latency
-  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, best read in one stream
+  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, which some CPUs best read in
+               ///< one stream
 };
 
 /// Rows of a column: K, and copies of the last row up to whole vectors.
@@ -67,8 +68,14 @@ struct Fixed {
   static constexpr uint32_t dimension() noexcept { return D; }
   static constexpr uint32_t stride() noexcept { return D; }
   static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
-  /// Too few elements for vectors of 64 bytes to gain anything.
-  static constexpr bool is_small() noexcept { return !in_columns(K, D) && uint64_t{K} * D <= 256; }
+  /// Rows shorter than a vector, never added up in lanes.
+  static constexpr bool is_short() noexcept { return D < kLanes; }
+  /// Too few elements for vectors of 64 bytes to gain anything; of directions: their distances begin with |z|.
+  static constexpr bool is_small(bool of_directions) noexcept {
+    return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
+  }
+  /// Whether it depends on the CPU how many of its rows are best read at once.
+  static constexpr bool has_streams() noexcept { return order(K, D) == Order::four_chunks && K >= 4; }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
 };
@@ -84,7 +91,9 @@ struct Sizes {
   constexpr uint32_t dimension() const noexcept { return D; }
   constexpr uint32_t stride() const noexcept { return D; }
   static constexpr bool may_be(Order) noexcept { return true; }
-  static constexpr bool is_small() noexcept { return false; }
+  static constexpr bool is_short() noexcept { return false; }
+  static constexpr bool is_small(bool) noexcept { return false; }
+  static constexpr bool has_streams() noexcept { return false; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
 };
 

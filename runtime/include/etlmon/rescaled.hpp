@@ -26,7 +26,8 @@ ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// Bits of |z - g|.
+/// Bits of |z - g|. Short, here and below: as of one_row.
+template <bool Short>
 class RescaledL2 {
  public:
   RescaledL2(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
@@ -34,10 +35,10 @@ class RescaledL2 {
 
   template <class G>
   uint32_t row(G g) const noexcept {
-    const uint32_t greatest = observe(baseline::one_row<Linf>({}, z_, g, z_, dimension_));
+    const uint32_t greatest = observe(baseline::one_row<Linf, Short>({}, z_, g, z_, dimension_));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
     const PowerOfTwo power = power_of_two(greatest);
-    const float square = baseline::one_row<ScaledL2Sq>(power, z_, g, z_, dimension_);
+    const float square = baseline::one_row<ScaledL2Sq, Short>(power, z_, g, z_, dimension_);
     return observe(rounded(rounded(square_root(square)) * power.up));
   }
 
@@ -141,14 +142,14 @@ class RescaledDirection {
 };
 
 /// Bits of a distance that needs no scaling itself; only the mean over its rows does.
-template <class Metric>
+template <class Metric, bool Short>
 class Unscaled {
  public:
   Unscaled(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
   template <class G>
   uint32_t row(G g) const noexcept {
-    return observe(baseline::one_row<Metric>({}, z_, g, z_, dimension_));
+    return observe(baseline::one_row<Metric, Short>({}, z_, g, z_, dimension_));
   }
 
  private:
@@ -164,17 +165,18 @@ template <class A, class B>
 struct Choose<false, A, B> {
   using Type = B;
 };
-template <class Metric>
-using RescaledSquare = typename Choose<Metric::kWeighted || Metric::kQuadratic, RescaledRoot<Metric>, RescaledL2>::Type;
-template <class Metric>
-using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric>, Unscaled<Metric>>::Type;
-template <class Metric>
-using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric>>::Type;
+template <class Metric, bool Short>
+using RescaledSquare =
+    typename Choose<Metric::kWeighted || Metric::kQuadratic, RescaledRoot<Metric>, RescaledL2<Short>>::Type;
+template <class Metric, bool Short>
+using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric, Short>, Unscaled<Metric, Short>>::Type;
+template <class Metric, bool Short>
+using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric, Short>>::Type;
 
-template <class Metric, class Aggregation, bool InColumns, class G>
+template <class Metric, bool Short, class Aggregation, bool InColumns, class G>
 MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
                               Aggregation aggregation) noexcept {
-  const Rescaled<Metric> distance(z, weights, set.dimension);
+  const Rescaled<Metric, Short> distance(z, weights, set.dimension);
   if (!distance.known()) return packed(kUnmeasured);
   Nearest nearest;
   typename Set<InColumns, G>::Buffer buffer;
@@ -195,12 +197,12 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, cons
 }
 
 /// z is row k of the set, element by element.
-template <bool InColumns, class G>
+template <bool Short, bool InColumns, class G>
 ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t k) noexcept {
   typename Set<InColumns, G>::Buffer buffer;
   const auto row = set.row(k, buffer);
   if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
-  return observe(baseline::one_row<Linf>({}, z, row, z, set.dimension)) == 0;
+  return observe(baseline::one_row<Linf, Short>({}, z, row, z, set.dimension)) == 0;
 }
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
@@ -210,15 +212,15 @@ MeasuredBits measure_again(const float* z, G targets, const float* weights, Size
   const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {
-      if (is_row(z, set, row)) return packed({0.0f, row});
+      if (is_row<Size::is_short()>(z, set, row)) return packed({0.0f, row});
     }
   }
-  return measure_rescaled<Metric>(z, set, weights, aggregation);
+  return measure_rescaled<Metric, Size::is_short()>(z, set, weights, aggregation);
 }
 
-template <bool InColumns, class G>
+template <bool Short, bool InColumns, class G>
 bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept {
-  return is_row(z, set, row);
+  return is_row<Short>(z, set, row);
 }
 
 }  // namespace detail

@@ -27,7 +27,10 @@ struct SearchDispatch {
 
   static Run choice() noexcept {
     const uint32_t level = x86_64_level();
-    if (level >= 4) return x86_64_v4::search<Metric, Size>;
+    if constexpr (Size::has_streams()) {
+      if (level >= 4 && best_streams() == 4) return x86_64_v4::search<Metric, Size, 4>;
+    }
+    if (level >= 4) return x86_64_v4::search<Metric, Size, 1>;
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::search<Metric, Size>;
 #endif

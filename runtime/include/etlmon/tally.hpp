@@ -99,7 +99,7 @@ ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* w
                                        Aggregation aggregation) noexcept;
 
 /// Whether a row that is nearest at 0 equals z, so that its 0 is exact.
-template <bool InColumns, class G>
+template <bool Short, bool InColumns, class G>
 ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept;
 
 /// What the values say together. `aggregation`: as it was before it saw any.
@@ -110,7 +110,8 @@ ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, con
   bool sound = tally.sound(result);
   if constexpr (Metric::kRescales && !Aggregation::kNearest) {
     if (!sound && tally.sound_if_equal(result)) {
-      sound = is_equal<InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
+      sound = is_equal<Size::is_short(), InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()},
+                                                       tally.nearest.row);
     }
   }
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {

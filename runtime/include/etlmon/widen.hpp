@@ -11,13 +11,15 @@ namespace detail {
 
 #if defined(ETLMON_DISPATCH)
 
-template <class G>
+template <class G, bool Small>
 struct Widening {
   using Run = void (*)(G, float*, uint32_t) noexcept;
 
   static Run choice() noexcept {
     const uint32_t level = x86_64_level();
-    if (level >= 4) return x86_64_v4::widen<G>;
+    if constexpr (!Small) {
+      if (level >= 4) return x86_64_v4::widen<G>;
+    }
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::widen<G>;
 #endif
@@ -33,7 +35,11 @@ struct Widening {
 
 template <class G>
 ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
-  __atomic_load_n(&Widening<G>::chosen, __ATOMIC_RELAXED)(from, to, n);
+  if (n <= 4 * kLanes) {
+    __atomic_load_n(&Widening<G, true>::chosen, __ATOMIC_RELAXED)(from, to, n);
+  } else {
+    __atomic_load_n(&Widening<G, false>::chosen, __ATOMIC_RELAXED)(from, to, n);
+  }
 }
 
 #else
@@ -47,9 +53,9 @@ ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
 
 }  // namespace detail
 
-inline void widen_f16(const uint16_t* from, float* to, uint32_t n) noexcept { detail::widen(from, to, n); }
+ETLMON_INLINE void widen_f16(const uint16_t* from, float* to, uint32_t n) noexcept { detail::widen(from, to, n); }
 
-inline void widen_i8(const int8_t* from, float scale, float* to, uint32_t n) noexcept {
+ETLMON_INLINE void widen_i8(const int8_t* from, float scale, float* to, uint32_t n) noexcept {
   detail::widen(detail::ScaledRows{from, scale}, to, n);
 }
 
