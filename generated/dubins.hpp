@@ -213,21 +213,22 @@ class Monitor {
   Atoms measure(const Inputs& in) noexcept {
     Atoms now;
     bool missing = false;
+    const auto z_direction = etlmon::direction_of(in.z);  // |z|, once for all distances that need it
 
     // dubins.etl:13: predicate at_a = min cosine(z, goal_a) <= 0.243
-    at_a_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::goal_a_unit>(in.z);
+    at_a_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::goal_a_unit>(z_direction);
     now.at_a = etlmon::at_most(at_a_.delta, threshold_at_a(), Value{etlmon::key_of(-1.7570001f),
         etlmon::key_of(0.243f)});
     missing |= etlmon::is_nan(at_a_.delta);
 
     // dubins.etl:14: predicate at_b = min cosine(z, goal_b) <= 0.223
-    at_b_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::goal_b_unit>(in.z);
+    at_b_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::goal_b_unit>(z_direction);
     now.at_b = etlmon::at_most(at_b_.delta, threshold_at_b(), Value{etlmon::key_of(-1.7770001f),
         etlmon::key_of(0.223f)});
     missing |= etlmon::is_nan(at_b_.delta);
 
     // dubins.etl:15: predicate near_c = min cosine(z, obstacle_c) <= 0.732
-    near_c_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::obstacle_c_unit>(in.z);
+    near_c_ = etlmon::measure<etlmon::Cosine, etlmon::Min, 8, 32, targets::obstacle_c_unit>(z_direction);
     now.near_c = etlmon::at_most(near_c_.delta, threshold_near_c(), Value{etlmon::key_of(-1.268f),
         etlmon::key_of(0.732f)});
     missing |= etlmon::is_nan(near_c_.delta);

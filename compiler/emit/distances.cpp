@@ -128,7 +128,9 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
         return wide_call(context, d, '{' + scalars_of(context, distance) + '}');
     const Index embedding = distance.point[0];
     if (distance.point_is_vector || context.names.input_local.count(embedding) != 0) return std::nullopt;
-    return wide_call(context, d, sample(context, embedding));
+    const auto direction = context.names.direction_local.find(embedding);
+    const bool shared = direction != context.names.direction_local.end() && !plan::rows_as_given(distance);
+    return wide_call(context, d, shared ? direction->second : sample(context, embedding));
 }
 
 void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {

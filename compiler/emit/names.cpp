@@ -75,6 +75,16 @@ std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
     return uses;
 }
 
+/// Several distances want to know the length of this embedding, on every step.
+bool shares_direction(const plan::Plan& plan, check::Index embedding) {
+    const auto wants = [&](check::Index d) {
+        const check::Distance& distance = plan.model->distances[d];
+        return !distance.point_is_vector && distance.point[0] == embedding && !plan::rows_as_given(distance);
+    };
+    return plan.values != check::Values::boolean &&
+           std::count_if(plan.distances.begin(), plan.distances.end(), wants) > 1;
+}
+
 class Naming {
 public:
     Naming(const plan::Plan& plan, const ir::Graph& graph)
@@ -100,7 +110,10 @@ private:
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
             if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
-            if (input.type == check::InputType::f32 && left_to_kernels(plan_, i)) continue;
+            if (input.type == check::InputType::f32 && left_to_kernels(plan_, i)) {
+                if (shares_direction(plan_, i)) names_.direction_local[i] = measure_.claim(input.name + "_direction");
+                continue;
+            }
             const bool is_atom = &measure_ == &atoms_ && input.type == check::InputType::boolean;
             names_.input_local[i] = measure_.claim(input.name + (is_atom ? "_sample" : ""));
             names_.input_buffer[i] = measure_.claim(input.name + "_values");

@@ -36,6 +36,8 @@ bool left_to_kernels(const plan::Plan& plan, check::Index embedding);
 struct Names {
     std::map<check::Index, std::string> input_local;          ///< in measure(): this step's sample; of an embedding, a
                                                               ///< pointer; none for what is read in place
+    std::map<check::Index, std::string> direction_local;      ///< in measure(): of an embedding read in place, where
+                                                              ///< several distances need its length
     std::map<check::Index, std::string> input_buffer;         ///< in measure(): widened elements, or a flag as a word
     std::map<check::Index, std::string> distance_local;       ///< in measure(): what the kernel gave
     std::map<check::Index, std::string> predicate_local;      ///< in measure(): delta of a predicate without telemetry

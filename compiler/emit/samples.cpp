@@ -134,6 +134,12 @@ std::string sample(const Context& context, Index i) {
 }
 
 void print_input(Printer& out, const Context& context, Index i) {
+    const auto direction = context.names.direction_local.find(i);
+    if (direction != context.names.direction_local.end()) {
+        const std::string& name = context.model.inputs[i].name;
+        out.line("const auto {} = etlmon::direction_of(in.{});  // |{}|, once for all distances that need it",
+                 direction->second, name, name);
+    }
     if (context.names.input_local.count(i) == 0) return;  // read in place
     switch (context.model.inputs[i].type) {
         case InputType::boolean: return print_flag(out, context, i);

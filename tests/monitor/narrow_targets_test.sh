@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # narrow_targets_test.sh ETLC CXX...: with --targets-as the verdicts are those of float32 targets in the same build, on inputs that lie as close to
-# the thresholds as float32 can say; lower and upper enclose them; the generated class and `etlc run` agree to the bit.
+# the thresholds as float32 can say; lower and upper enclose them; the generated class, of float32 targets too, and `etlc run` agree to the bit.
 set -euo pipefail
 etlc=$1
 shift
@@ -47,7 +47,8 @@ awk 'BEGIN {
 # encloses WIDE NARROW [ROUNDED]: lines of the first are lines of the second but for the numbers, which enclose them.
 # ROUNDED: both builds may add in any order. Where float32 decided, each then has a rounding of its own, as two builds without narrow rows have: at step 874, case 'six', the
 # exact angle is 0.155157831, and g++ 12 gave 0.155157819 and 0.155157804 for the same source, one unit in the last place apart and well within error_bounds.hpp. Such lines may
-# differ by those bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the robustness is within them. They have to be rare.
+# differ by those bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the robustness is within them. They have to be rare: clang 14 makes half a percent of them, mostly angles, as |z| is found
+# once for all distances to float32 rows.
 encloses() {
   paste -d, "$1" "$2" | awk -F, -v rounded="${3:-}" 'BEGIN {
     split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 seven 5.25 eight 5.25 nine 5.25 ten .5 eleven .25 twelve 6.1 thirteen 6.3 fourteen 7.4 fifteen .01 sixteen 1", words, " ")
@@ -66,7 +67,7 @@ encloses() {
     ++otherwise
   } END {
     if (wider < 100) { print "only " wider + 0 " numbers differ: is anything measured on narrow rows?"; exit 1 }
-    if (otherwise > NR / 1000) { print otherwise " lines of " NR " differ by roundings"; exit 1 }
+    if (otherwise > NR / 100) { print otherwise " lines of " NR " differ by roundings"; exit 1 }
   }'
 }
 
@@ -117,6 +118,12 @@ for status in satisfied violated unknown; do
   grep -q ",$status," f32.csv || { echo "no verdict is $status" >&2; exit 1; }
 done
 "$etlc" run narrow.etl --trace narrow.csv --values boolean -o boolean.csv
+grep -q 'z_direction = etlmon::direction_of' wide/narrow.hpp
+for compiler in "$@"; do
+  "$compiler" -std=c++17 -O2 -I "$runtime" -I wide source/main.cpp -o compiled
+  ./compiled <narrow.csv >compiled.csv
+  cmp f32.csv compiled.csv
+done
 for storage in f16 i8; do
   "$etlc" run narrow.etl --trace narrow.csv --targets-as $storage -o $storage.csv
   encloses f32.csv $storage.csv

@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
 
 #include "kernel_cases.hpp"
 
@@ -79,6 +82,52 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
 }
 
 #if !defined(__FAST_MATH__)
+
+/// A number in [-1, 1) for each i.
+constexpr float number(std::size_t i) {
+    return static_cast<float>((static_cast<std::uint32_t>(i) * 2654435761u + 12345u) >> 8) / 8388608.0f - 1.0f;
+}
+template <class Indices>
+struct Numbers;
+template <std::size_t... I>
+struct Numbers<std::index_sequence<I...>> {
+    static constexpr float kValues[] = {number(I)...};
+};
+
+template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
+void expect_told_twins(MetricId metric) {
+    constexpr const auto& rows = Numbers<std::make_index_sequence<K * D>>::kValues;
+    const auto expect_equal = [](etlmon::Vector<float, D> z, const std::string& which) {
+        const Measured one = etlmon::measure<Metric, Aggregation, K, D, rows>(z);
+        const Measured two = etlmon::measure<Metric, Aggregation, K, D, rows>(etlmon::direction_of(z));
+        EXPECT_EQ(bits(one.delta), bits(two.delta)) << which << ", " << K << " x " << D;
+        EXPECT_EQ(one.nearest, two.nearest) << which << ", " << K << " x " << D;
+    };
+    expect_equal({}, "missing");
+    for (const Kind kind : kKinds) {
+        const exact::Case c = make(metric, K, D, kind, 13);
+        expect_equal(etlmon::Vector<float, D>::unchecked(c.z.data()), name(kind));
+        for (const float factor : {0.0f, 1e-30f, 1e30f, HUGE_VALF, etlmon::kMissing}) {
+            std::vector<float> z = c.z;
+            for (float& x : z) x *= factor;
+            expect_equal(etlmon::Vector<float, D>::unchecked(z.data()),
+                         name(kind) + (" times " + std::to_string(factor)));
+        }
+    }
+}
+
+TEST(KernelTwins, ADirectionFoundOnceForSeveralDistances) {
+    expect_told_twins<etlmon::Cosine, etlmon::Min, 1, 1>(MetricId::cosine);
+    expect_told_twins<etlmon::Cosine, etlmon::Kth<2>, 3, 7>(MetricId::cosine);
+    expect_told_twins<etlmon::Cosine, etlmon::Mean, 8, 3>(MetricId::cosine);
+    expect_told_twins<etlmon::Cosine, etlmon::Min, 8, 32>(MetricId::cosine);
+    expect_told_twins<etlmon::Cosine, etlmon::Max, 64, 33>(MetricId::cosine);
+    expect_told_twins<etlmon::Cosine, etlmon::Min, 4, 384>(MetricId::cosine);
+    expect_told_twins<etlmon::Angular, etlmon::Min, 1, 384>(MetricId::angular);
+    expect_told_twins<etlmon::Angular, etlmon::Max, 5, 7>(MetricId::angular);
+    expect_told_twins<etlmon::Angular, etlmon::Mean, 17, 40>(MetricId::angular);
+}
+
 TEST(KernelTwins, ARowsValueDoesNotDependOnWhichTileItIsIn) {
     for (const MetricId metric : metrics()) {
         const exact::Case all = make(metric, 5, 33, Kind::ordinary, 12);

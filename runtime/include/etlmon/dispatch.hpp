@@ -74,6 +74,34 @@ struct Dispatch {
   inline static Run chosen = choose;
 };
 
+/// As Dispatch, for the length of a point.
+template <class Size>
+struct LengthDispatch {
+  using Run = float (*)(const float*) noexcept;
+
+  static Run choice() noexcept {
+    const uint32_t level = x86_64_level();
+    if constexpr (!Size::is_small(true)) {
+      if (level >= 4) return x86_64_v4::inverse_length_of<Size>;
+    }
+#if ETLMON_X86_64 < 3
+    if (level >= 3) return x86_64_v3::inverse_length_of<Size>;
+#endif
+    return baseline::inverse_length_of<Size>;
+  }
+  ETLMON_COLD static float choose(const float* z) noexcept {
+    const Run run = choice();
+    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
+    return run(z);
+  }
+  inline static Run chosen = choose;
+};
+
+template <class Size>
+ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
+  return __atomic_load_n(&LengthDispatch<Size>::chosen, __ATOMIC_RELAXED)(z);
+}
+
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
                                Aggregation aggregation) noexcept {
@@ -82,6 +110,11 @@ ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, 
 }
 
 #else
+
+template <class Size>
+ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
+  return baseline::inverse_length_of<Size>(z);
+}
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,

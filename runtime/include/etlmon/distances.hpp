@@ -41,6 +41,7 @@ struct Additive {
   static constexpr bool kWeighted = false;   ///< reads one weight per element
   static constexpr bool kQuadratic = false;  ///< reads D x D weights
   static constexpr bool kDirection = false;  ///< of z only the direction counts: z is scaled to length 1
+  static constexpr bool kTold = false;       ///< of the length of z, in the place of weights
   static constexpr bool kRescales = false;   ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
   static constexpr bool kSum = true;         ///< a row's value is its sum
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
@@ -121,5 +122,13 @@ struct Angular : detail::Additive {
     return 2.0f * detail::arc_tangent(detail::square_root(value));
   }
 };
+
+namespace detail {
+/// The same distance where 1 / |z| has been found already.
+template <class Metric>
+struct Told : Metric {
+  static constexpr bool kTold = true;
+};
+}  // namespace detail
 
 }  // namespace etlmon

@@ -50,6 +50,28 @@ ETLMON_INLINE Measured measure(const Point<D>& point, const float* weights = nul
   return measure<Metric, Aggregation, K, D, Targets>(point.elements, weights);
 }
 
+/// An embedding and 1 / |z|, for the distances to it under which only the direction of z counts.
+template <uint32_t D>
+struct Direction {
+  const float* elements;  ///< null where the sample is missing
+  float inverse_length;   ///< 0 where it is not known from the sum of squares, which the kernels look into
+};
+
+/// The direction of an embedding, found once for several distances.
+template <size_t D>
+ETLMON_INLINE Direction<D> direction_of(Vector<float, D> z) noexcept {
+  const float* elements = detail::unforeseen(z.data());
+  return {elements, z.present() ? detail::best_inverse_length<detail::Fixed<1, D>>(elements) : 0.0f};
+}
+
+/// The same, bit for bit, as for the embedding; cosine and angular only.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
+ETLMON_INLINE Measured measure(const Direction<D>& z) noexcept {
+  static_assert(Metric::kDirection, "this distance does not need the length of z");
+  if (z.elements == nullptr) return kUnmeasured;
+  return measure<detail::Told<Metric>, Aggregation, K, D, Targets>(z.elements, &z.inverse_length);
+}
+
 /// The same for targets of int8, each worth `scale` times itself, rounded once.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure_scaled(const float* z, float scale, const float* weights = nullptr) noexcept {
