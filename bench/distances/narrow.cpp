@@ -99,10 +99,9 @@ void compare(int rounds) {
 #if defined(ETLMON_X86_64)
     const auto integers = [&](std::uint32_t call) {
         alignas(64) std::uint8_t scratch[detail::bytes_scratch(D)];
-        const auto run = detail::BytesDispatch<L2, Min, Fixed<K, D>>::best();
-        const detail::ScaledRows rows{bytes.data(), 0.01F};
-        return doubtful(
-            detail::enclose_integers<L2>(run(point(call), rows, sums.data(), scratch, {}, {}), 0.01F, D, 0));
+        const auto measured = detail::best_in_integers<L2, Min, Fixed<K, D>>(point(call), {bytes.data(), 0.01F},
+                                                                             sums.data(), scratch, {}, {});
+        return doubtful(detail::enclose_integers<L2>(measured, 0.01F, D, 0));
     };
 #else
     const auto& integers = i8;

@@ -145,13 +145,10 @@ namespace bytes {
 
 #undef ETLMON_WIDE
 
-/// The version that runs, chosen as dispatch.hpp does.
 template <class Metric, class Aggregation, class Size>
-struct BytesDispatch {
-  using Run = Approximate (*)(const float*, ScaledRows, const int32_t*, uint8_t*, Size, Aggregation) noexcept;
-
+struct BytesVersions {
+  ETLMON_INLINE static auto choice() noexcept {
 #if defined(ETLMON_DISPATCH)
-  static Run choice() noexcept {
     const uint32_t level = x86_64_level();
     if (level >= 4 && multiplies_bytes()) return x86_64_v4::vnni::run<Metric, Aggregation, Size>;
     if (level >= 4) return x86_64_v4::bytes::run<Metric, Aggregation, Size>;
@@ -159,21 +156,20 @@ struct BytesDispatch {
     if (level >= 3) return x86_64_v3::bytes::run<Metric, Aggregation, Size>;
 #endif
     return baseline::bytes::run<Metric, Aggregation, Size>;
-  }
-  ETLMON_COLD static Approximate choose(const float* z, ScaledRows targets, const int32_t* sums, uint8_t* scratch,
-                                        Size size, Aggregation aggregation) noexcept {
-    const Run run = choice();
-    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
-    return run(z, targets, sums, scratch, size, aggregation);
-  }
-  inline static Run chosen = choose;
-  ETLMON_INLINE static Run best() noexcept { return __atomic_load_n(&chosen, __ATOMIC_RELAXED); }
 #elif defined(__AVX512VNNI__) && ETLMON_X86_64 == 4
-  ETLMON_INLINE static Run best() noexcept { return x86_64_v4::vnni::run<Metric, Aggregation, Size>; }
+    return x86_64_v4::vnni::run<Metric, Aggregation, Size>;
 #else
-  ETLMON_INLINE static Run best() noexcept { return baseline::bytes::run<Metric, Aggregation, Size>; }
+    return baseline::bytes::run<Metric, Aggregation, Size>;
 #endif
+  }
 };
+template <class Metric, class Aggregation, class Size>
+ETLMON_INLINE Approximate best_in_integers(const float* z, ScaledRows targets, const int32_t* sums, uint8_t* scratch,
+                                           Size size, Aggregation aggregation) noexcept {
+  using Function = Approximate(const float*, ScaledRows, const int32_t*, uint8_t*, Size, Aggregation);
+  return Dispatch<BytesVersions<Metric, Aggregation, Size>, Function>::call(z, targets, sums, scratch, size,
+                                                                            aggregation);
+}
 
 /// The interval of a distance that was measured in integers, on rows of which none moved by more than `moved`.
 ///
@@ -206,8 +202,9 @@ ETLMON_INLINE Enclosed measure_bytes(const float* z, float scale, float moved) n
   constexpr uint32_t kAveraged = Aggregation::kOfDistances ? K : 0;
 #if defined(ETLMON_X86_64)
   alignas(64) uint8_t scratch[detail::bytes_scratch(D)];
-  const auto run = detail::BytesDispatch<Metric, Aggregation, detail::Fixed<K, D>>::best();
-  return detail::enclose_integers<Metric>(run(z, {&Targets[0], scale}, &Sums[0], scratch, {}, {}), moved, D, kAveraged);
+  const auto measured = detail::best_in_integers<Metric, Aggregation, detail::Fixed<K, D>>(z, {&Targets[0], scale},
+                                                                                           &Sums[0], scratch, {}, {});
+  return detail::enclose_integers<Metric>(measured, moved, D, kAveraged);
 #else
   return enclose<Metric>(measure_scaled<Metric, Aggregation, K, D, Targets>(z, scale), moved, D, kAveraged);
 #endif

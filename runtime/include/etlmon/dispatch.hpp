@@ -48,11 +48,35 @@ inline uint32_t best_streams() noexcept {
 /// Whether a CPU of level 4 has AVX512_VNNI, which multiplies bytes.
 inline bool multiplies_bytes() noexcept { return (cpu_id(7).c & 1u << 11) != 0; }
 
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-struct Dispatch {
-  using Run = MeasuredBits (*)(const float*, G, const float*, Size, Aggregation) noexcept;
+#endif
 
-  static Run choice() noexcept {
+/// A function of which there is a version per instruction set. Versions::choice() gives the best one; the CPU is asked
+/// for it at the first call, where there is a choice.
+template <class Versions, class Function>
+struct Dispatch;
+template <class Versions, class Result, class... Arguments>
+struct Dispatch<Versions, Result(Arguments...)> {
+#if defined(ETLMON_DISPATCH)
+  using Run = Result (*)(Arguments...) noexcept;
+
+  ETLMON_COLD static Result choose(Arguments... arguments) noexcept {
+    const Run run = Versions::choice();
+    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
+    return run(arguments...);
+  }
+  inline static Run chosen = choose;
+  ETLMON_INLINE static Result call(Arguments... arguments) noexcept {
+    return __atomic_load_n(&chosen, __ATOMIC_RELAXED)(arguments...);
+  }
+#else
+  ETLMON_INLINE static Result call(Arguments... arguments) noexcept { return Versions::choice()(arguments...); }
+#endif
+};
+
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+struct KernelVersions {
+  ETLMON_INLINE static auto choice() noexcept {
+#if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
     if constexpr (!Size::is_small(Metric::kDirection)) {
       if constexpr (Size::has_streams()) {
@@ -63,23 +87,22 @@ struct Dispatch {
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>;
 #endif
+#endif
     return baseline::run<Metric, Aggregation, Size, InColumns, G>;
   }
-  ETLMON_COLD static MeasuredBits choose(const float* z, G targets, const float* weights, Size size,
-                                         Aggregation aggregation) noexcept {
-    const Run run = choice();
-    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
-    return run(z, targets, weights, size, aggregation);
-  }
-  inline static Run chosen = choose;
 };
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+                               Aggregation aggregation) noexcept {
+  using Function = MeasuredBits(const float*, G, const float*, Size, Aggregation);
+  using Kernel = Dispatch<KernelVersions<Metric, Aggregation, Size, InColumns, G>, Function>;
+  return unpacked(Kernel::call(z, targets, weights, size, aggregation));
+}
 
-/// As Dispatch, for the length of a point.
 template <class Size>
-struct LengthDispatch {
-  using Run = float (*)(const float*) noexcept;
-
-  static Run choice() noexcept {
+struct LengthVersions {
+  ETLMON_INLINE static auto choice() noexcept {
+#if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
     if constexpr (!Size::is_small(true)) {
       if (level >= 4) return x86_64_v4::inverse_length_of<Size>;
@@ -87,42 +110,15 @@ struct LengthDispatch {
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::inverse_length_of<Size>;
 #endif
+#endif
     return baseline::inverse_length_of<Size>;
   }
-  ETLMON_COLD static float choose(const float* z) noexcept {
-    const Run run = choice();
-    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
-    return run(z);
-  }
-  inline static Run chosen = choose;
 };
-
+/// 1 / |z|, or 0: inverse_length in run.inc.
 template <class Size>
 ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
-  return __atomic_load_n(&LengthDispatch<Size>::chosen, __ATOMIC_RELAXED)(z);
+  return Dispatch<LengthVersions<Size>, float(const float*)>::call(z);
 }
-
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
-                               Aggregation aggregation) noexcept {
-  using Kernel = Dispatch<Metric, Aggregation, Size, InColumns, G>;
-  return unpacked(__atomic_load_n(&Kernel::chosen, __ATOMIC_RELAXED)(z, targets, weights, size, aggregation));
-}
-
-#else
-
-template <class Size>
-ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
-  return baseline::inverse_length_of<Size>(z);
-}
-
-template <class Metric, class Aggregation, class Size, bool InColumns, class G>
-ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
-                               Aggregation aggregation) noexcept {
-  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation));
-}
-
-#endif
 
 /// The kernel on rows, or columns, of T; on int8 with their scale.
 template <class Metric, class Aggregation, class Size, bool InColumns, class T>

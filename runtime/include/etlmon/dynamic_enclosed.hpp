@@ -50,8 +50,8 @@ Enclosed measure_bytes_as(const float* z, const ByteRows& of, uint8_t* scratch, 
   const ScaledRows rows{of.values, of.scale};
   const Sizes size{of.rows, of.dimension};
 #if defined(ETLMON_X86_64)
-  const auto run = BytesDispatch<Metric, Aggregation, Sizes>::best();
-  return enclose_integers<Metric>(run(z, rows, of.sums, scratch, size, aggregation), of.moved, of.dimension, averaged);
+  const auto measured = best_in_integers<Metric, Aggregation>(z, rows, of.sums, scratch, size, aggregation);
+  return enclose_integers<Metric>(measured, of.moved, of.dimension, averaged);
 #else
   static_cast<void>(scratch);
   return enclose<Metric>(best<Metric, Aggregation, Sizes, false>(z, rows, nullptr, size, aggregation), of.moved,

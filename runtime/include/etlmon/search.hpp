@@ -19,13 +19,10 @@ constexpr bool searches(uint32_t rows) noexcept {
 
 namespace detail {
 
-#if defined(ETLMON_DISPATCH)
-/// As Dispatch, for the search.
 template <class Metric, class Size>
-struct SearchDispatch {
-  using Run = MeasuredBits (*)(const float*, const float*, SearchView) noexcept;
-
-  static Run choice() noexcept {
+struct SearchVersions {
+  ETLMON_INLINE static auto choice() noexcept {
+#if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
     if constexpr (Size::has_streams()) {
       if (level >= 4 && best_streams() == 4) return x86_64_v4::search<Metric, Size, 4>;
@@ -34,25 +31,10 @@ struct SearchDispatch {
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::search<Metric, Size>;
 #endif
+#endif
     return baseline::search<Metric, Size>;
   }
-  ETLMON_COLD static MeasuredBits choose(const float* z, const float* targets, SearchView state) noexcept {
-    const Run run = choice();
-    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
-    return run(z, targets, state);
-  }
-  inline static Run chosen = choose;
 };
-#endif
-
-template <class Metric, class Size>
-ETLMON_INLINE MeasuredBits best_search(const float* z, const float* targets, SearchView state) noexcept {
-#if defined(ETLMON_DISPATCH)
-  return __atomic_load_n(&SearchDispatch<Metric, Size>::chosen, __ATOMIC_RELAXED)(z, targets, state);
-#else
-  return baseline::search<Metric, Size>(z, targets, state);
-#endif
-}
 
 }  // namespace detail
 
@@ -67,8 +49,9 @@ class Search {
   /// `rows`: K rows of D elements, each at a multiple of 64 bytes; the same ones since reset().
   template <class Metric>
   Measured nearest(const float* z, const float* rows) noexcept {
-    return detail::unpacked(
-        detail::best_search<Metric, detail::Padded<K, D>>(z, rows, {anchor_, least_, &nearest_, &measured_}));
+    using Function = detail::MeasuredBits(const float*, const float*, detail::SearchView);
+    using Kernel = detail::Dispatch<detail::SearchVersions<Metric, detail::Padded<K, D>>, Function>;
+    return detail::unpacked(Kernel::call(z, rows, {anchor_, least_, &nearest_, &measured_}));
   }
 
  private:

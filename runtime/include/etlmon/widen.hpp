@@ -9,47 +9,29 @@
 namespace etlmon {
 namespace detail {
 
+/// Few elements do without vectors of 64 bytes.
+template <class G, bool Few>
+struct WideningVersions {
+  ETLMON_INLINE static auto choice() noexcept {
 #if defined(ETLMON_DISPATCH)
-
-template <class G, bool Small>
-struct Widening {
-  using Run = void (*)(G, float*, uint32_t) noexcept;
-
-  static Run choice() noexcept {
     const uint32_t level = x86_64_level();
-    if constexpr (!Small) {
+    if constexpr (!Few) {
       if (level >= 4) return x86_64_v4::widen<G>;
     }
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::widen<G>;
 #endif
+#endif
     return baseline::widen<G>;
   }
-  ETLMON_COLD static void choose(G from, float* to, uint32_t n) noexcept {
-    const Run run = choice();
-    __atomic_store_n(&chosen, run, __ATOMIC_RELAXED);
-    run(from, to, n);
-  }
-  inline static Run chosen = choose;
 };
 
 template <class G>
 ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
-  if (n <= 4 * kLanes) {
-    __atomic_load_n(&Widening<G, true>::chosen, __ATOMIC_RELAXED)(from, to, n);
-  } else {
-    __atomic_load_n(&Widening<G, false>::chosen, __ATOMIC_RELAXED)(from, to, n);
-  }
+  using Function = void(G, float*, uint32_t);
+  if (n <= 4 * kLanes) return Dispatch<WideningVersions<G, true>, Function>::call(from, to, n);
+  Dispatch<WideningVersions<G, false>, Function>::call(from, to, n);
 }
-
-#else
-
-template <class G>
-ETLMON_INLINE void widen(G from, float* to, uint32_t n) noexcept {
-  baseline::widen<G>(from, to, n);
-}
-
-#endif
 
 }  // namespace detail
 
