@@ -2,6 +2,7 @@
 #include "emit/measurements.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/points.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -124,7 +125,7 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
 
 std::optional<std::string> measured_at_once(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
-    if (distance.point_is_vector && checks_point(context.plan, d))
+    if (distance.point_is_vector && plan::checks_point(context.plan, d))
         return wide_call(context, d, '{' + scalars_of(context, distance) + '}');
     const Index embedding = distance.point[0];
     if (distance.point_is_vector || context.names.input_local.count(embedding) != 0) return std::nullopt;

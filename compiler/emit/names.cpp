@@ -8,6 +8,7 @@
 #include "plan/budget.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/points.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -75,16 +76,6 @@ std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
     return uses;
 }
 
-/// Several distances want to know the length of this embedding, on every step.
-bool shares_direction(const plan::Plan& plan, check::Index embedding) {
-    const auto wants = [&](check::Index d) {
-        const check::Distance& distance = plan.model->distances[d];
-        return !distance.point_is_vector && distance.point[0] == embedding && !plan::rows_as_given(distance);
-    };
-    return plan.values != check::Values::boolean &&
-           std::count_if(plan.distances.begin(), plan.distances.end(), wants) > 1;
-}
-
 class Naming {
 public:
     Naming(const plan::Plan& plan, const ir::Graph& graph)
@@ -110,8 +101,9 @@ private:
         for (check::Index i : plan_.inputs) {
             const check::Input& input = model_.inputs[i];
             if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
-            if (input.type == check::InputType::f32 && left_to_kernels(plan_, i)) {
-                if (shares_direction(plan_, i)) names_.direction_local[i] = measure_.claim(input.name + "_direction");
+            if (input.type == check::InputType::f32 && plan::left_to_kernels(plan_, i)) {
+                if (plan::shares_direction(plan_, i))
+                    names_.direction_local[i] = measure_.claim(input.name + "_direction");
                 continue;
             }
             const bool is_atom = &measure_ == &atoms_ && input.type == check::InputType::boolean;
@@ -301,19 +293,6 @@ private:
 };
 
 }  // namespace
-
-bool checks_point(const plan::Plan& plan, check::Index distance) {
-    return plan::stored_set(plan, distance) == nullptr && plan::narrow_set(plan, distance) == nullptr;
-}
-
-bool left_to_kernels(const plan::Plan& plan, check::Index embedding) {
-    const auto leaves = [&](check::Index d) {
-        const check::Distance& distance = plan.model->distances[d];
-        return distance.point_is_vector || distance.point[0] != embedding || checks_point(plan, d);
-    };
-    const check::Input& input = plan.model->inputs[embedding];
-    return input.is_embedding() && input.hold == 0 && std::all_of(plan.distances.begin(), plan.distances.end(), leaves);
-}
 
 std::string Scope::claim(const std::string& wanted) {
     std::string name = wanted;

@@ -27,12 +27,6 @@ private:
 /// `otherwise`.
 std::string identifier(std::string_view text, const std::string& otherwise);
 
-/// The distance's kernel finds out by itself whether all elements of the point are finite: one that measures every row
-/// as it stands in the header. Others are called where they are.
-bool checks_point(const plan::Plan& plan, check::Index distance);
-/// All kernels that an embedding goes to do; where it is held, step() has to know before.
-bool left_to_kernels(const plan::Plan& plan, check::Index embedding);
-
 struct Names {
     std::map<check::Index, std::string> input_local;          ///< in measure(): this step's sample; of an embedding, a
                                                               ///< pointer; none for what is read in place

@@ -1,5 +1,6 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
 #include "emit/measurements.hpp"
+#include "plan/points.hpp"
 
 namespace etlc::emit {
 
@@ -22,8 +23,8 @@ std::string accepted(const check::Input& input) {
 /// Whether the embedding is there, as far as its kernels do not find out.
 std::string present(const Context& context, Index i) {
     const std::string& name = context.model.inputs[i].name;
-    return left_to_kernels(context.plan, i) ? fmt::format("in.{}.present()", name)
-                                            : fmt::format("etlmon::present(in.{})", name);
+    return plan::left_to_kernels(context.plan, i) ? fmt::format("in.{}.present()", name)
+                                                  : fmt::format("etlmon::present(in.{})", name);
 }
 
 std::string widening(const Context& context, Index i) {
