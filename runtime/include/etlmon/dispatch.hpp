@@ -79,7 +79,7 @@ struct KernelVersions {
 #if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
     if constexpr (!Size::is_small(Metric::kDirection)) {
-      if constexpr (Size::has_streams()) {
+      if constexpr (Size::has_streams(!Same<G, const float*>::value)) {
         if (level >= 4 && best_streams() == 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>;
       }
       if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 1>;

@@ -74,8 +74,12 @@ struct Fixed {
   static constexpr bool is_small(bool of_directions) noexcept {
     return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
   }
-  /// Whether it depends on the CPU how many of its rows are best read at once.
-  static constexpr bool has_streams() noexcept { return order(K, D) == Order::four_chunks && K >= 4; }
+  /// Whether it depends on the CPU how many of its rows are best read at once. Rows that are widened: not beyond the
+  /// second-level cache, where one stream is never slower.
+  static constexpr bool has_streams(bool widened) noexcept {
+    constexpr uint32_t kCached = 1u << 20;  // 2 MiB of float16
+    return order(K, D) == Order::four_chunks && K >= 4 && (!widened || K <= kCached / D);
+  }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
 };
@@ -93,7 +97,7 @@ struct Sizes {
   static constexpr bool may_be(Order) noexcept { return true; }
   static constexpr bool is_short() noexcept { return false; }
   static constexpr bool is_small(bool) noexcept { return false; }
-  static constexpr bool has_streams() noexcept { return false; }
+  static constexpr bool has_streams(bool) noexcept { return false; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
 };
 
