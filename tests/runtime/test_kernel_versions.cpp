@@ -114,7 +114,7 @@ TEST(ColumnVersions, WithinTheirBounds) {
     expect_columns<etlmon::MahalanobisDiagonal, etlmon::Min, 8, 3>(MetricId::mahalanobis_diagonal, {});
 }
 
-TEST(LargeSetVersions, AreReadInOneStream) {
+TEST(LargeSetVersions, AgreeInOneStreamAndInFour) {
     constexpr std::uint32_t kRowsOfStream = 530, kDimension = 1000;
     static_assert(etlmon::detail::order(kRowsOfStream, kDimension) == etlmon::detail::Order::four_chunks ||
                   !etlmon::detail::kHasPacks);

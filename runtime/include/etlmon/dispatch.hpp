@@ -39,7 +39,7 @@ ETLMON_COLD inline uint32_t x86_64_level() noexcept {
 
 /// How many rows of a set beyond the first-level cache a CPU of level 4 best reads at once. Four share the loads of z,
 /// which on an Intel Xeon is 1.25 times as fast from the second-level cache; an AMD EPYC (Zen 5) reads one stream at
-/// the speed of that cache, and several at 0.7 of it.
+/// the speed of that cache, and eight at 0.7 of it.
 inline uint32_t best_streams() noexcept {
   constexpr uint32_t kAuth = 0x68747541;  // of "AuthenticAMD"
   return cpu_id(0).b == kAuth ? 1 : 4;

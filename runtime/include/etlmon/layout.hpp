@@ -75,7 +75,7 @@ struct Fixed {
     return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
   }
   /// Whether it depends on the CPU how many of its rows are best read at once. Rows that are widened: not beyond the
-  /// second-level cache, where one stream is never slower.
+  /// second-level cache, where one stream is mostly the faster.
   static constexpr bool has_streams(bool widened) noexcept {
     constexpr uint32_t kCached = 1u << 20;  // 2 MiB of float16
     return order(K, D) == Order::four_chunks && K >= 4 && (!widened || K <= kCached / D);
