@@ -13,10 +13,7 @@ template <std::uint32_t K, std::uint32_t D>
 struct Kernel {
     static const void* columns(const float* targets) {
         static etlmon::detail::Columns<K, D> made;
-        for (std::uint32_t i = 0; i < D; ++i) {
-            for (std::uint32_t k = 0; k < etlmon::detail::column_length(K); ++k)
-                made.values[i * etlmon::detail::column_length(K) + k] = targets[(k < K ? k : K - 1) * D + i];
-        }
+        etlmon::detail::put_in_columns(targets, made);
         return made.values;
     }
     __attribute__((always_inline)) static inline float nearest(const float* z, const float* targets,

@@ -75,7 +75,7 @@ INSTANTIATE_TEST_SUITE_P(All, KernelVersions, testing::ValuesIn(metrics()),
 template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
 void expect_columns(MetricId metric, exact::Aggregate aggregate) {
     using namespace etlmon::detail;
-    static_assert(in_columns(K, D) || !kHasPacks);
+    static_assert(in_columns(K, D));
     static float rows[K * D];
     for (const Kind kind : kKinds) {
         const exact::Case c = make(metric, K, D, kind, 22);
@@ -83,22 +83,20 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
         std::copy(c.targets.begin(), c.targets.end(), rows);
         etlmon::prepare(metric, rows, K, D);
         const Columns<K, D> columns = columns_of<K, D>(rows);
-        if constexpr (kHasPacks) {
-            std::vector<Answer> answers;
-            for (const auto& version : versions<Metric, Aggregation, Fixed<K, D>, true>())
-                answers.push_back({version.name, version.fused,
-                                   unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
-            expect_answers(answers, c, judge, aggregate, name(kind));
-            // The same rows, not in columns: the same bits.
-            const Measured in_rows =
-                best<Metric, Aggregation, Fixed<K, D>, false>(c.z.data(), rows, c.weights.data(), {}, {});
-            const Measured in_columns =
-                best<Metric, Aggregation, Fixed<K, D>, true>(c.z.data(), columns.values, c.weights.data(), {}, {});
+        std::vector<Answer> answers;
+        for (const auto& version : versions<Metric, Aggregation, Fixed<K, D>, true>())
+            answers.push_back({version.name, version.fused,
+                               unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
+        expect_answers(answers, c, judge, aggregate, name(kind));
+        // The same rows, not in columns: the same bits.
+        const Measured in_rows =
+            best<Metric, Aggregation, Fixed<K, D>, false>(c.z.data(), rows, c.weights.data(), {}, {});
+        const Measured in_columns =
+            best<Metric, Aggregation, Fixed<K, D>, true>(c.z.data(), columns.values, c.weights.data(), {}, {});
 #if !defined(__FAST_MATH__)
-            ASSERT_EQ(bits(in_columns.delta), bits(in_rows.delta)) << describe(c, aggregate, name(kind));
-            ASSERT_EQ(in_columns.nearest, in_rows.nearest) << describe(c, aggregate, name(kind));
+        ASSERT_EQ(bits(in_columns.delta), bits(in_rows.delta)) << describe(c, aggregate, name(kind));
+        ASSERT_EQ(in_columns.nearest, in_rows.nearest) << describe(c, aggregate, name(kind));
 #endif
-        }
     }
 }
 

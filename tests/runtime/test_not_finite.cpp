@@ -91,6 +91,7 @@ TEST(NotFinite, NoDistanceToColumns) {
 }
 
 inline constexpr float kTargets[4] = {0, 0, 3, 4};
+inline constexpr float kLongTargets[5 * 33] = {1, 2, 3};
 
 TEST(NotFinite, SamplesAndPoints) {
     using namespace etlmon;
@@ -101,6 +102,9 @@ TEST(NotFinite, SamplesAndPoints) {
     EXPECT_EQ(measured(z).nearest, 1u);
     EXPECT_TRUE(is_nan(measured(incomplete).delta));
     EXPECT_TRUE(is_nan(measured({}).delta));
+    EXPECT_TRUE(is_nan((measure<Cosine, Max, 5, 33, kLongTargets>(Vector<float, 33>{}).delta)));
+    EXPECT_TRUE(is_nan((measure<L1, Mean, 5, 33, kLongTargets>(Vector<float, 33>{}).delta)));
+    EXPECT_EQ((measure<Linf, Kth<2>, 5, 33, kLongTargets>(Vector<float, 33>{}).nearest), 0u);
     EXPECT_NEAR((measure<L2, Min, 2, 2, kTargets>({z[0], z[1]}).delta), 1.0F, 1e-6F);
     EXPECT_TRUE(is_nan(measure<L2, Min, 2, 2, kTargets>({z[0], missing}).delta));
 }

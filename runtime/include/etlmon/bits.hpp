@@ -84,6 +84,18 @@ ETLMON_INLINE uint32_t observe(const float& x) noexcept {
   return bits;
 }
 
+/// The same of a sum that a loop made. On RISC-V g++ would else keep it in an integer register from the start, and move
+/// it to and fro with every addition.
+ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
+#if defined(__GNUC__) && defined(__riscv_flen)
+  uint32_t bits = 0;
+  __asm__("fmv.x.w %0, %1" : "=r"(bits) : "f"(x));
+  return bits;
+#else
+  return observe(x);
+#endif
+}
+
 ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
   float x = 0.0f;
   copy_bytes(&x, &bits, sizeof x);

@@ -20,6 +20,20 @@ constexpr uint32_t weights_of() noexcept {
   return Metric::kQuadratic ? D * D : Metric::kWeighted ? D : 0;
 }
 
+/// A set that is a constant of the program, as the machine likes it best.
+template <class Metric, uint32_t K, uint32_t D, const auto& Targets>
+struct Kept {
+  static_assert(sizeof(Targets) / sizeof(Targets[0]) == K * D, "K rows of D elements");
+  static constexpr bool kInColumns = in_columns(K, D) && !Metric::kQuadratic;
+  static constexpr const auto* values() noexcept {
+    if constexpr (kInColumns) {
+      return &ColumnsOf<K, D, Targets>::kColumns.values[0];
+    } else {
+      return &Targets[0];
+    }
+  }
+};
+
 }  // namespace detail
 
 /// The aggregated distance from z, of D elements, to K targets: for generated code, whose sizes and targets are
@@ -29,21 +43,33 @@ constexpr uint32_t weights_of() noexcept {
 /// Targets may be float32, or float16 as their bits, which are widened as they are read: the same distances.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
-  static_assert(sizeof(Targets) / sizeof(Targets[0]) == K * D, "K rows of D elements");
-  const auto* rows = &Targets[0];
-  z = detail::unforeseen(z);
-  if constexpr (detail::in_columns(K, D) && !Metric::kQuadratic) {
-    rows = detail::ColumnsOf<K, D, Targets>::kColumns.values;
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, rows, weights, {}, {});
-  } else {
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, rows, weights, {}, {});
-  }
+  using Kept = detail::Kept<Metric, K, D, Targets>;
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Kept::kInColumns>(detail::unforeseen(z), Kept::values(),
+                                                                                  weights, {}, {});
 }
+
+namespace detail {
+/// The same, or unmeasured where z is missing, which is left to what has the rare cases: the least code.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
+ETLMON_INLINE Measured measure_unless_missing(const float* z, const float* weights) noexcept {
+  using Kept = Kept<Metric, K, D, Targets>;
+  using Size = Fixed<K, D>;
+  constexpr bool kInColumns = Kept::kInColumns;
+  const auto* rows = Kept::values();
+  return unpacked(z == nullptr
+                      ? measure_again<Metric, Aggregation, Size, kInColumns>(z, rows, weights, Size{}, Aggregation{})
+                      : packed(best<Metric, Aggregation, Size, kInColumns>(z, rows, weights, Size{}, Aggregation{})));
+}
+}  // namespace detail
 
 /// The same for a sample of this step, or a point made of some: unmeasured where it, or one of them, is missing.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(Vector<float, D> z, const float* weights = nullptr) noexcept {
+#if defined(__OPTIMIZE_SIZE__)
+  return detail::measure_unless_missing<Metric, Aggregation, K, D, Targets>(detail::unforeseen(z.data()), weights);
+#else
   return z.present() ? measure<Metric, Aggregation, K, D, Targets>(z.data(), weights) : kUnmeasured;
+#endif
 }
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(const Point<D>& point, const float* weights = nullptr) noexcept {
@@ -75,14 +101,9 @@ ETLMON_INLINE Measured measure(const Direction<D>& z) noexcept {
 /// The same for targets of int8, each worth `scale` times itself, rounded once.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure_scaled(const float* z, float scale, const float* weights = nullptr) noexcept {
-  static_assert(sizeof(Targets) == K * D, "K rows of D bytes");
-  if constexpr (detail::in_columns(K, D)) {
-    const detail::ScaledRows rows{detail::ColumnsOf<K, D, Targets>::kColumns.values, scale};
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, true>(z, rows, weights, {}, {});
-  } else {
-    return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, detail::ScaledRows{Targets, scale}, weights,
-                                                                         {}, {});
-  }
+  using Kept = detail::Kept<Metric, K, D, Targets>;
+  const detail::ScaledRows rows{Kept::values(), scale};
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Kept::kInColumns>(z, rows, weights, {}, {});
 }
 
 /// The same, bit for bit, for targets that are not constants.

@@ -10,7 +10,8 @@
 namespace etlmon {
 namespace detail {
 
-constexpr uint32_t kLanes = 16;  ///< floats of the widest vector
+constexpr uint32_t kLanes = 16;        ///< floats of the widest vector
+constexpr uint32_t kRowsTogether = 4;  ///< rows that are read at once where there are no vectors
 
 enum class Order : uint8_t {
   sequential,  ///< element after element, into one sum
@@ -20,15 +21,16 @@ enum class Order : uint8_t {
                ///< one stream
 };
 
-/// Rows of a column: K, and copies of the last row up to whole vectors.
+/// Rows of a column, with vectors: K, and copies of the last row up to whole vectors.
 constexpr uint32_t column_length(uint32_t K) noexcept { return (K + kLanes - 1) / kLanes * kLanes; }
 
-/// Many short rows: with a row in each lane no sum over lanes is needed. The limit keeps what the compiler has to
-/// evaluate within its default limits.
+/// Many short rows: with a row in each lane no sum over lanes is needed. Without vectors, four rows or more: four are
+/// read in one stream. The limit keeps what the compiler has to evaluate within its default limits.
 constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
   constexpr uint32_t kMost = 16384;
+  if (!kHasPacks) return K >= kRowsTogether && K <= kMost / D;
   const bool short_rows = (D < kLanes && K > 4) || (D <= 4 * kLanes && K >= 2 * kLanes);
-  return kHasPacks && short_rows && K <= kMost && column_length(K) <= kMost / D;
+  return short_rows && K <= kMost && column_length(K) <= kMost / D;
 }
 
 constexpr Order order(uint32_t K, uint32_t D) noexcept {
@@ -38,20 +40,38 @@ constexpr Order order(uint32_t K, uint32_t D) noexcept {
   return K == 2 ? Order::two_chunks : Order::lanes;
 }
 
-/// A target set, element by element: element i of row k is values[i * column_length(K) + k].
+/// Where the first element of row k is in columns of K rows, and how far the next is from it. With vectors the whole
+/// set is one block of columns; without, every four rows are, and what is left over stays in rows.
+struct Place {
+  size_t first, stride;
+};
+constexpr Place place_in_columns(uint32_t k, uint32_t K, uint32_t D) noexcept {
+  if (kHasPacks) return {k, column_length(K)};
+  const uint32_t in_four = k % kRowsTogether, four = k - in_four;
+  if (four + kRowsTogether > K) return {size_t{k} * D, 1};
+  return {size_t{four} * D + in_four, kRowsTogether};
+}
+
+/// A target set, element by element.
 template <uint32_t K, uint32_t D, class T = float>
 struct Columns {
-  alignas(64) T values[D * column_length(K)];
+  static constexpr uint32_t kRows = kHasPacks ? column_length(K) : K;
+  alignas(64) T values[D * kRows];
 };
+
+template <uint32_t K, uint32_t D, class T>
+constexpr void put_in_columns(const T* rows, Columns<K, D, T>& columns) noexcept {
+  for (uint32_t k = 0; k < columns.kRows; ++k) {
+    const Place place = place_in_columns(k, K, D);
+    const T* row = rows + (k < K ? k : K - 1) * D;
+    for (uint32_t i = 0; i < D; ++i) columns.values[place.first + i * place.stride] = row[i];
+  }
+}
 
 template <uint32_t K, uint32_t D, class T>
 constexpr Columns<K, D, T> columns_of(const T (&rows)[K * D]) noexcept {
   Columns<K, D, T> columns{};
-  for (uint32_t i = 0; i < D; ++i) {
-    for (uint32_t k = 0; k < column_length(K); ++k) {
-      columns.values[i * column_length(K) + k] = rows[(k < K ? k : K - 1) * D + i];
-    }
-  }
+  put_in_columns(rows, columns);
   return columns;
 }
 

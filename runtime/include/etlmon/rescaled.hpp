@@ -208,7 +208,7 @@ ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
                            Aggregation aggregation) noexcept {
-  if (!all_finite(z, size.dimension())) return packed(kUnmeasured);
+  if (z == nullptr || !all_finite(z, size.dimension())) return packed(kUnmeasured);
   const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
   if constexpr (Metric::kRescales && Aggregation::kNearest) {
     for (uint32_t row = 0; row < set.rows; ++row) {

@@ -92,6 +92,17 @@ ETLMON_INLINE float element(ScaledRows rows, size_t i) noexcept {
   return rounded(rows.scale * static_cast<float>(rows.values[i]));
 }
 
+/// One row of a set in columns.
+template <class G>
+struct Strided {
+  G first;
+  size_t stride;
+};
+template <class G>
+ETLMON_INLINE float element(const Strided<G>& row, size_t i) noexcept {
+  return element(row.first, i * row.stride);
+}
+
 }  // namespace detail
 
 }  // namespace etlmon

@@ -31,15 +31,24 @@ struct Set<true, G> {
   G values;
   uint32_t rows, dimension, stride;
 
+  ETLMON_INLINE Strided<G> elements_of(uint32_t k) const noexcept {
+    const Place place = place_in_columns(k, rows, dimension);
+    return {values + place.first, place.stride};
+  }
+#if defined(ETLMON_HAS_PACKS)
   struct Buffer {
     float elements[4 * kLanes];
   };
-  /// Row k, gathered in `to`.
+  /// Row k, gathered in `to`, for those who read it by vectors.
   ETLMON_INLINE const float* row(uint32_t k, Buffer& to) const noexcept {
-    const uint32_t length = column_length(rows);
-    for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = element(values, i * length + k);
+    const Strided<G> from = elements_of(k);
+    for (uint32_t i = 0; i < dimension; ++i) to.elements[i] = element(from, i);
     return to.elements;
   }
+#else
+  struct Buffer {};
+  ETLMON_INLINE Strided<G> row(uint32_t k, Buffer&) const noexcept { return elements_of(k); }
+#endif
 };
 
 /// Everything about one measurement but its sizes and its rows: the nearest row, the aggregate, what they say together.
@@ -49,8 +58,8 @@ struct Tally {
   Aggregation aggregation;
   uint32_t greatest = 0;
 
-  ETLMON_INLINE void add(float value, uint32_t row) noexcept {
-    const uint32_t bits = observe(value);
+  ETLMON_INLINE void add(float value, uint32_t row) noexcept { add_bits(observe_sum(value), row); }
+  ETLMON_INLINE void add_bits(uint32_t bits, uint32_t row) noexcept {
     nearest.add(bits, row);
     if constexpr (Metric::kWeighted || Metric::kQuadratic) greatest = bits > greatest ? bits : greatest;
     if constexpr (Aggregation::kOfDistances) {
@@ -93,7 +102,7 @@ ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimensio
 }
 
 /// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form. Unknown
-/// where an element of z is not finite.
+/// where z is missing or an element of it is not finite.
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
                                        Aggregation aggregation) noexcept;

@@ -53,14 +53,11 @@ static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
 
 /// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over every continuation.
 inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
-  const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;  // signs of keys: rho.low >= 0
-  const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;   // rho.high < 0
-  const uint32_t settled = (~static_cast<uint32_t>(lower) | static_cast<uint32_t>(upper)) >> 31;
-  return {{},
-          float_of(rho.low),
-          float_of(lower),
-          float_of(upper),
-          satisfied | violated << 1 | Verdict::kDecided | settled << 3};
+  uint32_t status = Verdict::kDecided;
+  if (rho.low >= 0) status += Verdict::kSatisfied;
+  if (rho.high < 0) status += Verdict::kViolated;
+  if ((~lower | upper) < 0) status += Verdict::kFinal;  // lower >= 0 || upper < 0
+  return {{}, float_of(rho.low), float_of(lower), float_of(upper), status};
 }
 
 /// About a position whose horizon has been seen: the only doubt left is a missing sample.
