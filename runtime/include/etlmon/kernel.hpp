@@ -22,7 +22,7 @@ constexpr uint32_t weights_of() noexcept {
 
 /// A set that is a constant of the program, as the machine likes it best.
 template <class Metric, uint32_t K, uint32_t D, const auto& Targets>
-struct Kept {
+struct LaidOut {
   static_assert(sizeof(Targets) / sizeof(Targets[0]) == K * D, "K rows of D elements");
   static constexpr bool kInColumns = in_columns(K, D) && !Metric::kQuadratic;
   static constexpr const auto* values() noexcept {
@@ -43,19 +43,19 @@ struct Kept {
 /// Targets may be float32, or float16 as their bits, which are widened as they are read: the same distances.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure(const float* z, const float* weights = nullptr) noexcept {
-  using Kept = detail::Kept<Metric, K, D, Targets>;
-  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Kept::kInColumns>(detail::unforeseen(z), Kept::values(),
-                                                                                  weights, {}, {});
+  using Layout = detail::LaidOut<Metric, K, D, Targets>;
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Layout::kInColumns>(detail::unforeseen(z),
+                                                                                    Layout::values(), weights, {}, {});
 }
 
 namespace detail {
 /// The same, or unmeasured where z is missing, which is left to what has the rare cases: the least code.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure_unless_missing(const float* z, const float* weights) noexcept {
-  using Kept = Kept<Metric, K, D, Targets>;
+  using Layout = LaidOut<Metric, K, D, Targets>;
   using Size = Fixed<K, D>;
-  constexpr bool kInColumns = Kept::kInColumns;
-  const auto* rows = Kept::values();
+  constexpr bool kInColumns = Layout::kInColumns;
+  const auto* rows = Layout::values();
   return unpacked(z == nullptr
                       ? measure_again<Metric, Aggregation, Size, kInColumns>(z, rows, weights, Size{}, Aggregation{})
                       : packed(best<Metric, Aggregation, Size, kInColumns>(z, rows, weights, Size{}, Aggregation{})));
@@ -101,9 +101,9 @@ ETLMON_INLINE Measured measure(const Direction<D>& z) noexcept {
 /// The same for targets of int8, each worth `scale` times itself, rounded once.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& Targets>
 ETLMON_INLINE Measured measure_scaled(const float* z, float scale, const float* weights = nullptr) noexcept {
-  using Kept = detail::Kept<Metric, K, D, Targets>;
-  const detail::ScaledRows rows{Kept::values(), scale};
-  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Kept::kInColumns>(z, rows, weights, {}, {});
+  using Layout = detail::LaidOut<Metric, K, D, Targets>;
+  const detail::ScaledRows rows{Layout::values(), scale};
+  return detail::best<Metric, Aggregation, detail::Fixed<K, D>, Layout::kInColumns>(z, rows, weights, {}, {});
 }
 
 /// The same, bit for bit, for targets that are not constants.
