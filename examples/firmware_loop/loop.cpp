@@ -9,44 +9,12 @@
 #include "gauge.hpp"
 #include "grasp.hpp"
 #include "hover.hpp"
+#include "line.hpp"
 #include "recording.hpp"
 
 namespace {
 
 constexpr uint32_t kEpisodes = 50, kSteps = 50;
-
-/// A line of text, put together without a library.
-class Line {
-public:
-    explicit Line(const char* name) noexcept {
-        while (*name != 0) put(*name++);
-    }
-    void number(uint32_t x) noexcept {
-        put(' ');
-        for (int shift = 28; shift >= 0; shift -= 4) put("0123456789abcdef"[(x >> shift) & 15]);
-    }
-    void verdict(const etlmon::Verdict& verdict) noexcept {
-        number(verdict.status);
-        number(bits(verdict.lower));
-        number(bits(verdict.robustness));
-        number(bits(verdict.upper));
-    }
-    void write() noexcept {
-        put('\n');
-        put(0);
-        board_write(text_);
-    }
-
-private:
-    void put(char c) noexcept { text_[length_++] = c; }
-    static uint32_t bits(const float& x) noexcept {
-        uint32_t b = 0;
-        __builtin_memcpy(&b, &x, sizeof b);
-        return b;
-    }
-    char text_[160];
-    uint32_t length_ = 0;
-};
 
 void show(const grasp::Verdicts& v, Line& to) noexcept {
     to.verdict(v.grasped);

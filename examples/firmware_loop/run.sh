@@ -1,16 +1,17 @@
 #!/bin/sh
-# run.sh OUT BOARD: runs what build.sh made, in QEMU where the board is one, and prints what the loop writes.
+# run.sh OUT BOARD [PROGRAM]: runs what build.sh made, loop or interrupts, in QEMU where the board is one, and prints what
+# it writes.
 set -eu
-out=$1 board=$2
-text=$out/$board.txt
+out=$1 board=$2 program=${3:-loop}
+name=$out/${board}_$program
 emulate() {
-    "$@" -nographic -monitor none -serial none -icount shift=0 -chardev "file,id=text,path=$text" \
-        -semihosting-config enable=on,target=native,chardev=text -kernel "$out/$board.elf" </dev/null
+    "$@" -nographic -monitor none -serial none -icount shift=0 -chardev "file,id=text,path=$name.txt" \
+        -semihosting-config enable=on,target=native,chardev=text -kernel "$name.elf" </dev/null
 }
 case $board in
-host) "$out/host" >"$text" ;;
+host) "$name" >"$name.txt" ;;
 cortex_m4) emulate qemu-system-arm -M mps2-an386 ;;
 rv32) emulate qemu-system-riscv32 -M virt -bios none ;;
 *) echo "run.sh: no board $board" >&2; exit 2 ;;
 esac
-cat "$text"
+cat "$name.txt"

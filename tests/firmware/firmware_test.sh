@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and an RV32IMAFC in QEMU answer as on the
 # host: to the bit as a host that adds in the same order, within the stated bounds as any other. And what they are made of: no library
-# symbol that is not allowed, no exception tables, no data that needs initialising, code within its limit.
+# symbol that is not allowed, no exception tables, no data that needs initialising, code within its limit. And interrupts at any instruction
+# of a step.
 set -euo pipefail
 etlc=$1 source=$2 cxx=$3
 loop=$source/examples/firmware_loop
@@ -17,15 +18,22 @@ for board in cortex_m4 rv32 host; do
 done
 "$cxx" -std=c++17 -O1 -I "$runtime" "$source/tests/firmware/compare.cpp" -o "$box/compare"
 for board in cortex_m4 rv32; do
-    "$box/compare" "$box/$board.txt" "$box/host.txt" || fail "$board and the host differ"
+    "$box/compare" "$box/${board}_loop.txt" "$box/host_loop.txt" || fail "$board and the host differ"
 done
 verdicts() { grep -v instructions "$1"; }
-cmp <(verdicts "$box/cortex_m4.txt") <(verdicts "$box/rv32.txt") || fail "the boards differ"
+cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/rv32_loop.txt") || fail "the boards differ"
 if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then  # scalars, one sum a row, fused: what the boards do
     CXX=$cxx HOST_FLAGS="-DETLMON_NO_PACKS -mfma" sh "$loop/build.sh" "$etlc" "$runtime" "$box" host
     sh "$loop/run.sh" "$box" host >/dev/null
-    cmp <(verdicts "$box/cortex_m4.txt") <(verdicts "$box/host.txt") || fail "the boards and a host without vectors differ"
+    cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/host_loop.txt") || fail "the boards and a host without vectors differ"
 fi
+
+# A timer's interrupt judges what the loop measures, and fills what the loop reads: no verdict is another than without.
+for board in cortex_m4 rv32; do
+    timeout 120 sh "$loop/run.sh" "$box" "$board" interrupts
+    awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ } END { exit good != 2 || NR != 2 }' \
+        "$box/${board}_interrupts.txt" || fail "$board: interrupts change verdicts, or hardly any came during a step"
+done
 
 # Each monitor alone, as a program would compile it.
 objects() {  # PREFIX FLAG...: what the object of a monitor refers to and holds
@@ -54,7 +62,7 @@ END
 }
 objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f
 objects arm-none-eabi- -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
-grep instructions "$box/rv32.txt"
+grep instructions "$box/rv32_loop.txt"
 
 # One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes; beside it what only distances that
 # overflow, vanish or are exactly 0 need.

@@ -1,6 +1,8 @@
-// A program of an operating system.
+// A program of an operating system; its interrupts are a timer's signal.
+#include <signal.h>
 #include <stdio.h>
 #include <stdlib.h>
+#include <sys/time.h>
 
 #include "board.hpp"
 
@@ -12,4 +14,29 @@ void board_exit(int status) noexcept {
 }
 unsigned board_instructions() noexcept {
     return 0;
+}
+
+namespace {
+void (*on_tick)() = nullptr;
+void allow(int how) noexcept {
+    sigset_t alarm;
+    sigemptyset(&alarm);
+    sigaddset(&alarm, SIGALRM);
+    sigprocmask(how, &alarm, nullptr);
+}
+}  // namespace
+
+void board_start_interrupts(void (*handler)()) noexcept {
+    on_tick = handler;
+    struct sigaction action = {};
+    action.sa_handler = [](int) { on_tick(); };
+    sigaction(SIGALRM, &action, nullptr);
+    const itimerval period = {{0, 50}, {0, 50}};
+    setitimer(ITIMER_REAL, &period, nullptr);
+}
+BoardInterruptsOff::BoardInterruptsOff() noexcept {
+    allow(SIG_BLOCK);
+}
+BoardInterruptsOff::~BoardInterruptsOff() noexcept {
+    allow(SIG_UNBLOCK);
 }

@@ -1,8 +1,10 @@
 // An RV32IMAFC without an operating system (QEMU's virt machine): start, and semihosting for text.
-// RISC-V Semihosting Specification 0.4; RISC-V Privileged Architecture, 3.1.6.
+// RISC-V Semihosting Specification 0.4; RISC-V Privileged Architecture, 3.1.6 to 3.1.9 and 3.2.1. The compiler saves
+// what an interrupt handler changes, floating-point registers included: that is what its attribute is for.
 #include <stdint.h>
 
 #include "board.hpp"
+#include "intervals.hpp"
 
 extern "C" {
 extern uint32_t bss_start, bss_end;
@@ -41,6 +43,29 @@ uint32_t semihost(uint32_t operation, const void* argument) noexcept {
     return a0;
 }
 
+constexpr uint32_t kTimerInterrupts = 1u << 7, kInterrupts = 1u << 3;  // in mie and in mstatus
+
+void (*on_tick)() = nullptr;
+Intervals intervals;
+
+/// The next interrupt, that many ticks of the timer from now.
+void interrupt_after(uint32_t ticks) noexcept {
+    auto* time = reinterpret_cast<volatile uint64_t*>(0x0200bff8);
+    auto* compare = reinterpret_cast<volatile uint32_t*>(0x02004000);
+    const uint64_t then = *time + ticks;
+    compare[1] = 0xffffffff;  // none between the two assignments
+    compare[0] = static_cast<uint32_t>(then);
+    compare[1] = static_cast<uint32_t>(then >> 32);
+}
+
+__attribute__((interrupt("machine"), aligned(4))) void tick() noexcept {
+    uint32_t cause = 0;
+    __asm__ volatile("csrr %0, mcause" : "=r"(cause));
+    if (cause != 0x80000007) board_exit(2);
+    on_tick();
+    interrupt_after(intervals.next());
+}
+
 }  // namespace
 
 extern "C" {
@@ -67,4 +92,17 @@ unsigned board_instructions() noexcept {
     unsigned count = 0;
     __asm__ volatile("csrr %0, minstret" : "=r"(count));
     return count;
+}
+
+void board_start_interrupts(void (*handler)()) noexcept {
+    on_tick = handler;
+    __asm__ volatile("csrw mtvec, %0" : : "r"(tick));
+    interrupt_after(intervals.next());
+    __asm__ volatile("csrs mie, %0\n csrs mstatus, %1" : : "r"(kTimerInterrupts), "r"(kInterrupts) : "memory");
+}
+BoardInterruptsOff::BoardInterruptsOff() noexcept {
+    __asm__ volatile("csrc mstatus, %0" : : "r"(kInterrupts) : "memory");
+}
+BoardInterruptsOff::~BoardInterruptsOff() noexcept {
+    __asm__ volatile("csrs mstatus, %0" : : "r"(kInterrupts) : "memory");
 }

@@ -1,0 +1,41 @@
+// Lines of text that need no library.
+// Takes: a name, numbers, verdicts. Gives: one line to the board: the name, numbers in hexadecimal, of a verdict its
+// status, lower bound, robustness and upper bound, as the bits of the floats.
+#pragma once
+
+#include <stdint.h>
+
+#include "board.hpp"
+#include "etlmon/verdict.hpp"
+
+class Line {
+public:
+    explicit Line(const char* name) noexcept {
+        while (*name != 0) put(*name++);
+    }
+    void number(uint32_t x) noexcept {
+        put(' ');
+        for (int shift = 28; shift >= 0; shift -= 4) put("0123456789abcdef"[(x >> shift) & 15]);
+    }
+    void verdict(const etlmon::Verdict& verdict) noexcept {
+        number(verdict.status);
+        number(bits(verdict.lower));
+        number(bits(verdict.robustness));
+        number(bits(verdict.upper));
+    }
+    void write() noexcept {
+        put('\n');
+        put(0);
+        board_write(text_);
+    }
+
+private:
+    void put(char c) noexcept { text_[length_++] = c; }
+    static uint32_t bits(const float& x) noexcept {
+        uint32_t b = 0;
+        __builtin_memcpy(&b, &x, sizeof b);
+        return b;
+    }
+    char text_[160];
+    uint32_t length_ = 0;
+};
