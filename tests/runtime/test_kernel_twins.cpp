@@ -77,6 +77,21 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
     expect_nearest_twins<1, 384>();
     expect_nearest_twins<17, 384>();
     expect_nearest_twins<8, 1000>();
+    // In blocks of 64, 32 or 16 elements: some without whole blocks, some with vectors after them, some with a rest.
+    expect_nearest_twins<1, 16>();
+    expect_nearest_twins<1, 17>();
+    expect_nearest_twins<1, 32>();
+    expect_nearest_twins<1, 63>();
+    expect_nearest_twins<1, 64>();
+    expect_nearest_twins<1, 120>();
+    expect_nearest_twins<2, 16>();
+    expect_nearest_twins<2, 48>();
+    expect_nearest_twins<2, 65>();
+    expect_nearest_twins<5, 16>();
+    expect_nearest_twins<5, 20>();
+    expect_nearest_twins<300, 80>();
+    expect_twins<etlmon::Linf, etlmon::Min, 1, 48>(MetricId::linf, {});
+    expect_twins<etlmon::Angular, etlmon::Min, 1, 48>(MetricId::angular, {});
     expect_twins<etlmon::Cosine, etlmon::Min, 2, 7>(MetricId::cosine, {});
     expect_twins<etlmon::Cosine, etlmon::Min, 17, 33>(MetricId::cosine, {});
 }

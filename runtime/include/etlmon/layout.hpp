@@ -102,6 +102,11 @@ struct Fixed {
   }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
+  /// Of a row in blocks of C vectors of kLanes: whether there are such blocks, how many vectors follow at most, and
+  /// whether less than one is left.
+  static constexpr bool has_blocks(uint32_t C) noexcept { return D >= C * kLanes; }
+  static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return D / kLanes % C; }
+  static constexpr bool has_rest() noexcept { return D % kLanes != 0; }
 };
 /// Rows that begin at multiples of 64 bytes, as in a file of targets.
 constexpr uint32_t padded(uint32_t D) noexcept { return (D + kLanes - 1) / kLanes * kLanes; }
@@ -119,6 +124,14 @@ struct Sizes {
   static constexpr bool is_small(bool) noexcept { return false; }
   static constexpr bool has_streams(bool) noexcept { return false; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
+  static constexpr bool has_blocks(uint32_t) noexcept { return true; }
+  static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return C - 1; }
+  static constexpr bool has_rest() noexcept { return true; }
+};
+/// One row of a set of which only is_short() is known to the compiler.
+template <bool Short>
+struct RowSize : Sizes {
+  static constexpr bool is_short() noexcept { return Short; }
 };
 
 }  // namespace detail

@@ -26,7 +26,7 @@ ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
   return greatest;
 }
 
-/// Bits of |z - g|. Short, here and below: as of one_row.
+/// Bits of |z - g|. Short, here and below: of rows that Size::is_short() says.
 template <bool Short>
 class RescaledL2 {
  public:
@@ -35,10 +35,10 @@ class RescaledL2 {
 
   template <class G>
   uint32_t row(G g) const noexcept {
-    const uint32_t greatest = observe(baseline::one_row<Linf, Short>({}, z_, g, z_, dimension_));
+    const uint32_t greatest = observe(baseline::one_row<Linf>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
     const PowerOfTwo power = power_of_two(greatest);
-    const float square = baseline::one_row<ScaledL2Sq, Short>(power, z_, g, z_, dimension_);
+    const float square = baseline::one_row<ScaledL2Sq>(power, z_, g, z_, RowSize<Short>{{1, dimension_}});
     return observe(rounded(rounded(square_root(square)) * power.up));
   }
 
@@ -149,7 +149,7 @@ class Unscaled {
   static constexpr bool known() noexcept { return true; }
   template <class G>
   uint32_t row(G g) const noexcept {
-    return observe(baseline::one_row<Metric, Short>({}, z_, g, z_, dimension_));
+    return observe(baseline::one_row<Metric>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
   }
 
  private:
@@ -202,7 +202,7 @@ ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t
   typename Set<InColumns, G>::Buffer buffer;
   const auto row = set.row(k, buffer);
   if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
-  return observe(baseline::one_row<Linf, Short>({}, z, row, z, set.dimension)) == 0;
+  return observe(baseline::one_row<Linf>({}, z, row, z, RowSize<Short>{{1, set.dimension}})) == 0;
 }
 
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
