@@ -17,9 +17,9 @@ inline void sweep_caches() {
     asm volatile("" ::: "memory");
 }
 
-/// Nanoseconds of a call after the caches were swept, less the cost of reading the clock: the median of `rounds` calls.
+/// Nanoseconds of a call after the caches were swept, less the cost of reading the clock.
 template <class Call>
-double cold_call(int rounds, const Call& call) {
+double cold_call(const Call& call) {
     using Clock = std::chrono::steady_clock;
     const auto timed = [](const auto& work) {
         asm volatile("" ::: "memory");
@@ -28,15 +28,10 @@ double cold_call(int rounds, const Call& call) {
         asm volatile("" ::: "memory");
         return std::chrono::duration<double, std::nano>(Clock::now() - start).count();
     };
-    std::vector<double> took;
-    for (int round = 0; round < std::max(1, rounds); ++round) {
-        sweep_caches();
-        double clock = timed([] {});
-        for (int i = 0; i < 20; ++i) clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
-        took.push_back(timed(call) - clock);
-    }
-    std::nth_element(took.begin(), took.begin() + static_cast<std::ptrdiff_t>(took.size() / 2), took.end());
-    return took[took.size() / 2];
+    sweep_caches();
+    double clock = timed([] {});
+    for (int i = 0; i < 20; ++i) clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
+    return timed(call) - clock;
 }
 
 }  // namespace bench

@@ -2,7 +2,7 @@
 // Usage: bench_distances [--json FILE] [--rounds N] [--cold]
 // Contestants take turns within each round, so that a change of the machine's speed meets all of them; processor time,
 // of which the median round counts. Answers are compared first: a contestant that is wrong is an error, not a result.
-// --cold: a round is one call, after other data went through the caches, by the clock on the wall.
+// --cold: a turn is one call, after other data went through the caches, by the clock on the wall.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
@@ -17,6 +17,7 @@
 #include "aligned.hpp"
 #include "cells.hpp"
 #include "cold.hpp"
+#include "median.hpp"
 
 namespace {
 
@@ -84,6 +85,15 @@ struct Competitor {
     std::vector<double> rounds;  ///< ns per call
 };
 
+double warm_ns(const Competitor& c, const Data& data) {
+    return seconds(c.entry, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls);
+}
+
+double cold_ns(const Competitor& c, const Data& data, const float* point) {
+    volatile float sink = 0;
+    return cold_call([&] { sink = c.entry.nearest(point, data.targets(), c.state); });
+}
+
 /// ns per call of every contestant, median over the rounds.
 std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants, int rounds, bool cold) {
     const Data data(cell);
@@ -100,29 +110,17 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
                 std::exit(1);
             }
         }
-        if (cold) {
-            volatile float sink = 0;
-            std::uint32_t i = 0;
-            competitors.push_back({c.name, *entry, state, 1, {cold_call(rounds, [&] {
-                                       sink = entry->nearest(data.points()[i++], data.targets(), state);
-                                   })}});
-            continue;
-        }
         std::uint64_t calls = 1;
         constexpr double kRound = 2e-3;
-        while (seconds(*entry, data, state, calls) < kRound) calls *= 2;
+        while (!cold && seconds(*entry, data, state, calls) < kRound) calls *= 2;
         competitors.push_back({c.name, *entry, state, calls, {}});
     }
-    for (int round = 0; round < rounds && !cold; ++round) {
-        for (Competitor& c : competitors)
-            c.rounds.push_back(seconds(c.entry, data, c.state, c.calls) * 1e9 / static_cast<double>(c.calls));
+    for (int round = 0; round < rounds; ++round) {
+        const float* point = data.points()[static_cast<std::size_t>(round)];
+        for (Competitor& c : competitors) c.rounds.push_back(cold ? cold_ns(c, data, point) : warm_ns(c, data));
     }
     std::map<std::string, double> medians;
-    for (Competitor& c : competitors) {
-        const std::size_t middle = c.rounds.size() / 2;
-        std::nth_element(c.rounds.begin(), c.rounds.begin() + static_cast<std::ptrdiff_t>(middle), c.rounds.end());
-        medians[c.name] = c.rounds[middle];
-    }
+    for (const Competitor& c : competitors) medians[c.name] = median(c.rounds);
     return medians;
 }
 

@@ -14,10 +14,12 @@
 #include "aligned.hpp"
 #include "etlmon/bytes.hpp"
 #include "etlmon/widen.hpp"
+#include "median.hpp"
 
 namespace {
 
 using namespace etlmon;
+using bench::median;
 using detail::Fixed;
 
 double processor_seconds() {
@@ -125,11 +127,6 @@ void compare(int rounds) {
         if (can_widen()) time(f16_only, times[3]), time(i8_only, times[4]);
     }
     static_cast<void>(sink);
-    const auto median = [&](std::vector<double>& t) {
-        if (t.empty()) return 0.0;
-        std::nth_element(t.begin(), t.begin() + rounds / 2, t.end());
-        return t[static_cast<size_t>(rounds / 2)];
-    };
     const double of_f32 = median(times[0]), of_f16 = median(times[1]), of_i8 = median(times[2]);
     const double of_integers = median(times[5]);
     std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16,
@@ -158,9 +155,8 @@ void widen_embeddings(int rounds) {
         time([] { widen_f16(halves, to, D); }, times[0]);
         time([] { widen_i8(bytes, 0.01F, to, D); }, times[1]);
     }
-    for (auto& t : times) std::nth_element(t.begin(), t.begin() + rounds / 2, t.end());
-    std::printf("An embedding of %u elements to float32: %.1f from float16, %.1f from int8\n", D,
-                times[0][static_cast<size_t>(rounds / 2)], times[1][static_cast<size_t>(rounds / 2)]);
+    std::printf("An embedding of %u elements to float32: %.1f from float16, %.1f from int8\n", D, median(times[0]),
+                median(times[1]));
 }
 
 }  // namespace

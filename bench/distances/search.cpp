@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "etlmon/search.hpp"
+#include "median.hpp"
 
 namespace {
 
@@ -62,11 +63,6 @@ void check(bool equal) {
     std::exit(1);
 }
 
-double median(std::vector<double> x) {
-    std::nth_element(x.begin(), x.begin() + static_cast<std::ptrdiff_t>(x.size() / 2), x.end());
-    return x[x.size() / 2];
-}
-
 template <class Metric, std::uint32_t K, std::uint32_t D>
 void measure(const char* metric, const float* rows, const char* about, float pace, int steps, int rounds) {
     const std::vector<float> trace = make_trace<K, D>(rows, steps, pace);
@@ -87,7 +83,7 @@ void measure(const char* metric, const float* rows, const char* about, float pac
         search_ns.push_back((processor_seconds() - start) * 1e9 / steps);
         check(std::memcmp(plain.data(), found.data(), plain.size() * sizeof(etlmon::Measured)) == 0);
     }
-    const double a = median(plain_ns), b = median(search_ns);
+    const double a = bench::median(plain_ns), b = bench::median(search_ns);
     std::printf("%-7s %4u x %-7u %-34s %14.0f %14.0f %8.3f\n", metric, D, K, about, a, b, b / a);
     std::fflush(stdout);
 }
