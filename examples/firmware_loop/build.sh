@@ -17,15 +17,11 @@ rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp3
 for board in "$@"; do
     source=$here/boards/$board
     for program in loop interrupts; do
-        object=$out/${board}_$program.o
+        sources="$here/$program.cpp $source.cpp" image=$out/${board}_$program
         case $board in
-        host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror -O2 ${HOST_FLAGS:-} $includes "$here/$program.cpp" "$source.cpp" -o "$out/host_$program" ;;
-        cortex_m4)
-            $cortex_m4 -c "$here/$program.cpp" -o "$object"
-            $cortex_m4 -nostartfiles -T "$source.ld" "$object" "$source.cpp" -lm -o "$out/${board}_$program.elf" ;;
-        rv32)
-            $rv32 -c "$here/$program.cpp" -o "$object"
-            $rv32 -nostdlib -nostartfiles -T "$source.ld" -Wl,--no-warn-rwx-segments "$object" "$source.cpp" -lm -lc -lgcc -o "$out/${board}_$program.elf" ;;
+        host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror -O2 ${HOST_FLAGS:-} $includes $sources -o "$image" ;;
+        cortex_m4) $cortex_m4 -nostartfiles -T "$source.ld" $sources -lm -o "$image.elf" ;;
+        rv32) $rv32 -nostdlib -nostartfiles -T "$source.ld" -Wl,--no-warn-rwx-segments $sources -lm -lc -lgcc -o "$image.elf" ;;
         *) echo "build.sh: no board $board" >&2; exit 2 ;;
         esac
     done

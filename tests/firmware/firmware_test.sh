@@ -64,8 +64,8 @@ objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32
 objects arm-none-eabi- -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
 grep instructions "$box/rv32_loop.txt"
 
-# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes; beside it what only distances that
-# overflow, vanish or are exactly 0 need.
+# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes; beside it what only a missing
+# embedding and distances that overflow, vanish or are exactly 0 need.
 read -r step reset rare <<<"$(arm-none-eabi-nm -S -C --radix=d "$box/grasp.o" | awk '
     $3 !~ /[tTwW]/ { next } $4 ~ /^reset/ { r += $2; next } /measure_again|Rescaled|all_finite/ { c += $2; next } { s += $2 } END { print s, r, c }')"
 echo "grasp on a Cortex-M4F: step $step bytes, reset $reset, rare cases $rare"

@@ -52,8 +52,8 @@ Intervals intervals;
 void interrupt_after(uint32_t ticks) noexcept {
     auto* time = reinterpret_cast<volatile uint64_t*>(0x0200bff8);
     auto* compare = reinterpret_cast<volatile uint32_t*>(0x02004000);
-    const uint64_t then = *time + ticks;
-    compare[1] = 0xffffffff;  // none between the two assignments
+    const uint64_t then = *time + ticks;  // two reads: the low half wraps after seven minutes, which no run lasts
+    compare[1] = 0xffffffff;              // none between the two assignments
     compare[0] = static_cast<uint32_t>(then);
     compare[1] = static_cast<uint32_t>(then >> 32);
 }
