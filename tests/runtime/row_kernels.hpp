@@ -4,9 +4,27 @@
 
 #include <type_traits>
 
+#include "guarded.hpp"
 #include "kernel_versions.hpp"
 
 namespace kernel_cases {
+
+/// What a kernel reads of a case, each piece before memory that nothing may touch.
+class GuardedCase {
+public:
+    const float* z(const exact::Case& c) { return z_.copy(c.z.data(), c.z.size()); }
+    const float* weights(const exact::Case& c) { return weights_.copy(c.weights.data(), c.weights.size()); }
+    template <class T>
+    const T* rows(const T* from, std::size_t elements) {
+        return rows_.copy(from, elements);
+    }
+    etlmon::detail::ScaledRows rows(etlmon::detail::ScaledRows from, std::size_t elements) {
+        return {rows_.copy(from.values, elements), from.scale};
+    }
+
+private:
+    Guarded z_, weights_, rows_;
+};
 
 template <class Metric, class Aggregation, class G>
 std::vector<RowVersion<G>> row_versions_of() {
@@ -16,8 +34,10 @@ std::vector<RowVersion<G>> row_versions_of() {
             std::vector<float> smallest(aggregate.n);
             Aggregation aggregation{};
             if constexpr (std::is_same_v<Aggregation, etlmon::KthOf>) aggregation = {smallest.data(), aggregate.n, 0};
-            return etlmon::detail::unpacked(
-                run(c.z.data(), rows, c.weights.data(), {c.rows, c.dimension}, aggregation));
+            static GuardedCase guarded;
+            const std::size_t elements = std::size_t{c.rows} * c.dimension;
+            return etlmon::detail::unpacked(run(guarded.z(c), guarded.rows(rows, elements), guarded.weights(c),
+                                                {c.rows, c.dimension}, aggregation));
         };
         found.push_back({version.name, version.fused, measure});
     }

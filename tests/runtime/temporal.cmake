@@ -2,9 +2,8 @@
 set(temporal_sources test_adaptation.cpp test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_truth.cpp test_temporal_values.cpp test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 
-etlc_test(test_temporal SOURCES ${temporal_sources} LIBRARIES etlmon::etlmon)
-set_target_properties(test_temporal PROPERTIES CXX_STANDARD 17)
-target_compile_options(test_temporal PRIVATE ${temporal_warnings})
+etlc_test(test_temporal RUNTIME SOURCES ${temporal_sources} LIBRARIES etlmon::etlmon)
+target_compile_options(test_temporal PRIVATE ${temporal_warnings} -O2)
 
 # etlc_temporal_variant(NAME option...): the same tests under these options, as one test.
 function(etlc_temporal_variant name)

@@ -1,0 +1,1 @@
+// Compiled for its precompiled headers alone: compiler/CMakeLists.txt lists them.
