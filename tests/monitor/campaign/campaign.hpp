@@ -19,6 +19,7 @@ struct Effort {
     int pairs = 100'000;   ///< of a formula and a trace, for the evaluator
     int planned = 20'000;  ///< formulas that are only planned, for the share that is refused
     int compiled = 2'000;  ///< formulas in compiled classes
+    int builds = 4;        ///< of each: as is, -ffast-math, -Os by clang++, with sanitizers
     std::size_t longest = 200;
     bool show_refused = false;
 };

@@ -17,7 +17,14 @@ constexpr int kMonitorsPerClass = 20;
 constexpr int kClassesPerProgram = 4;
 constexpr int kShrinkingTries = 150;  // each is a run of the compiler
 constexpr plan::Limits kRoomy{64U << 20U, 64U << 20U, 256U << 20U};
-const Build kBuild{"Gcc", "g++", "-O1"};
+/// Every program is made once with each: what flags may change is not what a verdict is.
+const std::vector<Build>& builds() {
+    static const std::vector<Build> all{{"Gcc", "g++", "-O1"},
+                                        {"GccFastMath", "g++", "-O2 -ffast-math"},
+                                        {"ClangSmall", "clang++", "-Os"},
+                                        {"GccSanitized", "g++", ETLC_GCC_SANITIZERS}};
+    return all;
+}
 
 /// The spec without the monitors that are refused, each under the usual limits for itself.
 std::string without_refused(const std::string& spec, check::Values values) {
@@ -54,12 +61,12 @@ std::optional<std::string> mismatch_of(const check::Model& model, check::Values 
 }
 
 /// What the first instance of a program of this one class says on the trace.
-Trial trial_on(check::Values values) {
-    return [values](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+Trial trial_on(check::Values values, const Build& build) {
+    return [values, build](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
         const auto model = load(spec);
         if (!model) return {};
         GeneratedProgram program("campaign_shrinking");
-        if (!program.add(*model, values) || !program.compile({"Shrinking", "g++", "-O0"})) return "it does not compile";
+        if (!program.add(*model, values) || !program.compile(build)) return "it does not compile";
         const auto result = program.run({{0, trace, trace}});
         if (result.answers.size() != 1) return "it does not run";
         return mismatch_of(*model, values, trace, result.answers[0][0]);
@@ -67,7 +74,8 @@ Trial trial_on(check::Values values) {
 }
 
 void compare(const GeneratedProgram& program, const std::vector<check::Values>& values,
-             const std::vector<Request>& requests, const GeneratedProgram::Result& result, Tally& tally) {
+             const std::vector<Request>& requests, const GeneratedProgram::Result& result, const Build& build,
+             Tally& tally) {
     std::vector<bool> failed(program.size());
     for (std::size_t n = 0; n < result.answers.size(); ++n) {
         const check::Model& model = program.model(requests[n].spec);
@@ -77,8 +85,9 @@ void compare(const GeneratedProgram& program, const std::vector<check::Values>& 
             const auto mismatch = mismatch_of(model, of, trace, result.answers[n][static_cast<std::size_t>(run)]);
             if (!mismatch) continue;
             failed[requests[n].spec] = true;
-            tally.findings.push_back(shrink({std::string(model.file.text()), trace, "compiled: " + *mismatch},
-                                            trial_on(of), kShrinkingTries));
+            const std::string what = fmt::format("compiled, {}: {}", build.name, *mismatch);
+            tally.findings.push_back(
+                shrink({std::string(model.file.text()), trace, what}, trial_on(of, build), kShrinkingTries));
         }
     }
 }
@@ -100,13 +109,17 @@ int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& 
             requests.push_back(request_for(*model, tried, static_cast<std::uint32_t>(program.size() - 1), t));
     }
     if (requests.empty()) return 0;
-    if (!program.compile(kBuild)) {
-        tally.findings.push_back(
-            {std::string(program.model(0).file.text()), {}, "a program with this spec does not compile"});
+    for (int n = 0; n < std::min<int>(effort.builds, static_cast<int>(builds().size())); ++n) {
+        const Build& build = builds()[static_cast<std::size_t>(n)];
+        if (program.compile(build)) {
+            compare(program, values, requests, program.run(requests), build, tally);
+            continue;
+        }
+        tally.findings.push_back({std::string(program.model(0).file.text()),
+                                  {},
+                                  "a program with this spec does not compile: " + build.name});
         return 0;
     }
-    const auto result = program.run(requests);
-    compare(program, values, requests, result, tally);
     return monitors;
 }
 

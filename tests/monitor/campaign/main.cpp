@@ -47,8 +47,10 @@ int report(const Tally& tally) {
     good &= show_refused("prefix, windows to 6", tally.short_windows, kMayBeRefused);
     good &= show_refused("sliding", tally.sliding, kMayBeRefused);
     good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
-    fmt::print("{} pairs of a formula and a trace evaluated, {} formulas compiled: {} mismatches\n", tally.pairs,
-               tally.compiled, tally.findings.size());
+    fmt::print(
+        "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds: "
+        "{} mismatches\n",
+        tally.pairs, tally.compiled, effort.builds, tally.findings.size());
     good = good && tally.findings.empty();
     // A spec that does not load or a class that does not compile is a failure of GoogleTest's, outside of any test.
     good = good && !testing::UnitTest::GetInstance()->ad_hoc_test_result().Failed();
@@ -64,6 +66,10 @@ int main(int argc, char** argv) {
     app.add_option("--pairs", effort.pairs, "formula/trace pairs for the evaluator")->capture_default_str();
     app.add_option("--planned", effort.planned, "formulas that are only planned")->capture_default_str();
     app.add_option("--compiled", effort.compiled, "formulas in compiled classes")->capture_default_str();
+    app.add_option("--builds", effort.builds,
+                   "of compiled classes: 1 as is, 2 also -ffast-math, 3 -Os by clang++, 4 sanitizers")
+        ->check(CLI::Range(1, 4))
+        ->capture_default_str();
     app.add_option("--longest", effort.longest, "steps of the longest trace")->capture_default_str();
     app.add_option("--seed", effort.seed, "another campaign")->capture_default_str();
     app.add_flag("--show-refused", effort.show_refused, "print each formula that is refused");
