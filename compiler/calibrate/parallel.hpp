@@ -1,25 +1,33 @@
 // Episodes, several at a time.
 // Takes: what reads one episode, a copy for every thread. Gives: what it made of each, in the order of the paths. Keeps
-// true: the order, and which failures are reported, do not depend on the number of threads.
+// true: the order, and which failures are reported, do not depend on the number of threads. Threads that cannot be
+// made are done without, and so are those for which memory is too short, as long as one can work.
 #pragma once
 
 #include <algorithm>
 #include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
-#include <thread>
+#include <string>
 #include <vector>
 
-#include "calibrate/calibrate.hpp"
 #include "data/file.hpp"
+#include "diag/diag.hpp"
 
 namespace etlc::calibrate {
 
 inline constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
 
+/// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at most `most`, and no
+/// more than can be started. All have returned at the end. Gives: the first exception that ended one of them.
+std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
+
 /// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an episode cannot be
-/// read: the sink then says why.
-template <class T, class Make>
+/// read: the sink then says why. Of the request it uses `jobs` and `progress`.
+template <class T, class Request, class Make>
 std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths, const Request& request,
                                             diag::Sink& sink, Make make) {
     std::vector<std::optional<diag::Result<T>>> results(paths.size());
@@ -29,17 +37,14 @@ std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& path
     const auto work = [&] {
         const auto reader = make();
         for (std::size_t i = next++; i < paths.size(); i = next++) {
-            results[i].emplace(reader->score(paths[i]));
+            results[i].emplace(data::within_memory([&] { return reader->score(paths[i]); }));
             const std::lock_guard lock(reporting);
             ++done;
             if (request.progress) request.progress(done, paths.size());
         }
     };
-    const std::size_t cores = std::max(1U, request.jobs > 0 ? request.jobs : std::thread::hardware_concurrency());
-    std::vector<std::thread> others;
-    for (std::size_t i = 1; i < std::min(cores, paths.size()); ++i) others.emplace_back(work);
-    work();
-    for (std::thread& other : others) other.join();
+    const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);
+    if (failure && done < paths.size()) std::rethrow_exception(failure);
 
     std::vector<T> all;
     std::size_t failed = 0;

@@ -34,7 +34,8 @@ std::vector<Index> calibrated_predicates(Context& c) {
 std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name, const Threshold& first) {
     const bool is_default = c.options.thresholds_path.empty();
     const std::string path = is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
-    if (is_default && !std::filesystem::exists(path)) {
+    std::error_code error;
+    if (is_default && !std::filesystem::exists(path, error)) {
         c.report(Code::thresholds_missing, first.span,
                  fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name, path))
             .note("'etlc calibrate' makes one from labelled demonstrations; --thresholds names another");

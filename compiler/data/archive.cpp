@@ -1,14 +1,21 @@
 #include "data/archive.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
 #include <zip.h>
 
 #include <algorithm>
+#include <cerrno>
+#include <new>
 #include <optional>
 
+#include "data/descriptor.hpp"
 #include "data/file.hpp"
 #include "data/npy.hpp"
 #include "data/quote.hpp"
+#include "data/zip_layout.hpp"
 
 namespace etlc::data {
 namespace {
@@ -36,6 +43,7 @@ std::string words(int code) {
 }
 
 Failure damaged(int code) {
+    if (code == ZIP_ER_MEMORY) throw std::bad_alloc();
     if (code == ZIP_ER_NOZIP) return malformed("is no .npz file: not a zip archive");
     return malformed(fmt::format("archive is damaged: {}", words(code)));
 }
@@ -84,6 +92,35 @@ zip_t* open_memory_archive(std::string_view bytes, int& code) {
     return handle;
 }
 
+diag::Result<std::vector<ZipMember>> layout_of(std::string_view bytes) {
+    return read_zip_layout(bytes.size(), [&](std::uint64_t at, char* to, std::size_t n) {
+        return at <= bytes.size() && bytes.substr(at).copy(to, n) == n;
+    });
+}
+
+diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
+    if (auto why = why_unreadable(path)) return Failure{Code::unreadable_data_file, *why};
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
+    struct stat status {};
+    if (!file || ::fstat(*file, &status) != 0)
+        return Failure{Code::unreadable_data_file, fmt::format("cannot be read: {}", error_words(errno))};
+    return read_zip_layout(static_cast<std::uint64_t>(status.st_size), [&](std::uint64_t at, char* to, std::size_t n) {
+        return read_all_at(*file, at, to, n);
+    });
+}
+
+/// Whether libzip, which is content with the first archive that it finds, has found this one.
+bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
+    if (zip_get_num_entries(archive, 0) != static_cast<zip_int64_t>(members.size())) return false;
+    for (std::size_t i = 0; i < members.size(); ++i) {
+        zip_stat_t status;
+        const char* const name = zip_get_name(archive, i, ZIP_FL_ENC_RAW);
+        if (name == nullptr || name != members[i].name || zip_stat_index(archive, i, 0, &status) != 0) return false;
+        if (status.crc != members[i].crc || status.comp_size != members[i].packed_bytes) return false;
+    }
+    return true;
+}
+
 std::optional<Failure> check_method(const zip_stat_t& status) {
     if (status.encryption_method != ZIP_EM_NONE) return malformed("is encrypted, expected plain members");
     if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE)
@@ -107,12 +144,14 @@ Archive::Archive(std::shared_ptr<zip> handle) : handle_(std::move(handle)) {
 }
 
 diag::Result<Archive> Archive::open(const ArchivePlace& place) {
-    if (!place.in_memory)
-        if (auto why = why_unreadable(place.path)) return Failure{Code::unreadable_data_file, *why};
+    const auto layout = place.in_memory ? layout_of(place.bytes) : layout_of(place.path);
+    if (!layout) return layout.failure();
     int code = ZIP_ER_OK;
-    zip_t* handle = place.in_memory ? open_memory_archive(place.bytes, code) : open_file_archive(place.path, code);
-    if (handle == nullptr) return damaged(code);
-    return Archive(std::shared_ptr<zip>(handle, zip_discard));
+    zip_t* opened = place.in_memory ? open_memory_archive(place.bytes, code) : open_file_archive(place.path, code);
+    if (opened == nullptr) return damaged(code);
+    std::shared_ptr<zip> handle(opened, zip_discard);
+    if (!holds(opened, *layout)) return malformed("archive can be read in two ways: a second one lies in it");
+    return Archive(std::move(handle));
 }
 
 Failure Archive::missing(const std::string& key) const {

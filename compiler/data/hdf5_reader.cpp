@@ -8,9 +8,11 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
+#include <new>
 #include <string>
 #include <utility>
 #include <vector>
@@ -33,6 +35,7 @@ constexpr std::size_t kMaxListed = 8;                 ///< names in a message
 void write_all(const char* bytes, std::size_t n) {
     while (n > 0) {
         const ssize_t written = ::write(STDOUT_FILENO, bytes, n);
+        if (written < 0 && errno == EINTR) continue;
         if (written <= 0) quit(1);
         bytes += written;
         n -= static_cast<std::size_t>(written);
@@ -312,12 +315,16 @@ int main(int argc, char** argv) {
     const std::string command = argc >= 4 ? argv[1] : "";
     if (command != "list" && command != "read") return 2;
     limit_resources();
-    const hid_t file = open_file(argv[2]);
-    if (command == "list") {
-        list(file, "", parts_of(argv[3]), 0);
-    } else {
-        std::vector<Channel> channels = parse_channels(argv + 4, argc - 4);
-        read(file, argv[3], channels);
+    try {
+        const hid_t file = open_file(argv[2]);
+        if (command == "list") {
+            list(file, "", parts_of(argv[3]), 0);
+        } else {
+            std::vector<Channel> channels = parse_channels(argv + 4, argc - 4);
+            read(file, argv[3], channels);
+        }
+    } catch (const std::bad_alloc&) {
+        fail(Cause::file, "takes more memory than reading it may");
     }
     done();
 }

@@ -2,6 +2,7 @@
 
 #include "data/archive.hpp"
 #include "data/array.hpp"
+#include "data/file.hpp"
 #include "data/npy.hpp"
 #include "data/quote.hpp"
 
@@ -44,14 +45,14 @@ diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key) {
 }
 
 diag::Result<Array> read_array(const std::string& path, const std::string& key) {
-    if (path.ends_with(".npz")) return read_npz(path, key);
+    if (path.ends_with(".npz")) return within_memory([&] { return read_npz(path, key); });
     if (!path.ends_with(".npy"))
         return Failure{Code::unknown_data_format, "unknown kind of data file, expected .npy or .npz"};
     if (!key.empty())
         return Failure{
             Code::key_without_archive,
             fmt::format("an .npy file holds one array without a name, so the key {} has no meaning", in_quotes(key))};
-    return read_npy(path);
+    return within_memory([&] { return read_npy(path); });
 }
 
 }  // namespace etlc::data

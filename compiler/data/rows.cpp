@@ -8,8 +8,10 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
+#include <string>
 #include <utility>
 
+#include "data/descriptor.hpp"
 #include "data/elements.hpp"
 
 namespace etlc::data {
@@ -75,50 +77,17 @@ private:
     std::vector<double> values_;
 };
 
-/// Bytes on disk that are gone as soon as nobody reads them any more.
-class TemporaryFile {
-public:
-    TemporaryFile() {
-        const char* folder = std::getenv("TMPDIR");
-        std::string path = folder != nullptr && *folder != '\0' ? folder : "/tmp";
-        path += "/etlc.XXXXXX";
-        descriptor_ = ::mkostemp(path.data(), O_CLOEXEC);
-        if (descriptor_ >= 0) ::unlink(path.c_str());
-    }
-    TemporaryFile(TemporaryFile&& other) noexcept : descriptor_(std::exchange(other.descriptor_, -1)) {}
-    TemporaryFile& operator=(TemporaryFile&&) = delete;
-    ~TemporaryFile() {
-        if (descriptor_ >= 0) ::close(descriptor_);
-    }
-
-    bool open() const { return descriptor_ >= 0; }
-
-    bool append(const char* bytes, std::size_t n) {
-        while (n > 0) {
-            const ssize_t written = ::write(descriptor_, bytes, n);
-            if (written < 0 && errno == EINTR) continue;
-            if (written < 0) return false;
-            bytes += written;
-            n -= static_cast<std::size_t>(written);
-        }
-        return true;
-    }
-
-    bool read(std::uint64_t at, char* to, std::size_t n) const {
-        while (n > 0) {
-            const ssize_t got = ::pread(descriptor_, to, n, static_cast<off_t>(at));
-            if (got < 0 && errno == EINTR) continue;
-            if (got <= 0) return false;
-            at += static_cast<std::uint64_t>(got);
-            to += got;
-            n -= static_cast<std::size_t>(got);
-        }
-        return true;
-    }
-
-private:
-    int descriptor_ = -1;
-};
+/// A file without a name, whose bytes are gone as soon as nobody reads them any more.
+Descriptor nameless_file() {
+    const char* const named = std::getenv("TMPDIR");
+    const std::string folder = named != nullptr && *named != '\0' ? named : "/tmp";
+    Descriptor file(::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600));
+    if (file) return file;
+    std::string path = folder + "/etlc.XXXXXX";  // on file systems where every file begins with a name
+    file = Descriptor(::mkostemp(path.data(), O_CLOEXEC));
+    if (file) ::unlink(path.c_str());
+    return file;
+}
 
 Failure temporary_failed(int error) {
     return {
@@ -132,8 +101,8 @@ class FortranRows final : public Rows {
 public:
     static diag::Result<std::unique_ptr<Rows>> open(ByteSource& source, NpyHeader header, std::uint64_t rows,
                                                     std::uint32_t width) {
-        TemporaryFile file;
-        if (!file.open()) return temporary_failed(errno);
+        Descriptor file = nameless_file();
+        if (!file) return temporary_failed(errno);
         if (auto failure = unpack(source, header, file)) return *failure;
         return std::unique_ptr<Rows>(new FortranRows(std::move(file), std::move(header), rows, width));
     }
@@ -148,7 +117,7 @@ public:
     }
 
 private:
-    FortranRows(TemporaryFile file, NpyHeader header, std::uint64_t rows, std::uint32_t width)
+    FortranRows(Descriptor file, NpyHeader header, std::uint64_t rows, std::uint32_t width)
         : file_(std::move(file)), header_(std::move(header)), rows_(rows), width_(width), row_(width) {
         element_bytes_ = info(header_.element).bytes;
         block_rows_ = rows_in(kFortranBlockBytes, std::uint64_t{width} * sizeof(double), rows);
@@ -156,7 +125,7 @@ private:
         columns_.resize(block_rows_ * width);
     }
 
-    static std::optional<Failure> unpack(ByteSource& source, const NpyHeader& header, TemporaryFile& file) {
+    static std::optional<Failure> unpack(ByteSource& source, const NpyHeader& header, const Descriptor& file) {
         std::vector<char> buffer(kBlockBytes);
         std::uint64_t total = header.header_bytes;
         for (;;) {
@@ -164,7 +133,7 @@ private:
             if (!got) return got.failure();
             total += *got;
             if (total > header.header_bytes + header.data_bytes()) break;  // more than promised: not to be stored
-            if (!file.append(buffer.data(), *got)) return temporary_failed(errno);
+            if (!write_all(*file, {buffer.data(), *got})) return temporary_failed(errno);
             if (*got < buffer.size()) break;
         }
         return check_size(header, total);
@@ -174,14 +143,14 @@ private:
         const std::uint64_t n = std::min(block_rows_, rows_ - done_);
         for (std::uint32_t d = 0; d < width_; ++d) {
             const std::uint64_t at = (d * rows_ + done_) * element_bytes_;
-            if (!file_.read(at, bytes_.data(), n * element_bytes_)) return temporary_failed(errno);
+            if (!read_all_at(*file_, at, bytes_.data(), n * element_bytes_)) return temporary_failed(errno);
             const std::size_t sound = decode(header_.element, bytes_.data(), n, columns_.data() + d * block_rows_);
             if (sound < n) return unsound_boolean(bytes_[sound], done_ + sound);
         }
         return {};
     }
 
-    TemporaryFile file_;
+    Descriptor file_;
     NpyHeader header_;
     std::uint64_t rows_;
     std::uint32_t width_;

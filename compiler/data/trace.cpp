@@ -30,6 +30,10 @@ bool is_trace(const std::string& path) {
     return path.ends_with(".npz") || path.ends_with(".csv") || is_hdf5(path);
 }
 
+std::string trace_file(const std::string& path) {
+    return path.substr(0, group_mark(path));
+}
+
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels) {
     if (path.ends_with(".npz")) return open_npz_trace({path, {}, false}, channels);
     const std::size_t mark = group_mark(path);

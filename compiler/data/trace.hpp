@@ -49,6 +49,9 @@ std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& n
 /// Whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);
 
+/// Of FILE.h5:GROUP the file, of any other path the path itself.
+std::string trace_file(const std::string& path);
+
 /// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
 /// elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for scalars and bools, T x D for vectors
 /// (T too where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`

@@ -1,14 +1,12 @@
 #include "driver/calibrate.hpp"
 
-#include <fmt/format.h>
-
-#include <cstdio>
-
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
+#include "data/episodes.hpp"
 #include "data/file.hpp"
 #include "driver/compile.hpp"
 #include "driver/names.hpp"
+#include "driver/output_file.hpp"
 #include "driver/progress.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
@@ -58,6 +56,16 @@ std::optional<Calibration> calibrate_model(const check::Model& model, const Cali
     return calibrate_monitors(model, std::move(*before), calibration, sink);
 }
 
+/// What may not be written over. Thresholds may: those of the monitors come to those of the predicates.
+std::vector<std::string> inputs(const check::Model& model, const source::File& file, const CalibrateRequest& request) {
+    diag::Sink told_later;
+    std::vector<std::string> paths = data::find_episodes(request.calibration.data, "", told_later);
+    paths.push_back(file.path());
+    for (const std::string& path : model.dependencies)
+        if (path != request.thresholds) paths.push_back(path);
+    return paths;
+}
+
 }  // namespace
 
 bool calibrate(const source::File& file, const CalibrateRequest& request, diag::Sink& sink) {
@@ -73,19 +81,16 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     if (!check_names(*model, calibration.names, sink)) return false;
     calibration.version = kVersion;
     calibration.progress = episodes_progress();
+    const std::string output = request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
+    if (!check_outputs({output}, inputs(*model, file, request), sink)) return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
     if (!result) return false;
 
-    const std::string output = request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
-    const bool to_stdout = output == "-";
-    const auto failure = data::write_file_atomically(to_stdout ? "/dev/stdout" : output,
-                                                     thresholds::write(result->file), diag::Code::unwritable_output);
-    if (failure) {
-        sink.report(data::in_file(*failure, output));
-        return false;
-    }
-    fmt::print(to_stdout ? stderr : stdout, "{}", result->report);
-    return true;
+    // The report comes before the file takes its name: where a part of it is lost, nothing has changed.
+    OutputFiles files(sink);
+    return files.add(output, thresholds::write(result->file)) &&
+           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput), result->report) &&
+           files.commit();
 }
 
 }  // namespace etlc::driver

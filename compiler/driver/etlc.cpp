@@ -1,11 +1,16 @@
-// The command line. Exit status: 0; 1 the spec or its data is wrong; 2 the call is wrong.
+// The command line.
+// Exit status: 0, all that was asked for is there; 1, it is not, and a diagnostic says why; 2, the call is wrong;
+// 3, etlc itself is at fault. Whatever a process can lack (memory, threads, a place to write to) is a case of 1.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cctype>
-#include <cstdio>
+#include <exception>
 #include <filesystem>
+#include <new>
+#include <sstream>
+#include <stdexcept>
 
 #include "data/file.hpp"
 #include "diag/render.hpp"
@@ -14,6 +19,8 @@
 #include "driver/evaluate.hpp"
 #include "driver/names.hpp"
 #include "driver/output.hpp"
+#include "driver/output_file.hpp"
+#include "driver/process.hpp"
 #include "driver/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
@@ -23,8 +30,12 @@ namespace {
 using namespace etlc;
 
 constexpr int kOk = 0;
-constexpr int kWrongSpec = 1;
+constexpr int kFailed = 1;
 constexpr int kWrongCall = 2;
+constexpr int kOwnFault = 3;
+constexpr char kExitStatus[] =
+    "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the call is wrong; 3, a\n"
+    "fault of etlc itself.";
 
 struct Call {
     std::string spec;
@@ -42,8 +53,8 @@ struct Call {
 int conclude(const Call& call, const source::File& file, const diag::Sink& sink) {
     const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
     const bool json = call.diagnostics == "json";
-    fmt::print(stderr, "{}", json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
-    return sink.refused() ? kWrongSpec : kOk;
+    const bool told = driver::print_error(json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
+    return sink.refused() || !told ? kFailed : kOk;
 }
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
@@ -61,7 +72,17 @@ int with_spec(const Call& call, const Work& work) {
     const bool warnings_are_errors = !call.warnings.empty();
     diag::Sink sink(warnings_are_errors);
     source::File file;
-    if (read_spec(call.spec, file, sink)) work(file, sink);
+    // What was found so far is told as well.
+    const auto report_lack = [&] {
+        sink.report(data::in_file({diag::Code::out_of_memory, "there is not enough memory for this"}, call.spec));
+    };
+    try {
+        if (read_spec(call.spec, file, sink)) work(file, sink);
+    } catch (const std::bad_alloc&) {
+        report_lack();
+    } catch (const std::length_error&) {
+        report_lack();
+    }
     return conclude(call, file, sink);
 }
 
@@ -168,8 +189,18 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
-    fmt::print(stderr, "etlc: {}\nRun {} --help for more information.\n", mistake, app.get_name());
+    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n", mistake, app.get_name()));
     return kWrongCall;
+}
+
+/// --help, --version
+int fulfil(const CLI::App& app, const CLI::Success& wish) {
+    std::ostringstream text;
+    app.exit(wish, text, text);
+    const Call call;
+    diag::Sink sink;
+    driver::print(text.str(), sink);
+    return conclude(call, source::File(), sink);
 }
 
 /// An exit status where the command ends here.
@@ -177,8 +208,7 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& wish) {  // --help, --version
-        app.exit(wish);
-        return kOk;
+        return fulfil(app, wish);
     } catch (const CLI::ParseError& error) {
         return complain(app, error.what());
     }
@@ -224,6 +254,7 @@ int compile_command(int argc, char** argv) {
         "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...,\n"
         "etlc evaluate SPEC.etl --data FILE...",
         "etlc");
+    app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
     add_compile_options(app, call);
@@ -254,7 +285,7 @@ int run_command(int argc, char** argv) {
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
-        if (compiled && !sink.refused()) driver::run(*compiled, call.run, sink);
+        if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
     });
 }
 
@@ -296,12 +327,25 @@ int evaluate_command(int argc, char** argv) {
     });
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int execute(int argc, char** argv) {
     const std::string_view command = argc > 1 ? argv[1] : "";
     if (command == "run") return run_command(argc - 1, argv + 1);
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    driver::prepare_process();
+    try {
+        return execute(argc, argv);
+    } catch (const std::bad_alloc&) {
+        driver::print_error("etlc: there is not enough memory\n");
+        return kFailed;
+    } catch (const std::exception& error) {
+        for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"}) driver::print_error(part);
+        return kOwnFault;
+    }
 }

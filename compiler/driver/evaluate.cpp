@@ -1,13 +1,12 @@
 #include "driver/evaluate.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cstdio>
 
 #include "data/episodes.hpp"
 #include "data/file.hpp"
+#include "data/trace.hpp"
 #include "driver/names.hpp"
+#include "driver/output_file.hpp"
 #include "driver/progress.hpp"
 
 namespace etlc::driver {
@@ -26,12 +25,12 @@ std::optional<thresholds::File> thresholds_of(const check::Model& model, const s
     return std::move(*file);
 }
 
-bool write(const std::string& path, const std::string& text, diag::Sink& sink) {
-    if (path.empty()) return true;
-    const auto failure =
-        data::write_file_atomically(path == "-" ? "/dev/stdout" : path, text, diag::Code::unwritable_output);
-    if (failure) sink.report(data::in_file(*failure, path));
-    return !failure;
+std::vector<std::string> inputs(const check::Model& model, const source::File& file,
+                                const std::vector<std::string>& episodes) {
+    std::vector<std::string> paths = model.dependencies;
+    paths.push_back(file.path());
+    for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
+    return paths;
 }
 
 }  // namespace
@@ -44,6 +43,7 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     if (!check_names(model, asked.names, sink)) return false;
     asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
     if (sink.has_errors()) return false;
+    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(model, file, asked.episodes), sink)) return false;
     asked.progress = episodes_progress();
 
     auto labelled = evaluate::find_labelled(model, asked, sink);
@@ -54,10 +54,12 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     const auto result = evaluate::evaluate(compiled->plan, truth->plan, subject, asked,
                                            thresholds_of(model, file.path(), request), sink);
     if (!result) return false;
-    if (!write(evaluation.json, evaluate::json(*result), sink)) return false;
-    if (!write(evaluation.csv, evaluate::csv(*result), sink)) return false;
-    if (evaluation.json != "-" && evaluation.csv != "-") fmt::print("{}", evaluate::table(*result));
-    return true;
+    // What is printed comes before the files take their names: where a part of it is lost, nothing has changed.
+    OutputFiles files(sink);
+    const bool prints = evaluation.json != kStandardOutput && evaluation.csv != kStandardOutput;
+    return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(*result))) &&
+           (evaluation.csv.empty() || files.add(evaluation.csv, evaluate::csv(*result))) &&
+           (!prints || files.add(std::string(kStandardOutput), evaluate::table(*result))) && files.commit();
 }
 
 }  // namespace etlc::driver

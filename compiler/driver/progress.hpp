@@ -5,8 +5,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cstdio>
 #include <functional>
+
+#include "driver/process.hpp"
 
 namespace etlc::driver {
 
@@ -20,8 +21,8 @@ inline bool progress_is_seen() {
 inline std::function<void(std::size_t done, std::size_t total)> episodes_progress() {
     if (!progress_is_seen()) return {};
     return [](std::size_t done, std::size_t total) {
-        fmt::print(stderr, "\r{} of {} episodes", done, total);
-        if (done == total) fmt::print(stderr, kEraseProgress);
+        print_error(fmt::format("\r{} of {} episodes", done, total));
+        if (done == total) print_error(kEraseProgress);
     };
 }
 

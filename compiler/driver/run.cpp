@@ -3,11 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cstdio>
 
 #include "data/file.hpp"
 #include "data/trace.hpp"
 #include "driver/names.hpp"
+#include "driver/output_file.hpp"
+#include "driver/process.hpp"
 #include "driver/progress.hpp"
 #include "plan/evaluator.hpp"
 
@@ -35,24 +36,26 @@ const char* status(const Verdict& verdict) {
 
 class Run {
 public:
-    Run(const Compiled& compiled, const RunRequest& request, diag::Sink& sink)
-        : plan_(compiled.plan), request_(request), sink_(sink), evaluator_(compiled.plan) {}
+    Run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink)
+        : spec_(spec.path()),
+          plan_(compiled.plan),
+          request_(request),
+          sink_(sink),
+          evaluator_(compiled.plan),
+          output_(sink) {}
 
     bool execute() {
         if (!check_names(*plan_.model, request_.names, sink_)) return false;
-        auto output = data::AtomicFile::create(request_.output == "-" ? "/dev/stdout" : request_.output,
-                                               diag::Code::unwritable_output);
-        if (!output) return fail(output.failure(), request_.output);
-        output_ = &*output;
+        std::vector<std::string> inputs = plan_.model->dependencies;
+        inputs.insert(inputs.end(), {spec_, data::trace_file(request_.trace)});
+        if (!check_outputs({request_.output}, inputs, sink_) || !output_.begin(request_.output)) return false;
         text_ = "step,monitor,lower,robustness,upper,status,final\n";
-        if (!step_through_trace() || !flush()) return false;
-        const auto failure = output->commit();
-        return !failure || fail(*failure, request_.output);
+        return step_through_trace() && flush() && output_.commit();
     }
 
 private:
-    bool fail(const diag::Failure& failure, const std::string& path) {
-        sink_.report(data::in_file(failure, path));
+    bool fail(const diag::Failure& failure) {
+        sink_.report(data::in_file(failure, request_.trace));
         return false;
     }
 
@@ -60,12 +63,12 @@ private:
         std::vector<data::Channel> channels;
         for (check::Index i : plan_.inputs) channels.push_back(channel_of(plan_.model->inputs[i]));
         auto trace = data::open_trace(request_.trace, data::renamed(channels, request_.names));
-        if (!trace) return fail(trace.failure(), request_.trace);
+        if (!trace) return fail(trace.failure());
         data::Sample sample;
         std::vector<plan::Sample> samples(plan_.model->inputs.size());
         for (;;) {
             const auto more = (*trace)->next(sample);
-            if (!more) return fail(more.failure(), request_.trace);
+            if (!more) return fail(more.failure());
             if (!*more) break;
             if (!narrow(sample, samples) || !report(evaluator_.step(samples))) return false;
             show_progress((*trace)->length());
@@ -79,7 +82,7 @@ private:
             std::string why;
             auto narrowed = plan::narrow(plan_.model->inputs[input], sample.present[c], sample.values[c], why);
             if (!narrowed)
-                return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)}, request_.trace);
+                return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
             samples[input] = std::move(*narrowed);
         }
         return true;
@@ -109,22 +112,23 @@ private:
     }
 
     bool flush() {
-        const auto failure = output_->write(text_);
+        const bool written = output_.write(text_);
         text_.clear();
-        return !failure || fail(*failure, request_.output);
+        return written;
     }
 
     void show_progress(std::uint64_t length) const {
         if (!watched_ || length == 0 || step_ % kStepsPerReport != 0) return;
-        fmt::print(stderr, "\r{:3}% of {} steps", 100 * step_ / length, length);
-        if (step_ + kStepsPerReport > length) fmt::print(stderr, kEraseProgress);
+        print_error(fmt::format("\r{:3}% of {} steps", 100 * step_ / length, length));
+        if (step_ + kStepsPerReport > length) print_error(kEraseProgress);
     }
 
+    const std::string& spec_;
     const plan::Plan& plan_;
     const RunRequest& request_;
     diag::Sink& sink_;
     plan::Evaluator evaluator_;
-    data::AtomicFile* output_ = nullptr;
+    OutputFiles output_;
     std::string text_;
     std::uint64_t step_ = 0;
     const bool watched_ = progress_is_seen();
@@ -132,8 +136,8 @@ private:
 
 }  // namespace
 
-bool run(const Compiled& compiled, const RunRequest& request, diag::Sink& sink) {
-    return Run(compiled, request, sink).execute();
+bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink) {
+    return Run(spec, compiled, request, sink).execute();
 }
 
 }  // namespace etlc::driver

@@ -19,6 +19,6 @@ struct RunRequest {
 };
 
 /// False where the sink now says why not.
-bool run(const Compiled& compiled, const RunRequest& request, diag::Sink& sink);
+bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink);
 
 }  // namespace etlc::driver

@@ -3,61 +3,17 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <memory>
-#include <mutex>
 #include <set>
-#include <thread>
 
+#include "calibrate/parallel.hpp"
 #include "data/file.hpp"
 
 namespace etlc::evaluate {
 
 namespace {
 
-using Results = std::vector<std::optional<diag::Result<EpisodeResult>>>;
-
 constexpr std::size_t kMostNotes = 8;
-
-unsigned thread_count(const Request& request) {
-    const unsigned wanted = request.jobs > 0 ? request.jobs : std::max(1U, std::thread::hardware_concurrency());
-    return static_cast<unsigned>(std::min<std::size_t>(wanted, std::max<std::size_t>(1, request.episodes.size())));
-}
-
-/// Every episode, in order, whoever judged it.
-Results judge_all(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const Request& request) {
-    Results results(request.episodes.size());
-    std::atomic<std::size_t> next = 0;
-    std::mutex reporting;
-    std::size_t done = 0;
-    const auto work = [&] {
-        Judge judge(plan, truth, subject, request.names);
-        for (std::size_t i = next++; i < results.size(); i = next++) {
-            results[i] = judge.judge(request.episodes[i]);
-            if (!request.progress) continue;
-            const std::lock_guard lock(reporting);
-            request.progress(++done, results.size());
-        }
-    };
-    std::vector<std::thread> threads;
-    for (unsigned t = 1; t < thread_count(request); ++t) threads.emplace_back(work);
-    work();
-    for (std::thread& thread : threads) thread.join();
-    return results;
-}
-
-/// Those that can be read; the others are reported.
-std::optional<std::vector<EpisodeResult>> unpack(Results results, const Request& request, diag::Sink& sink) {
-    std::vector<EpisodeResult> episodes;
-    for (std::size_t i = 0; i < results.size(); ++i) {
-        if (*results[i])
-            episodes.push_back(std::move(**results[i]));
-        else
-            sink.report(data::in_file(results[i]->failure(), request.episodes[i]));
-    }
-    if (episodes.size() < results.size()) return std::nullopt;
-    return episodes;
-}
 
 /// A threshold looks better on the episodes that it was taken from, and what it promises is about others.
 bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request, const thresholds::File& file,
@@ -244,7 +200,8 @@ std::optional<std::vector<Index>> find_labelled(const check::Model& model, const
 std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
                                    const Request& request, const std::optional<thresholds::File>& seen,
                                    diag::Sink& sink) {
-    auto episodes = unpack(judge_all(plan, truth, subject, request), request, sink);
+    const auto episodes = calibrate::over_episodes<EpisodeResult>(
+        request.episodes, request, sink, [&] { return std::make_unique<Judge>(plan, truth, subject, request.names); });
     if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
     return summarise(*plan.model, subject, *episodes);
 }

@@ -82,7 +82,7 @@ Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& sub
     truth_samples_.resize(truth_plan_.model->inputs.size());
 }
 
-diag::Result<EpisodeResult> Judge::judge(const std::string& path) {
+diag::Result<EpisodeResult> Judge::score(const std::string& path) {
     auto recording = calibrate::Recording::open(wanted_, [&](const std::vector<data::Channel>& channels) {
         return data::open_trace(path, data::renamed(channels, names_));
     });

@@ -50,7 +50,7 @@ public:
     Judge& operator=(const Judge&) = delete;
 
     /// Failures do not name the path.
-    diag::Result<EpisodeResult> judge(const std::string& path);
+    diag::Result<EpisodeResult> score(const std::string& path);
 
 private:
     using Track = std::vector<Label>;

@@ -24,7 +24,7 @@ std::string_view group_title(std::string_view code) {
         {"E06", "Thresholds"},
         {"E07", "Limits"},
         {"E08", "Traces and episodes"},
-        {"E09", "Output"}};
+        {"E09", "Output and memory"}};
     const auto found = titles.find(code.substr(0, 3));
     return found == titles.end() ? std::string_view("Others") : found->second;
 }
@@ -36,7 +36,19 @@ std::string table() {
         "the two\n"
         "equal; `ETLC_UPDATE=1` rewrites it); tests/spec/error holds at least one example of each, with the exact "
         "message.\n"
-        "Errors come out with exit status 1; warnings do not, unless `-Werror` is given.\n";
+        "Errors come out with exit status 1; warnings do not, unless `-Werror` is given.\n"
+        "\n"
+        "| exit status | |\n"
+        "| --- | --- |\n"
+        "| 0 | all that was asked for is there |\n"
+        "| 1 | it is not: the spec or its data are wrong, memory is too short, or not all of the output or of the "
+        "diagnostics could be written |\n"
+        "| 2 | the call is wrong |\n"
+        "| 3 | etlc itself is at fault |\n"
+        "\n"
+        "Whoever closes standard error (`2>&-`) wants no diagnostics, and gets none. When nobody reads standard output "
+        "any more\n"
+        "(`etlc run ... | head`), SIGPIPE ends etlc, as it ends other tools: the shell says 141.\n";
     std::string_view group;
     for (const diag::CodeInfo& info : diag::all_codes()) {
         if (group_title(info.code) != group) {

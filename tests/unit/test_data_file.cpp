@@ -1,5 +1,4 @@
-// Whole files in and out, the content hash, and text that goes into messages.
-#include <fcntl.h>
+// Whole files, the content hash, and text that goes into messages.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -18,11 +17,6 @@ namespace {
 using diag::Code;
 using tests::file_bytes;
 using tests::TemporaryPath;
-
-std::size_t files_beside(const std::string& path) {
-    const std::filesystem::directory_iterator files(std::filesystem::path(path).parent_path());
-    return static_cast<std::size_t>(std::distance(begin(files), end(files)));
-}
 
 TEST(File, ReadsEveryByte) {
     const std::string bytes("a\0b\r\n\xff", 6);
@@ -59,84 +53,6 @@ TEST(File, InFileIsADiagnosticWithItsPlace) {
     EXPECT_EQ(diagnostic.line, 3U);
     EXPECT_EQ(diagnostic.column, 4U);
     EXPECT_FALSE(diagnostic.span);
-}
-
-TEST(AtomicWrite, MakesOrReplacesTheFile) {
-    const TemporaryPath file("out.hpp");
-    for (const std::string bytes : {"first", "second, longer"}) {
-        EXPECT_FALSE(write_file_atomically(file.path(), bytes, Code::unreadable_trace));
-        EXPECT_EQ(file_bytes(file.path()), bytes);
-        EXPECT_EQ(files_beside(file.path()), 1U);
-    }
-}
-
-TEST(AtomicWrite, NothingShowsBeforeItIsComplete) {
-    const TemporaryPath file("out.csv", "old");
-    {
-        auto writer = AtomicFile::create(file.path(), Code::unreadable_trace);
-        ASSERT_TRUE(writer);
-        EXPECT_FALSE(writer->write("new"));
-        EXPECT_EQ(file_bytes(file.path()), "old");
-    }
-    EXPECT_EQ(file_bytes(file.path()), "old");
-    EXPECT_EQ(files_beside(file.path()), 1U);
-}
-
-TEST(AtomicWrite, TwoWritersDoNotMix) {
-    const TemporaryPath file("out.csv");
-    auto one = AtomicFile::create(file.path(), Code::unreadable_trace);
-    auto two = AtomicFile::create(file.path(), Code::unreadable_trace);
-    ASSERT_TRUE(one && two);
-    EXPECT_FALSE(one->write("one"));
-    EXPECT_FALSE(two->write("two"));
-    EXPECT_FALSE(one->commit());
-    EXPECT_EQ(file_bytes(file.path()), "one");
-    EXPECT_FALSE(two->commit());
-    EXPECT_EQ(file_bytes(file.path()), "two");
-    EXPECT_EQ(files_beside(file.path()), 1U);
-}
-
-TEST(AtomicWrite, ReplacesWhatALinkPointsTo) {
-    const TemporaryPath file("real", "old");
-    const std::string link = file.path() + ".link";
-    std::filesystem::create_symlink(file.path(), link);
-    EXPECT_FALSE(write_file_atomically(link, "new", Code::unreadable_trace));
-    EXPECT_TRUE(std::filesystem::is_symlink(link));
-    EXPECT_EQ(file_bytes(file.path()), "new");
-}
-
-TEST(AtomicWrite, DevicesAreWrittenTo) {
-    EXPECT_FALSE(write_file_atomically("/dev/null", "x", Code::unreadable_trace));
-    const auto full = write_file_atomically("/dev/full", "x", Code::unreadable_trace);
-    ASSERT_TRUE(full);
-    EXPECT_EQ(full->message, "cannot be written: no space left on the device");
-}
-
-TEST(AtomicWrite, StandardOutputIsAppendedTo) {
-    const TemporaryPath file("log", "before\n");
-    std::fflush(stdout);
-    const int kept = ::dup(STDOUT_FILENO);
-    const int log = ::open(file.path().c_str(), O_WRONLY | O_APPEND);
-    ::dup2(log, STDOUT_FILENO);
-    ::close(log);
-    const auto failure = write_file_atomically("/dev/stdout", "written\n", Code::unreadable_trace);
-    const bool more = ::write(STDOUT_FILENO, "after\n", 6) == 6;
-    ::dup2(kept, STDOUT_FILENO);
-    ::close(kept);
-    EXPECT_TRUE(!failure && more);
-    EXPECT_EQ(file_bytes(file.path()), "before\nwritten\nafter\n");
-}
-
-TEST(AtomicWrite, SaysWhyItCannotWrite) {
-    const TemporaryPath file("x", "x");
-    const auto message = [](const std::string& path) {
-        return write_file_atomically(path, "x", Code::unreadable_trace)->message;
-    };
-    EXPECT_EQ(message(file.path() + ".d/out"), "cannot be written: no such folder");
-    EXPECT_EQ(message(file.path() + "/out"), "cannot be written: no such folder");
-    EXPECT_EQ(message("/"), "cannot be written: is a directory, expected a file");
-    EXPECT_EQ(file_bytes(file.path()), "x");
-    EXPECT_EQ(files_beside(file.path()), 1U);
 }
 
 TEST(Hash, PublishedValues) {

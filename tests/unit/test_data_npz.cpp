@@ -63,7 +63,7 @@ std::vector<Broken> broken() {
     std::vector<tests::Member> many;
     for (int i = 0; i < 12; ++i) many.push_back({fmt::format("a{}.npy", i), array});
     return {
-        {"empty", "", "z", Code::no_such_array, "holds no arrays, expected 'z'"},
+        {"empty", "", "z", Code::malformed_archive, "is no .npz file: not a zip archive"},
         {"no zip", array, "z", Code::malformed_archive, "is no .npz file: not a zip archive"},
         {"no arrays", zip_of({{"readme.txt", "x"}}), "z", Code::no_such_array, "holds no arrays, expected 'z'"},
         {"no arrays, no key", zip_of({{"readme.txt", "x"}}), "", Code::no_such_array, "holds no arrays"},
@@ -97,6 +97,60 @@ TEST(Npz, EveryFaultHasItsMessage) {
         EXPECT_EQ(array.failure().code, one.code) << one.what;
         EXPECT_EQ(array.failure().message, one.message) << one.what;
     }
+}
+
+/// `bytes` with the little-endian number of 4 bytes at `at` raised by `by`.
+std::string raised(std::string bytes, std::size_t at, std::size_t by) {
+    std::uint64_t value = 0;
+    for (std::size_t i = 4; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+    return bytes.replace(at, 4, tests::little_endian(value + by, 4));
+}
+
+/// The archive with `more` put in at `at`, at its beginning or before its directory; what it says of places is right.
+std::string moved(const std::string& archive, std::size_t at, const std::string& more) {
+    const std::size_t directory = archive.find("PK\x01\x02");
+    std::string bytes = raised(archive, archive.size() - 6, more.size());
+    if (at == 0) bytes = raised(bytes, directory + 42, more.size());
+    return bytes.insert(at, more);
+}
+
+std::string with_comment(std::string archive, const std::string& comment) {
+    return archive.replace(archive.size() - 2, 2, tests::little_endian(comment.size(), 2)) + comment;
+}
+
+TEST(Npz, OneArchiveAndNothingElse) {
+    const std::string one = archive(false);
+    const std::string other = zip_of({{"z.npy", npy("<f4", "(2,)", floats({3, 4})), false}});
+    const std::size_t directory = one.find("PK\x01\x02");
+    std::string renamed = one;
+    renamed[30] = 'y';  // in the member's own header
+    const std::string expected = ", expected one archive and nothing else";
+    const std::vector<std::pair<std::string, std::string>> refused{
+        {one + other, "has bytes around its directory" + expected},
+        {moved(other, 0, one), "has bytes before its first member" + expected},
+        {moved(one, 0, "#!"), "has bytes before its first member" + expected},
+        {moved(one, directory, "hidden"), "has bytes between its members" + expected},
+        {one + "x", "has bytes behind its end" + expected},
+        {with_comment(one, other), "has bytes around its directory" + expected},
+        {with_comment(one, "PK\x05\x06"), "has bytes behind its end" + expected},
+        {renamed, "has a member that is 'y.npy' in one place and 'z.npy' in another"},
+    };
+    for (const auto& [bytes, message] : refused) {
+        const auto array = parse_npz(bytes, "z");
+        ASSERT_FALSE(array) << message << ": " << array->values[0];
+        EXPECT_EQ(array.failure().code, Code::malformed_archive) << message;
+        EXPECT_EQ(array.failure().message, message);
+    }
+    EXPECT_TRUE(parse_npz(with_comment(one, "made by hand"), "z"));
+}
+
+TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
+    const std::string inner = archive(false);
+    const std::string outer =
+        zip_of({{"z.npy", npy("|u1", "(" + std::to_string(inner.size()) + ",)", inner), false}});
+    const auto array = parse_npz(outer, "z");
+    if (array) EXPECT_EQ(array->values.size(), inner.size());
+    if (!array) EXPECT_EQ(array.failure().message, "archive can be read in two ways: a second one lies in it");
 }
 
 TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {

@@ -1,0 +1,225 @@
+// A library to preload: it makes calls that a program leaves to the system fail, on demand.
+// Takes, from the environment, ETLC_INJECT=CALL:FIRST:COUNT:ACTION. CALL is one of kCalls; its calls number FIRST
+// (from 1) to FIRST + COUNT - 1 after the beginning of main() meet with ACTION: the number of an error, `short` (half
+// of what is to be written is), `kill` or `killed` (the process dies before the call, after it). ETLC_INJECT_COUNTS
+// names a file to which, at the end of main(), goes how often each was called.
+#include <dlfcn.h>
+#include <fcntl.h>
+#include <pthread.h>
+#include <signal.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/syscall.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cerrno>
+#include <cstdarg>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+namespace {
+
+enum Call { kMalloc, kWrite, kOpen, kClose, kLink, kRename, kUnlink, kDup, kLock, kChange, kThread, kSpawn, kPipe, kCalls };
+constexpr const char* kNames[kCalls] = {"malloc", "write",  "open",   "close",  "link",  "rename", "unlink",
+                                        "dup",    "lock",   "change", "thread", "spawn", "pipe"};
+
+enum class Action { none, fail, halve, kill, kill_after };
+
+struct Injection {
+    int call = kCalls;
+    long first = 0;
+    long count = 0;
+    Action action = Action::none;
+    int error = 0;
+};
+
+Injection injection;
+std::atomic<bool> armed{false};
+std::atomic<long> calls[kCalls];
+
+/// What the next call of this kind meets with.
+Action next(Call call) {
+    if (!armed) return Action::none;
+    const long n = ++calls[call];
+    const bool hit = call == injection.call && n >= injection.first && n < injection.first + injection.count;
+    if (!hit) return Action::none;
+    if (injection.action == Action::kill) ::kill(::getpid(), SIGKILL);
+    if (injection.action == Action::fail) errno = injection.error;
+    return injection.action;
+}
+
+template <class Result>
+Result done(Action action, Result result) {
+    if (action == Action::kill_after) ::kill(::getpid(), SIGKILL);
+    return result;
+}
+
+template <class Function>
+Function* real(const char* name) {
+    return reinterpret_cast<Function*>(::dlsym(RTLD_NEXT, name));
+}
+
+void read_wish() {
+    const char* const wish = std::getenv("ETLC_INJECT");
+    char call[16];
+    char action[16];
+    if (wish == nullptr || std::sscanf(wish, "%15[^:]:%ld:%ld:%15s", call, &injection.first, &injection.count, action) != 4)
+        return;
+    injection.call = static_cast<int>(std::find_if(kNames, kNames + kCalls, [&](const char* name) {
+                                          return std::strcmp(name, call) == 0;
+                                      }) - kNames);
+    injection.error = std::atoi(action);
+    injection.action = std::strcmp(action, "short") == 0    ? Action::halve
+                       : std::strcmp(action, "kill") == 0   ? Action::kill
+                       : std::strcmp(action, "killed") == 0 ? Action::kill_after
+                                                            : Action::fail;
+}
+
+void write_counts() {
+    const char* const path = std::getenv("ETLC_INJECT_COUNTS");
+    if (path == nullptr) return;
+    std::FILE* const file = std::fopen(path, "w");
+    if (file == nullptr) return;
+    for (int call = 0; call < kCalls; ++call) std::fprintf(file, "%s %ld\n", kNames[call], calls[call].load());
+    std::fclose(file);
+}
+
+int (*program)(int, char**, char**);
+
+int armed_main(int argc, char** argv, char** environment) {
+    read_wish();
+    armed = true;
+    const int status = program(argc, argv, environment);
+    armed = false;
+    write_counts();
+    return status;
+}
+
+}  // namespace
+
+// What is exported has the names and the types of the C library's functions; what they do is passed on to.
+extern "C" {
+
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+
+int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*begin)(), void (*end)(),
+                      void (*loader_end)(), void* stack_end) {
+    program = main;
+    return real<decltype(__libc_start_main)>("__libc_start_main")(armed_main, argc, argv, begin, end, loader_end,
+                                                                  stack_end);
+}
+
+void* malloc(std::size_t n) {
+    return next(kMalloc) == Action::fail ? nullptr : __libc_malloc(n);
+}
+
+void* calloc(std::size_t n, std::size_t size) {
+    return next(kMalloc) == Action::fail ? nullptr : __libc_calloc(n, size);
+}
+
+void* realloc(void* old, std::size_t n) {
+    return next(kMalloc) == Action::fail ? nullptr : __libc_realloc(old, n);
+}
+
+ssize_t write(int file, const void* bytes, std::size_t n) {
+    const Action action = next(kWrite);
+    if (action == Action::fail) return -1;
+    if (action == Action::halve) n = std::max<std::size_t>(1, n / 2);
+    return done(action, ::syscall(SYS_write, file, bytes, n));
+}
+
+int openat(int folder, const char* path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const mode_t mode = va_arg(rest, mode_t);
+    va_end(rest);
+    const Action action = next(kOpen);
+    if (action == Action::fail) return -1;
+    return done(action, static_cast<int>(::syscall(SYS_openat, folder, path, flags, mode)));
+}
+
+int open(const char* path, int flags, ...) {
+    va_list rest;
+    va_start(rest, flags);
+    const mode_t mode = va_arg(rest, mode_t);
+    va_end(rest);
+    return openat(AT_FDCWD, path, flags, mode);
+}
+
+std::FILE* fopen(const char* path, const char* mode) {
+    return next(kOpen) == Action::fail ? nullptr : real<decltype(fopen)>("fopen")(path, mode);
+}
+
+int close(int file) {
+    const Action action = next(kClose);
+    const int result = static_cast<int>(::syscall(SYS_close, file));  // which an error does not keep open
+    if (action != Action::fail) return done(action, result);
+    errno = injection.error;
+    return -1;
+}
+
+int linkat(int from_folder, const char* from, int folder, const char* to, int flags) {
+    const Action action = next(kLink);
+    if (action == Action::fail) return -1;
+    return done(action, static_cast<int>(::syscall(SYS_linkat, from_folder, from, folder, to, flags)));
+}
+
+int renameat2(int from_folder, const char* from, int folder, const char* to, unsigned flags) {
+    const Action action = next(kRename);
+    if (action == Action::fail) return -1;
+    return done(action, static_cast<int>(::syscall(SYS_renameat2, from_folder, from, folder, to, flags)));
+}
+
+int renameat(int from_folder, const char* from, int folder, const char* to) {
+    return renameat2(from_folder, from, folder, to, 0);
+}
+
+int unlinkat(int folder, const char* path, int flags) {
+    const Action action = next(kUnlink);
+    if (action == Action::fail) return -1;
+    return done(action, static_cast<int>(::syscall(SYS_unlinkat, folder, path, flags)));
+}
+
+int fcntl(int file, int command, ...) {
+    va_list rest;
+    va_start(rest, command);
+    const long argument = va_arg(rest, long);
+    va_end(rest);
+    if (command == F_DUPFD_CLOEXEC && next(kDup) == Action::fail) return -1;
+    return static_cast<int>(::syscall(SYS_fcntl, file, command, argument));
+}
+
+int lock_file(int file, int operation) __asm__("flock");  // a name that <fcntl.h> has for a class, too
+int lock_file(int file, int operation) {
+    return next(kLock) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_flock, file, operation));
+}
+
+int fchmod(int file, mode_t mode) {
+    return next(kChange) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_fchmod, file, mode));
+}
+
+int fchown(int file, uid_t owner, gid_t group) {
+    return next(kChange) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_fchown, file, owner, group));
+}
+
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*), void* argument) {
+    if (next(kThread) == Action::fail) return injection.error;
+    return real<decltype(pthread_create)>("pthread_create")(thread, attributes, start, argument);
+}
+
+int posix_spawn(pid_t* process, const char* path, const posix_spawn_file_actions_t* actions,
+                const posix_spawnattr_t* attributes, char* const argv[], char* const environment[]) {
+    if (next(kSpawn) == Action::fail) return injection.error;
+    return real<decltype(posix_spawn)>("posix_spawn")(process, path, actions, attributes, argv, environment);
+}
+
+int pipe2(int ends[2], int flags) {
+    return next(kPipe) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_pipe2, ends, flags));
+}
+
+}  // extern "C"

@@ -1,0 +1,116 @@
+#include "judge.hpp"
+
+#include <fmt/format.h>
+#include <signal.h>
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "etlmon/checksum.hpp"
+
+namespace etlc::faults {
+
+namespace {
+
+/// The checksum that a header asks its file of targets for: `using Targets = etlmon::Targets<SIZE, 0x...>`.
+std::uint64_t asked_for(const std::string& header) {
+    const std::size_t targets = header.find("etlmon::Targets<");
+    const std::size_t number = header.find("0x", targets);
+    return targets == std::string::npos ? 0 : std::strtoull(header.c_str() + number, nullptr, 16);
+}
+
+std::uint64_t checksum(const std::string& targets) {
+    etlmon::Checksum checksum;
+    checksum.add(reinterpret_cast<const std::uint8_t*>(targets.data()), targets.size());
+    return checksum.value();
+}
+
+bool is_targets(const std::string& name) {
+    return name.ends_with(".targets.bin");
+}
+
+/// Whether the header takes the file of targets beside it.
+bool fits(const Files& files) {
+    const auto targets = std::find_if(files.begin(), files.end(), [](const auto& file) { return is_targets(file.first); });
+    const auto header = std::find_if(files.begin(), files.end(), [](const auto& file) { return file.first.ends_with(".hpp"); });
+    return targets == files.end() || header == files.end() || asked_for(header->second) == checksum(targets->second);
+}
+
+/// What is wrong with the files after a run.
+std::string wrong_files(const Command& command, const Files& files, bool killed) {
+    for (const std::string& name : command.files) {
+        const auto file = files.find(name);
+        if (file == files.end()) return name + " is gone";
+        if (file->second != command.before.at(name) && file->second != command.after.at(name)) return name + " is damaged";
+    }
+    const bool mixed = files != command.before && files != command.after;
+    if (mixed && !killed) return "files of this call lie beside earlier ones";
+    if (command.name == "compile" && mixed && fits(files) && asked_for(files.at("dock.hpp")) == 0) return "the header has no checksum";
+    const bool both = files.contains("dock.hpp") && files.contains("dock.targets.bin");
+    if (both && fits(files) != ((files.at("dock.hpp") == command.after.at("dock.hpp")) ==
+                                (files.at("dock.targets.bin") == command.after.at("dock.targets.bin"))))
+        return "a header and targets of different calls fit, or those of one call do not";
+    return "";
+}
+
+/// What is wrong with a run that ended by itself.
+std::string wrong_ending(const Command& command, const Surroundings& around, const Outcome& outcome, const Files& files) {
+    const Outcome& undisturbed = command.undisturbed;
+    const bool silent = around.error != Stream::open;
+    if (outcome.status != 0 && outcome.status != 1) return fmt::format("exit status {}", outcome.status);
+    if (outcome.status == 0) {
+        if (undisturbed.status != 0) return "a mistake goes by";
+        if (files != command.after) return "exit status 0, and a file is not written";
+        if (outcome.output != (around.output == Stream::open ? undisturbed.output : "")) return "standard output differs";
+        if (around.output != Stream::open && !undisturbed.output.empty()) return "standard output is lost";
+        if (around.error == Stream::full && !undisturbed.error.empty()) return "standard error is lost";
+        if (!silent && outcome.error != undisturbed.error) return "standard error differs";
+        return "";
+    }
+    if (!undisturbed.output.starts_with(outcome.output)) return "standard output is something else";
+    // Diagnostics are what comes last: where a part of them is lost, the rest is done.
+    const bool only_diagnostics = files == command.after && outcome.output == undisturbed.output;
+    if (!silent && outcome.error.empty() && !(only_diagnostics && !undisturbed.error.empty())) return "no message";
+    if (!command.files.empty() && files == command.after && files != command.before && !silent &&
+        undisturbed.error.starts_with(outcome.error) == false)
+        return "exit status 1, and the files are written";
+    return "";
+}
+
+}  // namespace
+
+void Judge::judge(const Scene& scene, const Command& command, const Surroundings& around, const std::string& what,
+                  const Outcome& outcome) {
+    ++runs_;
+    const Files files = scene.written(command);
+    const std::vector<std::string> left = scene.left_over(command);
+    const auto find = [&](const std::string& finding) {
+        findings_.push_back(fmt::format("{}, {}: {}; exit status {}, signal {}, said: {}", command.name, what, finding,
+                                        outcome.status, outcome.signal, outcome.error));
+    };
+    const bool wanted = around.killed_after || around.injection.find("kill") != std::string::npos;
+    const bool killed = wanted && outcome.signal == SIGKILL;
+    if (killed) ++killed_;
+    if (outcome.signal != 0 && !killed) return find("ended by a signal");
+    if (const std::string wrong = wrong_files(command, files, killed); !wrong.empty()) return find(wrong);
+    for (const std::string& name : left) {
+        const bool temporary = name.starts_with(".etlc-") && name.ends_with(".part");
+        if (!killed || !temporary) return find("leaves " + name);
+        ++left_by_kills_;
+    }
+    if (killed) return;
+    if (const std::string wrong = wrong_ending(command, around, outcome, files); !wrong.empty()) find(wrong);
+}
+
+void Judge::judge_pair(const Scene& scene, const Command& command, const Outcome& one, const Outcome& other) {
+    runs_ += 2;
+    const Files files = scene.written(command);
+    if (one.status != 0 || other.status != 0)
+        findings_.push_back(fmt::format("two at the same time: {}{}", one.error, other.error));
+    else if (!fits(files))
+        findings_.push_back("two at the same time: mixed files");
+    else if (!scene.left_over(command).empty())
+        findings_.push_back("two at the same time: leave " + scene.left_over(command).front());
+}
+
+}  // namespace etlc::faults

@@ -1,0 +1,202 @@
+// faults ETLC DATA [--long]: etlc among faults of the system. DATA is tests/unit/data.
+// Every command runs while calls of the system fail, threads cannot be made, memory, files and streams have limits, and
+// while it is killed; two run at the same time. Exit status 1 where a run does other than it must (see Judge).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdlib>
+#include <random>
+
+#include <unistd.h>
+
+#include "judge.hpp"
+#include "scene.hpp"
+
+namespace {
+
+using namespace etlc::faults;
+
+constexpr long kEvery = 1'000'000;  ///< calls: from one on, all
+
+/// How much of each kind there is.
+struct Extent {
+    long places;      ///< at which a call is disturbed, of each kind and command
+    long allocations;
+    int memories;     ///< limits of the address space
+    int kills;        ///< at random moments
+    int pairs;        ///< of calls at the same time
+};
+constexpr Extent kShort{4, 8, 4, 6, 8};
+constexpr Extent kLong{40, 400, 60, 300, 300};
+
+struct Disturbance {
+    const char* call;
+    std::vector<std::string> actions;  ///< errors by number
+    long count;                        ///< of calls in a row
+};
+
+/// What can happen to each kind of call. Errors are those that Linux gives for it.
+const std::vector<Disturbance>& disturbances() {
+    const auto error = [](int number) { return std::to_string(number); };
+    static const std::vector<Disturbance> all = {
+        {"write", {error(ENOSPC), error(EINTR), "short", "kill", "killed"}, 1},
+        {"write", {error(EIO), "short"}, kEvery},
+        {"open", {error(EMFILE), "kill"}, 1},
+        {"open", {error(ENFILE)}, kEvery},
+        {"close", {error(EIO), error(EINTR), "kill"}, 1},
+        {"link", {error(EPERM), error(ENOSPC), "kill", "killed"}, 1},
+        {"rename", {error(EBUSY), "kill", "killed"}, 1},
+        {"rename", {error(EPERM)}, kEvery},
+        {"unlink", {"kill", "killed"}, 1},
+        {"dup", {error(EMFILE)}, 1},
+        {"lock", {error(ENOLCK), error(EINTR)}, 1},
+        {"change", {error(EPERM)}, kEvery},
+        {"thread", {error(EAGAIN)}, 1},
+        {"thread", {error(EAGAIN)}, kEvery},
+        {"spawn", {error(EAGAIN)}, 1},
+        {"pipe", {error(EMFILE)}, 1},
+        {"malloc", {error(ENOMEM)}, 1},
+        {"malloc", {error(ENOMEM)}, kEvery},
+    };
+    return all;
+}
+
+/// From 1 to `last`, at most `most` of them, both ends included.
+std::vector<long> spread(long last, long most) {
+    std::vector<long> places;
+    const long n = std::min(last, most);
+    for (long i = 0; i < n; ++i) places.push_back(n == 1 ? 1 : 1 + i * (last - 1) / (n - 1));
+    return places;
+}
+
+class Campaign {
+public:
+    Campaign(Scene& scene, const Extent& extent) : scene_(scene), extent_(extent) {}
+
+    void run() {
+        for (const Command& command : scene_.commands()) {
+            fail_calls(command);
+            break_streams(command);
+            limit_files(command);
+            limit_memory(command);
+            kill_at_random(command);
+        }
+        run_at_the_same_time();
+    }
+
+    int report() const {
+        for (const std::string& finding : judge_.findings()) fmt::print("{}\n", finding);
+        fmt::print("{} commands, {} runs among faults, {} of them killed, which left {} temporary files: {} findings\n",
+                   scene_.commands().size(), judge_.runs(), judge_.killed(), judge_.left_by_kills(),
+                   judge_.findings().size());
+        return judge_.findings().empty() ? 0 : 1;
+    }
+
+private:
+    void fail_calls(const Command& command) {
+        for (const Disturbance& disturbance : disturbances()) {
+            const std::string call = disturbance.call;
+            const long most = call == "malloc" ? extent_.allocations : extent_.places;
+            for (const long first : spread(command.calls.at(call), most))
+                for (const std::string& action : disturbance.actions) {
+                    Surroundings around;
+                    around.injection = fmt::format("{}:{}:{}:{}", call, first, disturbance.count, action);
+                    disturb(command, around, around.injection);
+                }
+        }
+    }
+
+    void break_streams(const Command& command) {
+        for (const Stream input : {Stream::open, Stream::closed})
+            for (const Stream output : {Stream::open, Stream::full, Stream::closed})
+                for (const Stream error : {Stream::open, Stream::full, Stream::closed}) {
+                    Surroundings around;
+                    around.input = input;
+                    around.output = output;
+                    around.error = error;
+                    const auto words = [](Stream stream) {
+                        return stream == Stream::open ? "open" : stream == Stream::full ? "full" : "closed";
+                    };
+                    disturb(command, around, fmt::format("input {}, output {}, error {}", words(input), words(output), words(error)));
+                }
+    }
+
+    void limit_files(const Command& command) {
+        for (const rlim_t bytes : {0, 1, 100, 1000, 4096}) {
+            Surroundings around;
+            around.file_bytes = bytes;
+            disturb(command, around, fmt::format("files of at most {} bytes", bytes));
+        }
+    }
+
+    /// From what it takes to begin to what it takes to end.
+    void limit_memory(const Command& command) {
+        const Command& version = scene_.commands().back();
+        const rlim_t least = least_memory(version);
+        const rlim_t enough = least_memory(command);
+        for (int i = 0; i < extent_.memories; ++i) {
+            Surroundings around;
+            around.address_space = least + (enough - least) * static_cast<rlim_t>(i) / static_cast<rlim_t>(extent_.memories);
+            disturb(command, around, fmt::format("at most {} KiB of memory", around.address_space >> 10U));
+        }
+    }
+
+    rlim_t least_memory(const Command& command) {
+        rlim_t fails = 1U << 20U;
+        rlim_t works = rlim_t{1} << 31U;
+        while (works - fails > (64U << 10U)) {
+            Surroundings around;
+            around.address_space = fails + (works - fails) / 2;
+            scene_.restore(command);
+            (scene_.run(command, around).status == command.undisturbed.status ? works : fails) = around.address_space;
+        }
+        return works;
+    }
+
+    void kill_at_random(const Command& command) {
+        const auto begin = std::chrono::steady_clock::now();
+        scene_.run(command, {});
+        const std::chrono::duration<double> time = std::chrono::steady_clock::now() - begin;
+        for (int i = 0; i < extent_.kills; ++i) {
+            Surroundings around;
+            around.killed_after = std::uniform_real_distribution<>(0, time.count())(random_);
+            disturb(command, around, fmt::format("killed after {} s", *around.killed_after));
+        }
+    }
+
+    void disturb(const Command& command, const Surroundings& around, const std::string& what) {
+        scene_.restore(command);
+        judge_.judge(scene_, command, around, what, scene_.run(command, around));
+    }
+
+    /// Specs differ, the outputs are the same files: in the end they are of one call.
+    void run_at_the_same_time() {
+        const Command& command = scene_.commands().front();
+        Command earlier = command;
+        earlier.words[0] = scene_.write_earlier_spec();
+        for (int i = 0; i < extent_.pairs; ++i) {
+            scene_.restore(command);
+            Process one = scene_.start(earlier, {});
+            ::usleep(std::uniform_int_distribution<useconds_t>(0, 4000)(random_));
+            Process other = scene_.start(command, {});
+            const Outcome first = one.outcome();
+            judge_.judge_pair(scene_, command, first, other.outcome());
+        }
+    }
+
+    Scene& scene_;
+    Extent extent_;
+    Judge judge_;
+    std::mt19937 random_{1};
+};
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 3) return 2;
+    Scene scene(argv[1], argv[2]);
+    Campaign campaign(scene, argc > 3 && std::string(argv[3]) == "--long" ? kLong : kShort);
+    campaign.run();
+    return campaign.report();
+}
