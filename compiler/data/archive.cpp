@@ -109,7 +109,7 @@ diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
     });
 }
 
-/// Whether libzip, which is content with the first archive that it finds, has found this one.
+/// Whether libzip, which has rules of its own for where an archive ends, has found these members.
 bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
     if (zip_get_num_entries(archive, 0) != static_cast<zip_int64_t>(members.size())) return false;
     for (std::size_t i = 0; i < members.size(); ++i) {
@@ -150,7 +150,7 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
     zip_t* opened = place.in_memory ? open_memory_archive(place.bytes, code) : open_file_archive(place.path, code);
     if (opened == nullptr) return damaged(code);
     std::shared_ptr<zip> handle(opened, zip_discard);
-    if (!holds(opened, *layout)) return malformed("archive can be read in two ways: a second one lies in it");
+    if (!holds(opened, *layout)) return malformed("archive can be read in two ways");
     return Archive(std::move(handle));
 }
 

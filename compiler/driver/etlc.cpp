@@ -1,12 +1,9 @@
-// The command line.
-// Exit status: 0, all that was asked for is there; 1, it is not, and a diagnostic says why; 2, the call is wrong;
-// 3, etlc itself is at fault. Whatever a process can lack (memory, threads, a place to write to) is a case of 1.
+// The command line. Exit statuses: driver/process.hpp.
 #include <fmt/format.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cctype>
-#include <exception>
 #include <filesystem>
 #include <new>
 #include <sstream>
@@ -29,10 +26,6 @@ namespace {
 
 using namespace etlc;
 
-constexpr int kOk = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongCall = 2;
-constexpr int kOwnFault = 3;
 constexpr char kExitStatus[] =
     "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the call is wrong; 3, a\n"
     "fault of etlc itself.";
@@ -54,7 +47,7 @@ int conclude(const Call& call, const source::File& file, const diag::Sink& sink)
     const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
     const bool json = call.diagnostics == "json";
     const bool told = driver::print_error(json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
-    return sink.refused() || !told ? kFailed : kOk;
+    return sink.refused() || !told ? driver::kFailed : driver::kDone;
 }
 
 bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
@@ -190,7 +183,7 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
 
 int complain(const CLI::App& app, const std::string& mistake) {
     driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n", mistake, app.get_name()));
-    return kWrongCall;
+    return driver::kWrongCall;
 }
 
 /// --help, --version
@@ -341,11 +334,7 @@ int main(int argc, char** argv) {
     driver::prepare_process();
     try {
         return execute(argc, argv);
-    } catch (const std::bad_alloc&) {
-        driver::print_error("etlc: there is not enough memory\n");
-        return kFailed;
-    } catch (const std::exception& error) {
-        for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"}) driver::print_error(part);
-        return kOwnFault;
+    } catch (...) {
+        return driver::say_what_failed();
     }
 }

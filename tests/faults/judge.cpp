@@ -53,10 +53,23 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
     return "";
 }
 
+/// Whether a process may have been killed while files had temporary names.
+bool while_names_change(const Surroundings& around) {
+    const std::string call = around.injection.substr(0, around.injection.find(':'));
+    return around.killed_after || call == "link" || call == "rename" || call == "unlink";
+}
+
+/// Whether what goes to standard error may be among the writes that fail.
+bool cannot_speak(const Command& command, const Surroundings& around) {
+    if (!around.injection.starts_with("write:")) return false;
+    const bool only_one = around.injection.find(":1:", around.injection.find(':') + 1) != std::string::npos;
+    return !only_one || command.undisturbed.status != 0;
+}
+
 /// What is wrong with a run that ended by itself.
 std::string wrong_ending(const Command& command, const Surroundings& around, const Outcome& outcome, const Files& files) {
     const Outcome& undisturbed = command.undisturbed;
-    const bool silent = around.error != Stream::open;
+    const bool silent = around.error != Stream::open || cannot_speak(command, around);
     if (outcome.status != 0 && outcome.status != 1) return fmt::format("exit status {}", outcome.status);
     if (outcome.status == 0) {
         if (undisturbed.status != 0) return "a mistake goes by";
@@ -69,10 +82,10 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
     }
     if (!undisturbed.output.starts_with(outcome.output)) return "standard output is something else";
     // Diagnostics are what comes last: where a part of them is lost, the rest is done.
-    const bool only_diagnostics = files == command.after && outcome.output == undisturbed.output;
-    if (!silent && outcome.error.empty() && !(only_diagnostics && !undisturbed.error.empty())) return "no message";
-    if (!command.files.empty() && files == command.after && files != command.before && !silent &&
-        undisturbed.error.starts_with(outcome.error) == false)
+    const bool all_but_diagnostics = undisturbed.status == 0 && files == command.after && outcome.output == undisturbed.output;
+    const bool lost_diagnostics = !undisturbed.error.empty() && outcome.error != undisturbed.error;
+    if (!silent && outcome.error.empty() && !(all_but_diagnostics && lost_diagnostics)) return "no message";
+    if (!silent && !command.files.empty() && all_but_diagnostics && !lost_diagnostics)
         return "exit status 1, and the files are written";
     return "";
 }
@@ -95,7 +108,7 @@ void Judge::judge(const Scene& scene, const Command& command, const Surroundings
     if (const std::string wrong = wrong_files(command, files, killed); !wrong.empty()) return find(wrong);
     for (const std::string& name : left) {
         const bool temporary = name.starts_with(".etlc-") && name.ends_with(".part");
-        if (!killed || !temporary) return find("leaves " + name);
+        if (!killed || !temporary || !while_names_change(around)) return find("leaves " + name);
         ++left_by_kills_;
     }
     if (killed) return;

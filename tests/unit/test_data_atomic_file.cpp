@@ -153,7 +153,9 @@ TEST(AtomicWrite, AKilledWriterLeavesNothing) {
 class SeveralFiles : public ::testing::Test {
 protected:
     void create(bool with_old) {
-        if (with_old) EXPECT_FALSE(write_file_atomically(path("a"), "old", Code::unreadable_trace));
+        if (with_old) {
+            EXPECT_FALSE(write_file_atomically(path("a"), "old", Code::unreadable_trace));
+        }
         for (const char* name : {"a", "b"}) {
             auto file = AtomicFile::create(path(name), Code::unreadable_trace);
             ASSERT_TRUE(file);
@@ -187,7 +189,9 @@ TEST_F(SeveralFiles, OrNoneDoes) {
         std::filesystem::remove(path("b"));
         files_.clear();
         EXPECT_EQ(std::filesystem::exists(path("a")), with_old);
-        if (with_old) EXPECT_EQ(file_bytes(path("a")), "old");
+        if (with_old) {
+            EXPECT_EQ(file_bytes(path("a")), "old");
+        }
         EXPECT_EQ(files_beside(path("a")), with_old ? 1U : 0U);
     }
 }

@@ -86,7 +86,7 @@ std::vector<Broken> broken() {
         {"not an array", zip_of({{"z.npy", "hello, hello"}}), "z", Code::malformed_array,
          "array 'z': is no .npy array: begins with 'hello,', expected '\\x93NUMPY'"},
         {"directory says the member is larger", patched(stored, size, tests::little_endian(array.size() + 4, 4)), "z",
-         Code::wrong_array_size, "array 'z': has bytes left over: float32 of shape (2,) takes 8 bytes, 12 are there"},
+         Code::malformed_archive, "archive is damaged: its directory makes no sense"},
     };
 }
 
@@ -144,13 +144,24 @@ TEST(Npz, OneArchiveAndNothingElse) {
     EXPECT_TRUE(parse_npz(with_comment(one, "made by hand"), "z"));
 }
 
+/// An archive of one array, which has the bytes of the archive `inner`.
+std::string around(const std::string& inner) {
+    return zip_of({{"z.npy", npy("|u1", "(" + std::to_string(inner.size()) + ",)", inner), false}});
+}
+
 TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
     const std::string inner = archive(false);
-    const std::string outer =
-        zip_of({{"z.npy", npy("|u1", "(" + std::to_string(inner.size()) + ",)", inner), false}});
+    const std::string outer = around(inner);
     const auto array = parse_npz(outer, "z");
-    if (array) EXPECT_EQ(array->values.size(), inner.size());
-    if (!array) EXPECT_EQ(array.failure().message, "archive can be read in two ways: a second one lies in it");
+    ASSERT_TRUE(array) << array.failure().message;
+    EXPECT_EQ(array->values.size(), inner.size());
+    // What it says of places may be right in the outer archive, and its comment be all that comes behind it.
+    const std::size_t at = outer.find(inner);
+    std::string polyglot = raised(raised(inner, inner.size() - 6, at), inner.find("PK\x01\x02") + 42, at);
+    polyglot.replace(inner.size() - 2, 2, tests::little_endian(outer.size() - at - inner.size(), 2));
+    const auto either = parse_npz(around(polyglot), "z");
+    ASSERT_TRUE(either) << either.failure().message;
+    EXPECT_EQ(either->values.size(), inner.size());
 }
 
 TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
