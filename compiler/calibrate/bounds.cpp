@@ -201,11 +201,4 @@ std::optional<Interval> interval_of(const check::Model& model, Index predicate, 
     return Interval{static_cast<double>(range.low), static_cast<double>(range.high)};
 }
 
-float strictly_above(double high) {
-    const double least = high + static_cast<double>(FLT_MIN);
-    if (!(least < static_cast<double>(FLT_MAX))) return kFloatInfinity;
-    const float at_least = up(least);
-    return static_cast<double>(at_least) > least ? at_least : std::nextafter(at_least, kFloatInfinity);
-}
-
 }  // namespace etlc::calibrate

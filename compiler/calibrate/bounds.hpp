@@ -30,8 +30,4 @@ std::optional<Interval> interval_of(const check::Model& model, Index predicate, 
 float down(double x);
 float up(double x);
 
-/// The first float32 strictly above every delta of at most `high`, so far that their difference is a normal number;
-/// infinite where there is none.
-float strictly_above(double high);
-
 }  // namespace etlc::calibrate

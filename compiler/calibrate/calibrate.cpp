@@ -3,11 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 
 #include "calibrate/parallel.hpp"
-#include "calibrate/rank.hpp"
 #include "check/adaptation.hpp"
+#include "check/conformal.hpp"
 #include "check/provenance.hpp"
 #include "data/episodes.hpp"
 #include "data/file.hpp"
@@ -21,34 +20,6 @@ using diag::Code;
 
 std::string counted(std::uint64_t n, const std::string& noun) {
     return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
-
-/// One episode twice would count twice.
-void refuse_duplicates(const std::vector<Demonstration>& demonstrations, diag::Sink& sink) {
-    std::map<std::string, std::string> first;
-    std::size_t reported = 0;
-    for (const Demonstration& demonstration : demonstrations) {
-        const auto [at, is_new] = first.try_emplace(demonstration.hash, demonstration.path);
-        if (is_new || ++reported > kMostReported) continue;
-        sink.report(data::in_file({Code::duplicate_episode, fmt::format("is the same episode as {}", at->second)},
-                                  demonstration.path))
-            .note("demonstrations have to be independent recordings: one that counts twice voids the guarantee");
-    }
-}
-
-/// A target taken from a demonstration is at distance 0 of it, which no later episode will be.
-void refuse_leaks(const check::Model& model, const std::vector<Demonstration>& demonstrations, diag::Sink& sink) {
-    std::size_t reported = 0;
-    for (const Demonstration& demonstration : demonstrations) {
-        if (!demonstration.leak || ++reported > kMostReported) continue;
-        const Leak& leak = *demonstration.leak;
-        sink.report(data::in_file(
-                        {Code::target_in_data,
-                         fmt::format("step {} is row {} of target '{}', from which '{}' measures", leak.frame, leak.row,
-                                     model.targets[leak.target].name, model.predicates[leak.predicate].name)},
-                        demonstration.path))
-            .note("targets have to come from other recordings: at a distance of 0 this one voids the guarantee");
-    }
 }
 
 class Refusing {
@@ -103,7 +74,7 @@ private:
 
     void too_few(const check::Predicate& p) {
         const bool pooled = p.threshold.origin == ThresholdOrigin::class_conditional;
-        const std::uint64_t needed = scores_needed(p.threshold.alpha);
+        const std::uint64_t needed = check::scores_needed(p.threshold.alpha);
         const std::string what = pooled ? "positive frame" : "demonstration";
         auto& error = sink_.report(
             Code::too_few_scores, p.threshold.span,
@@ -155,11 +126,11 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     }
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
+    const Leaks leaks(model, predicates);
     const auto demonstrations = over_episodes<Demonstration>(
-        paths, request, sink, [&] { return std::make_unique<Scorer>(model, predicates, request.names); });
+        paths, request, sink, [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
     if (!demonstrations) return std::nullopt;
-    refuse_duplicates(*demonstrations, sink);
-    refuse_leaks(model, *demonstrations, sink);
+    refuse_void(model, *demonstrations, {}, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;
@@ -183,6 +154,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         all.push_back(std::get<Fitted>(fitted));
         check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
         threshold.value = all.back().epsilon;
+        if (threshold.adaptation)
+            threshold.value = *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
         threshold.n = all.back().n;
         threshold.k = all.back().k;
         result.file.predicates[predicate.name] = entry_of(model, predicates[i], *demonstrations, i, all.back());

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/bounds.hpp"
-#include "calibrate/rank.hpp"
 #include "check/adaptation.hpp"
+#include "check/conformal.hpp"
 
 namespace etlc::calibrate {
 
@@ -25,16 +24,25 @@ struct HalfF1 {
 
 }  // namespace
 
+void mirror(Fitted& fitted, bool upper_bound) {
+    if (!upper_bound) {
+        fitted.epsilon = 0.0F - fitted.epsilon;  // 0 rather than -0
+        for (double& score : fitted.scores) score = 0.0 - score;
+    }
+    std::sort(fitted.scores.begin(), fitted.scores.end());
+}
+
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
     Fitted result;
     result.n = reaches.size();
     if (result.n == 0) return Refusal::no_positives;
-    result.k = rank(alpha, result.n);
+    result.k = check::rank(alpha, result.n);
     if (result.k > result.n) return Refusal::too_few;
     const auto kth = reaches.begin() + static_cast<std::ptrdiff_t>(result.k - 1);
     std::nth_element(reaches.begin(), kth, reaches.end());
     if (std::isinf(*kth)) return Refusal::not_finite;
-    result.epsilon = strictly_above(*kth);
+    result.epsilon = check::strictly_above(*kth);
+    result.scores = {*kth};
     if (std::isinf(result.epsilon)) return Refusal::not_finite;
     return result;
 }
@@ -62,14 +70,14 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
         result.f1 = here.value();
     }
     if (best.true_positives == 0) return Refusal::no_f1;
+    result.scores = {static_cast<double>(result.epsilon)};
     return result;
 }
 
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of) {
     std::vector<Scores::Labelled> labelled;
     std::vector<double> reaches;
-    std::vector<double> measured;
-    const double sign = predicate.upper_bound() ? 1 : -1;
+    std::vector<double> by_episode;
     for (const Demonstration& demonstration : demonstrations) {
         const Scores& scores = demonstration.scores[of];
         labelled.insert(labelled.end(), scores.labelled.begin(), scores.labelled.end());
@@ -77,21 +85,18 @@ Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& dem
             reaches.insert(reaches.end(), scores.reaches.begin(), scores.reaches.end());
         } else if (scores.has_score) {
             reaches.push_back(scores.worst_reach);
-            measured.push_back(sign * static_cast<double>(scores.worst));
+            by_episode.push_back(scores.worst_reach);
         }
     }
     const bool is_f1 = predicate.threshold.origin == ThresholdOrigin::f1;
     Fit fit = is_f1 ? fit_f1(std::move(labelled), predicate.strict())
                     : fit_rank(std::move(reaches), predicate.threshold.alpha);
     if (auto* fitted = std::get_if<Fitted>(&fit)) {
-        fitted->epsilon = predicate.upper_bound() ? fitted->epsilon : 0.0F - fitted->epsilon;  // 0 rather than -0
-        if (predicate.threshold.adaptation) {
-            const auto start = check::start(*predicate.threshold.adaptation, fitted->epsilon, predicate.upper_bound());
-            if (!start) return OutOfRange{fitted->epsilon};
-            fitted->epsilon = *start;
-        }
-        std::sort(measured.begin(), measured.end());
-        fitted->scores = std::move(measured);
+        if (!by_episode.empty()) fitted->scores = std::move(by_episode);
+        mirror(*fitted, predicate.upper_bound());
+        const auto& adaptation = predicate.threshold.adaptation;
+        if (adaptation && !check::start(*adaptation, fitted->epsilon, predicate.upper_bound()))
+            return OutOfRange{fitted->epsilon};
     }
     return fit;
 }

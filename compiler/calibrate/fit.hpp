@@ -14,11 +14,12 @@
 namespace etlc::calibrate {
 
 struct Fitted {
-    float epsilon = 0;
-    std::uint64_t n = 0;         ///< scores: demonstrations (conformal) or frames
-    std::uint64_t k = 0;         ///< rank taken; 0 for f1
-    std::vector<double> scores;  ///< conformal: as measured, ascending; empty for the pooled methods
-    double f1 = 0;               ///< f1: what epsilon reaches on the frames that it was chosen on
+    float epsilon = 0;    ///< of an adaptive threshold: before it is put on its grid
+    std::uint64_t n = 0;  ///< scores: demonstrations (conformal) or frames
+    std::uint64_t k = 0;  ///< rank taken; 0 for f1
+    /// Conformal: all, as far out as any build may measure them, ascending. Of the pooled methods the one taken.
+    std::vector<double> scores;
+    double f1 = 0;  ///< f1: what epsilon reaches on the frames that it was chosen on
 };
 
 /// Why no threshold can be had, in the order in which it is looked for.
@@ -39,7 +40,11 @@ using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 /// `of`: which of the demonstrations' scores are this predicate's.
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of);
 
-/// The first float32 strictly beyond the k-th smallest, k the rank of alpha. `scores` stays empty.
+/// From scores of which a smaller one always is a better one, to thresholds and scores as they are compared: those of
+/// >= and > change their sign. Scores are ascending after it.
+void mirror(Fitted& fitted, bool upper_bound);
+
+/// The first float32 strictly beyond the k-th smallest, k the rank of alpha.
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
 /// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1; of equals the

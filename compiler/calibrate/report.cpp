@@ -102,15 +102,18 @@ std::string monitor_report(const check::Model& model) {
     std::size_t widest = 0;
     for (const check::Monitor& monitor : model.monitors) widest = std::max(widest, monitor.name.size());
     std::string text = "\nguarantees\n";
+    bool zero_aside = false;
     for (const check::Monitor& monitor : model.monitors) {
         if (monitor.calibration) continue;  // its own calibration comes later
         for (const Claim& claim : check::claims(model, monitor)) {
+            zero_aside |= claim.zero_aside;
             if (claim.part.empty())
                 text += fmt::format("    {:<{}}  {}\n", monitor.name, widest, check::text(claim));
             else
                 text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part, check::text(claim));
         }
     }
+    if (zero_aside) text += fmt::format("    {}\n", check::kZeroAside);
     return text +
            "    Probabilities are over the demonstrations and the new episode together, which have to be exchangeable, "
            "per episode as recorded.\n"

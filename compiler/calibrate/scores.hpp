@@ -5,10 +5,10 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <string>
 #include <vector>
 
+#include "calibrate/admission.hpp"
 #include "calibrate/recording.hpp"
 #include "plan/evaluator.hpp"
 
@@ -27,26 +27,13 @@ struct Scores {
     bool from_array = false;       ///< labels are those of an array of the episode
 
     bool has_score = false;          ///< some positive frame was measured
-    float worst = 0;                 ///< the greatest score of a positive frame, as measured
-    double worst_reach = 0;          ///< and the greatest that any build may have measured
+    double worst_reach = 0;          ///< the greatest score of one that any build may have measured
     std::vector<double> reaches;     ///< class_conditional: those of all positive frames
     std::vector<Labelled> labelled;  ///< f1: all measured frames
 };
 
-/// A frame whose sample is a row of a target set.
-struct Leak {
-    Index predicate = 0;
-    Index target = 0;
-    std::uint32_t row = 0;
-    std::uint64_t frame = 0;
-};
-
-struct Demonstration {
-    std::string path;
-    std::string hash;
-    std::uint64_t frames = 0;
+struct Demonstration : Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
-    std::optional<Leak> leak;    ///< the first one
 };
 
 /// Predicates of the model whose threshold is calibrated, in order.
@@ -55,7 +42,7 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 /// Scores one demonstration after the other. Not shared between threads.
 class Scorer {
 public:
-    Scorer(const check::Model& model, std::vector<Index> predicates, data::NamesInFile names);
+    Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates, data::NamesInFile names);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
 
@@ -64,10 +51,9 @@ public:
 
 private:
     void add(Index predicate, Label label, Scores& scores) const;
-    std::optional<Leak> leak(std::uint64_t frame) const;
-    bool is_row(const check::Distance& distance, std::uint32_t row) const;
 
     const check::Model& model_;
+    const Leaks& leaks_;
     std::vector<Index> predicates_;
     plan::Plan plan_;
     plan::Evaluator evaluator_;

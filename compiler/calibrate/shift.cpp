@@ -3,13 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <map>
 #include <set>
 
 #include "calibrate/parallel.hpp"
-#include "calibrate/rank.hpp"
 #include "calibrate/shift_scores.hpp"
 #include "check/calibrated.hpp"
+#include "check/conformal.hpp"
 #include "check/guarantees.hpp"
 #include "check/provenance.hpp"
 #include "data/episodes.hpp"
@@ -32,28 +31,6 @@ bool against_alarms(const check::Monitor& monitor) {
 /// What the ground truth does at the steps that give a score.
 std::string_view truth_word(const check::Monitor& monitor) {
     return against_alarms(monitor) ? "violated" : "satisfied";
-}
-
-void refuse_seen(const std::vector<MonitorEpisode>& episodes, const thresholds::File& before, diag::Sink& sink) {
-    const std::set<std::string> known(before.episodes.begin(), before.episodes.end());
-    std::map<std::string, std::string> first;
-    std::size_t reported = 0;
-    for (const MonitorEpisode& episode : episodes) {
-        const auto [at, is_new] = first.try_emplace(episode.hash, episode.path);
-        const bool seen = known.contains(episode.hash);
-        if ((is_new && !seen) || ++reported > kMostReported) continue;
-        if (seen)
-            sink.report(data::in_file(
-                            {Code::not_disjoint, "is an episode that thresholds of predicates were calibrated on"},
-                            episode.path))
-                .note(
-                    "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better there "
-                    "than they will be");
-        else
-            sink.report(data::in_file({Code::duplicate_episode, fmt::format("is the same episode as {}", at->second)},
-                                      episode.path))
-                .note("demonstrations have to be independent recordings: one that counts twice voids the guarantee");
-    }
 }
 
 struct Totals {
@@ -87,8 +64,8 @@ void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t epi
             Code::too_few_scores, threshold.span,
             fmt::format(
                 "alpha = {} needs at least {} in which the ground truth of '{}' is {} at some step; there {} {}",
-                threshold.alpha, counted(scores_needed(threshold.alpha), "episode"), monitor.name, truth_word(monitor),
-                totals.with_score == 1 ? "is" : "are", totals.with_score));
+                threshold.alpha, counted(check::scores_needed(threshold.alpha), "episode"), monitor.name,
+                truth_word(monitor), totals.with_score == 1 ? "is" : "are", totals.with_score));
         if (totals.with_score < episodes)
             error.note(fmt::format("of {}, {} without such a step {} left out", counted(episodes, "episode"),
                                    episodes - totals.with_score, episodes - totals.with_score == 1 ? "is" : "are"));
@@ -150,8 +127,7 @@ std::vector<Index> labelled_predicates(const check::Model& model, const std::vec
     std::set<Index> found;
     for (const Index monitor : monitors)
         for (const Index predicate : check::predicates_of(model, model.monitors[monitor].formula))
-            if (!check::is_own_truth(model, predicate) && !model.predicates[predicate].name.empty())
-                found.insert(predicate);
+            if (!check::is_own_truth(model, predicate)) found.insert(predicate);
     return {found.begin(), found.end()};
 }
 
@@ -165,10 +141,12 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, const M
     const std::vector<Index> monitors = calibrated_monitors(model);
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
-    const auto episodes = over_episodes<MonitorEpisode>(
-        paths, request, sink, [&] { return std::make_unique<MonitorScorer>(model, plans, monitors, request.names); });
+    const Leaks leaks(model, labelled_predicates(model, monitors));
+    const auto episodes = over_episodes<MonitorEpisode>(paths, request, sink, [&] {
+        return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
+    });
     if (!episodes) return std::nullopt;
-    refuse_seen(*episodes, before, sink);
+    refuse_void(model, *episodes, before.episodes, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
@@ -186,10 +164,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, const M
             continue;
         }
         auto& fitted = std::get<Fitted>(fit);
-        const bool alarms = against_alarms(monitor);
-        if (!alarms) fitted.epsilon = 0.0F - fitted.epsilon;
-        for (const double score : totals.scores) fitted.scores.push_back(alarms ? score : -score);
-        std::sort(fitted.scores.begin(), fitted.scores.end());
+        fitted.scores = totals.scores;
+        mirror(fitted, against_alarms(monitor));
         result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *episodes);
         result.report += monitor_report(model, monitor, totals, fitted, episodes->size());
     }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/admission.hpp"
 #include "calibrate/calibrate.hpp"
 #include "calibrate/ground_truth.hpp"
 #include "plan/evaluator.hpp"
@@ -38,10 +39,7 @@ struct MonitorScore {
     double worst = 0;           ///< where steps > 0: the worst rho over them in any build
 };
 
-struct MonitorEpisode {
-    std::string path;
-    std::string hash;
-    std::uint64_t frames = 0;
+struct MonitorEpisode : Recorded {
     std::vector<MonitorScore> scores;  ///< per calibrated monitor
 };
 

@@ -36,10 +36,11 @@ std::vector<Index> inputs_of(const check::Model& model, const MonitorPlans& plan
 
 }  // namespace
 
-MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans, const std::vector<Index>& monitors,
-                             const data::NamesInFile& names)
+MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans, const Leaks& leaks,
+                             const std::vector<Index>& monitors, const data::NamesInFile& names)
     : model_(model),
       plans_(plans),
+      leaks_(leaks),
       monitors_(monitors),
       names_(names),
       highest_(plans.monitors),
@@ -72,6 +73,7 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
         const auto more = recording->next();
         if (!more) return more.failure();
         if (!*more) break;
+        if (!result.leak) result.leak = leaks_.find(recording->samples(), recording->frames() - 1);
         std::vector<plan::Sample> labelled = recording->samples();
         labelled.resize(plans_.ground_truth.model.inputs.size());
         for (const Index predicate : wanted_.predicates)

@@ -15,8 +15,8 @@ namespace etlc::calibrate {
 /// Not shared between threads; all that it is given outlives it.
 class MonitorScorer {
 public:
-    MonitorScorer(const check::Model& model, const MonitorPlans& plans, const std::vector<Index>& monitors,
-                  const data::NamesInFile& names);
+    MonitorScorer(const check::Model& model, const MonitorPlans& plans, const Leaks& leaks,
+                  const std::vector<Index>& monitors, const data::NamesInFile& names);
     MonitorScorer(const MonitorScorer&) = delete;
     MonitorScorer& operator=(const MonitorScorer&) = delete;
 
@@ -29,6 +29,7 @@ private:
 
     const check::Model& model_;
     const MonitorPlans& plans_;
+    const Leaks& leaks_;
     const std::vector<Index>& monitors_;
     const data::NamesInFile& names_;
     std::vector<std::size_t> said_at_;   ///< per calibrated monitor, its index in plans_.monitors

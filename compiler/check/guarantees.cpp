@@ -99,24 +99,29 @@ std::string_view uncovered(const Model& model, Index predicate) {
     return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
 }
 
-std::string name_of(const Model& model, Index predicate) {
-    const Predicate& p = model.predicates[predicate];
-    return p.name.empty() ? p.text + p.threshold.text : p.name;
+/// At its threshold, where robustness is 0 and so satisfied, `<` and `>` say no, and `<=` and `>=` yes: negated, no.
+bool says_no_at_zero(const Predicate& predicate, const Polarity& polarity) {
+    return predicate.strict() ? polarity.positive : polarity.negative;
 }
 
-Claim claim(const Model& model, Literal part) {
+Claim claim(const Model& model, Literal part, Values values) {
     Claim result;
+    bool no_at_zero = false;
     Polarity all;
     std::vector<std::string> alphas;
     std::string positive;
     std::string negative;
     for (const auto& [predicate, polarity] : predicates_in(model, part)) {
         const std::string_view why = uncovered(model, predicate);
-        if (!why.empty() && result.why.empty()) result.why = fmt::format("'{}' {}", name_of(model, predicate), why);
-        if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) continue;
+        if (!why.empty() && result.why.empty())
+            result.why = fmt::format("'{}' {}", model.predicates[predicate].shown(), why);
+        if (model.predicates[predicate].threshold.origin != ThresholdOrigin::conformal) {
+            no_at_zero |= says_no_at_zero(model.predicates[predicate], polarity);
+            continue;
+        }
         alphas.push_back(model.predicates[predicate].threshold.alpha);
-        if (polarity.positive) positive = name_of(model, predicate);
-        if (polarity.negative) negative = name_of(model, predicate);
+        if (polarity.positive) positive = model.predicates[predicate].shown();
+        if (polarity.negative) negative = model.predicates[predicate].shown();
         all.positive |= polarity.positive;
         all.negative |= polarity.negative;
     }
@@ -132,6 +137,8 @@ Claim claim(const Model& model, Literal part) {
     } else {
         result.kind = all.positive ? Claim::Kind::missed_success : Claim::Kind::missed_alarm;
     }
+    const bool of_violations = result.kind == Claim::Kind::exact || result.kind == Claim::Kind::missed_alarm;
+    result.zero_aside = of_violations && no_at_zero && values == Values::robustness;
     return result;
 }
 
@@ -161,20 +168,21 @@ bool is_own_truth(const Model& model, Index predicate) {
     return p.threshold.origin == ThresholdOrigin::literal && !labelled && !reads_embedding(model, p);
 }
 
-std::vector<Claim> claims(const Model& model, const Monitor& monitor) {
+std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
     if (monitor.calibration) {
         const bool alarms = monitor.calibration->against == Against::missed_alarm;
-        Claim whole{alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success, {}, {}, {}};
+        Claim whole;
+        whole.kind = alarms ? Claim::Kind::missed_alarm : Claim::Kind::missed_success;
         whole.bound = Decimal::parse(monitor.calibration->threshold.alpha).text();
         return {whole};
     }
-    std::vector<Claim> result{claim(model, {monitor.formula, false})};
+    std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
     if (result.front().kind != Claim::Kind::nothing) return result;
     std::vector<Literal> conjuncts;
     collect_conjuncts(model, {monitor.formula, false}, conjuncts);
     if (conjuncts.size() < 2) return result;
     for (const Literal conjunct : conjuncts) {
-        Claim part = claim(model, conjunct);
+        Claim part = claim(model, conjunct, values);
         part.part = print(model, conjunct.formula);
         if (conjunct.negated) part.part = fmt::format("!({})", part.part);
         result.push_back(std::move(part));
@@ -183,12 +191,14 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor) {
 }
 
 std::string text(const Claim& claim) {
+    const std::string_view aside = claim.zero_aside ? ", robustness 0 aside" : "";
     switch (claim.kind) {
-        case Claim::Kind::exact: return "exact: nothing in it is calibrated, and its predicates are their own truth";
+        case Claim::Kind::exact:
+            return fmt::format("exact{}: nothing in it is calibrated, and its predicates are their own truth", aside);
         case Claim::Kind::missed_success:
             return fmt::format("P(some verdict of a new episode misses a success) <= {}", claim.bound);
         case Claim::Kind::missed_alarm:
-            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}", claim.bound);
+            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}{}", claim.bound, aside);
         case Claim::Kind::nothing: break;
     }
     return "nothing: " + claim.why;

@@ -152,6 +152,8 @@ struct Predicate {
 
     bool upper_bound() const { return comparison == Comparison::less_equal || comparison == Comparison::less; }
     bool strict() const { return comparison == Comparison::less || comparison == Comparison::greater; }
+    /// What messages call it: its name, or what it says.
+    std::string shown() const { return name.empty() ? text + threshold.text : name; }
     /// A plain aggregated distance, not a general expression: it has a nearest row.
     bool plain_distance() const { return expression.kind == Expr::Kind::distance; }
 };

@@ -3,6 +3,7 @@
 
 #include "check/calibrated.hpp"
 #include "check/formulas.hpp"
+#include "check/guarantees.hpp"
 #include "check/horizons.hpp"
 #include "check/steps.hpp"
 
@@ -103,7 +104,7 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// The node of a predicate whose threshold `is` so, at or below `root`; kNone where there is none.
+/// The node of a predicate that `is` so, at or below `root`; kNone where there is none.
 template <class Is>
 Index predicate_node(const Model& model, Index root, Is is) {
     std::vector<bool> visited(model.formulas.size());
@@ -114,7 +115,7 @@ Index predicate_node(const Model& model, Index root, Is is) {
         if (visited[at]) continue;
         visited[at] = true;
         const Formula& formula = model.formulas[at];
-        if (formula.kind == Formula::Kind::predicate && is(model.predicates[formula.index].threshold)) return at;
+        if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
         pending.insert(pending.end(), formula.operands.begin(), formula.operands.end());
     }
     return kNone;
@@ -122,13 +123,31 @@ Index predicate_node(const Model& model, Index root, Is is) {
 
 /// A shift is guaranteed for the thresholds that it was fitted with.
 void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
-    const Index at = predicate_node(c.model, monitor.formula,
-                                    [](const Threshold& threshold) { return threshold.adaptation.has_value(); });
+    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
+        return c.model.predicates[predicate].threshold.adaptation.has_value();
+    });
     if (at == kNone) return;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
              fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of '{}' is adaptive",
                          monitor.name, c.model.predicates[c.model.formulas[at].index].name))
         .note(c.model.formulas[at].span, "it is used here");
+}
+
+/// What says of an embedding has a truth by its name. Held against itself, it could not but agree.
+void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
+    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
+        return c.model.predicates[predicate].name.empty() && !is_own_truth(c.model, predicate);
+    });
+    if (at == kNone) return;
+    const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
+    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+             fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; '{}' has no name by "
+                         "which a truth could be given",
+                         monitor.name, comparison))
+        .note(c.model.formulas[at].span, "it is used here")
+        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth near = ...;', or an "
+                          "array truth.near in the episodes",
+                          comparison));
 }
 
 /// The predicate that the truth is of; kNone where there is none, or another truth of it.
@@ -159,8 +178,8 @@ void check_truths(Context& c) {
     MonitorCheck check(c);
     for (const Truth& truth : truths) {
         check.truth(truth, first.at(truth.predicate));
-        const Index calibrated = predicate_node(c.model, truth.formula, [](const Threshold& threshold) {
-            return threshold.origin != ThresholdOrigin::literal;
+        const Index calibrated = predicate_node(c.model, truth.formula, [&](Index predicate) {
+            return c.model.predicates[predicate].threshold.origin != ThresholdOrigin::literal;
         });
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
@@ -191,7 +210,9 @@ void check_monitors(Context& c) {
             check.sliding(monitor, name);
         else
             check.prefix(monitor, name);
-        if (monitor.calibration) refuse_moving_thresholds(c, monitor);
+        if (!monitor.calibration) continue;
+        refuse_moving_thresholds(c, monitor);
+        refuse_comparisons_without_truth(c, monitor);
     }
 }
 

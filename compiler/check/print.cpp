@@ -77,8 +77,7 @@ private:
         out_ += op.symbol;
         if (formula.kind == Kind::boolean_input) out_ += model_.inputs[formula.index].name;
         if (formula.kind != Kind::predicate) return;
-        const Predicate& predicate = model_.predicates[formula.index];
-        out_ += predicate.name.empty() ? predicate.text + predicate.threshold.text : predicate.name;
+        out_ += model_.predicates[formula.index].shown();
     }
 
     void write_prefix(const Formula& formula, const Operator& op) {

@@ -14,18 +14,29 @@ std::string weights_hash(const Distance& distance) {
     return data::content_hash({distance.weights.size()}, distance.weights);
 }
 
-void add_distances(const Model& model, const Expr& expression, std::map<std::string, std::string>& hashes) {
+using Hashes = std::map<std::string, std::string>;
+
+/// Samples that are taken as they are need no hash: what is left of the declaration is in the episode.
+void add_input(const Input& input, Hashes& hashes) {
+    const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
+    if (!narrowed && !input.has_range && input.hold == 0) return;
+    hashes[input.name] = data::content_hash({static_cast<std::uint64_t>(input.type), input.hold},
+                                            {input.scale, input.range.low, input.range.high});
+}
+
+void add_distances(const Model& model, const Expr& expression, Hashes& hashes) {
     if (expression.kind == Expr::Kind::distance) {
         const Distance& distance = model.distances[expression.index];
         const Target& target = model.targets[distance.target];
         hashes[target.name] = target.hash;
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
-        for (const Index index : distance.point) {
-            const Input& input = model.inputs[index];
-            if (input.type == InputType::i8) hashes[input.name] = data::content_hash({1}, {input.scale});
-        }
     }
     for (const Expr& argument : expression.arguments) add_distances(model, argument, hashes);
+}
+
+void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
+    add_distances(model, model.predicates[predicate].expression, hashes);
+    for (const Index input : model.predicates[predicate].inputs) add_input(model.inputs[input], hashes);
 }
 
 std::vector<bool> reachable(const Model& model, Index root) {
@@ -38,11 +49,21 @@ std::vector<bool> reachable(const Model& model, Index root) {
     return seen;
 }
 
-std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen) {
+/// Indices of what stands at the atoms of this kind.
+std::set<Index> atoms_in(const Model& model, const std::vector<bool>& seen, Formula::Kind kind) {
     std::set<Index> found;
     for (Index i = 0; i < seen.size(); ++i)
-        if (seen[i] && model.formulas[i].kind == Formula::Kind::predicate) found.insert(model.formulas[i].index);
+        if (seen[i] && model.formulas[i].kind == kind) found.insert(model.formulas[i].index);
     return found;
+}
+
+std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen) {
+    return atoms_in(model, seen, Formula::Kind::predicate);
+}
+
+void add_flags(const Model& model, const std::vector<bool>& seen, Hashes& hashes) {
+    for (const Index input : atoms_in(model, seen, Formula::Kind::boolean_input))
+        add_input(model.inputs[input], hashes);
 }
 
 /// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
@@ -86,13 +107,13 @@ std::string_view method_name(ThresholdOrigin origin) {
 Provenance provenance(const Model& model, Index predicate) {
     Provenance result;
     result.predicate = model.predicates[predicate].text;
-    add_distances(model, model.predicates[predicate].expression, result.targets);
+    add_predicate(model, predicate, result.targets);
     for (const Truth& truth : model.truths) {
         if (truth.predicate != predicate || truth.formula == kNone) continue;
         const std::vector<bool> seen = reachable(model, truth.formula);
         result.truth = text_with_definitions(model, truth.formula, seen);
-        for (const Index index : predicates_in(model, seen))
-            add_distances(model, model.predicates[index].expression, result.truth_targets);
+        for (const Index index : predicates_in(model, seen)) add_predicate(model, index, result.truth_targets);
+        add_flags(model, seen, result.truth_targets);
     }
     return result;
 }
@@ -104,7 +125,9 @@ std::vector<Index> predicates_of(const Model& model, Index formula) {
 
 Provenance provenance(const Model& model, const Monitor& monitor) {
     Provenance result;
-    result.predicate = text_with_definitions(model, monitor.formula, reachable(model, monitor.formula));
+    const std::vector<bool> seen = reachable(model, monitor.formula);
+    result.predicate = text_with_definitions(model, monitor.formula, seen);
+    add_flags(model, seen, result.targets);
     for (const Index predicate : predicates_of(model, monitor.formula)) {
         Provenance of = provenance(model, predicate);
         result.targets.merge(of.targets);

@@ -17,9 +17,10 @@ struct Provenance {
     std::string predicate;  ///< canonical text without the threshold
     std::string truth;      ///< canonical text of the truth formula, its predicates and lets written out; empty: none
     /// Content hashes: of every target that the predicate measures against, by its name; of the weights of a
-    /// mahalanobis distance, by the distance's text; of the scale of an i8 input, by the input's name.
+    /// mahalanobis distance, by the distance's text; of what an input's declaration makes of its samples (float16 or
+    /// int8, its scale, range and hold), by the input's name, where it takes them as they are not.
     std::map<std::string, std::string> targets;
-    /// The same of what only the truth formula measures.
+    /// The same of what the truth formula measures and reads.
     std::map<std::string, std::string> truth_targets;
 };
 

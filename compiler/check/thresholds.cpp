@@ -8,6 +8,7 @@
 #include "check/adaptation.hpp"
 #include "check/calibrated.hpp"
 #include "check/check.hpp"
+#include "check/consistency.hpp"
 #include "check/decimal.hpp"
 #include "check/provenance.hpp"
 #include "check/steps.hpp"
@@ -71,12 +72,12 @@ public:
             add("alpha", entry_.alpha, threshold_.alpha);
         if (entry_.predicate != now_.predicate) add(what_, entry_.predicate, now_.predicate);
         add_changed(now_.targets);
-        if (entry_.truth != "array") {
-            if (entry_.truth != now_.truth)
-                add("truth", entry_.truth, now_.truth.empty() ? "none" : now_.truth);
-            else
-                add_changed(now_.truth_targets);
-        }
+        const bool by_array = entry_.truth == "array" && what_ == "predicate";
+        if (!by_array && entry_.truth != now_.truth)
+            add("truth", entry_.truth, now_.truth.empty() ? "none" : now_.truth);
+        else if (!by_array)
+            add_changed(now_.truth_targets);
+        add_gone(by_array);
         return std::move(found_);
     }
 
@@ -95,16 +96,33 @@ private:
             const auto then = entry_.targets.find(name);
             // A target that the entry does not know belongs to a predicate that has changed, which has been said.
             if (then == entry_.targets.end() && found_.empty())
-                found_.push_back(fmt::format("it does not say for which {} of '{}'", what_is_hashed(name), name));
+                found_.push_back(is_input(name)
+                                     ? fmt::format("the declaration of '{}' changed", name)
+                                     : fmt::format("it does not say for which {} of '{}'", what_is_hashed(name), name));
             if (then != entry_.targets.end() && then->second != hash)
                 found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
         }
     }
 
+    /// What the entry was calibrated with, and is no more.
+    void add_gone(bool by_array) {
+        if (!found_.empty()) return;  // which has said so
+        for (const auto& [name, hash] : entry_.targets)
+            if (!now_.targets.contains(name) && (by_array || !now_.truth_targets.contains(name)))
+                found_.push_back(is_input(name)
+                                     ? fmt::format("the declaration of '{}' changed", name)
+                                     : fmt::format("it was calibrated with '{}', which does not come into it", name));
+    }
+
+    bool is_input(const std::string& name) const {
+        return std::any_of(model_.inputs.begin(), model_.inputs.end(),
+                           [&](const Input& input) { return input.name == name; });
+    }
+
     std::string_view what_is_hashed(const std::string& name) const {
-        const auto is_named = [&](const auto& declared) { return declared.name == name; };
-        if (std::any_of(model_.targets.begin(), model_.targets.end(), is_named)) return "values";
-        return std::any_of(model_.inputs.begin(), model_.inputs.end(), is_named) ? "scale" : "weights";
+        const bool target = std::any_of(model_.targets.begin(), model_.targets.end(),
+                                        [&](const Target& declared) { return declared.name == name; });
+        return target ? "values" : is_input(name) ? "declaration" : "weights";
     }
 
     const Model& model_;
@@ -115,37 +133,55 @@ private:
     std::vector<std::string> found_;
 };
 
-/// Takes epsilon from the entry of that name, where it was calibrated for what `differences` compares it with.
+constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
+
+/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for something else, which
+/// `differences` finds.
 template <class Compare>
-void take(Context& c, const std::string& name, Threshold& threshold, const std::string& path,
-          const std::map<std::string, thresholds::Entry>& entries, Compare differences) {
+const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
+                                    const std::string& path, const std::map<std::string, thresholds::Entry>& entries,
+                                    Compare differences) {
     const auto found = entries.find(name);
     if (found == entries.end()) {
         c.report(Code::threshold_missing, threshold.span, fmt::format("{} has no threshold for '{}'", path, name))
-            .note("calibrate again with 'etlc calibrate'");
-        return;
+            .note(std::string(kAgain));
+        return nullptr;
     }
     const std::vector<std::string> all = differences(found->second);
-    if (!all.empty()) {
-        auto& error =
-            c.report(Code::threshold_stale, threshold.span,
-                     fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
-        for (const std::string& difference : all) error.note(difference);
-        error.note("calibrate again with 'etlc calibrate'");
+    if (all.empty()) return &found->second;
+    auto& error = c.report(Code::threshold_stale, threshold.span,
+                           fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
+    for (const std::string& difference : all) error.note(difference);
+    error.note(std::string(kAgain));
+    return nullptr;
+}
+
+/// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
+void take(Context& c, const thresholds::Entry& entry, const std::string& place, Threshold& threshold, bool upper_bound,
+          const std::string& path, const std::vector<std::string>& episodes) {
+    if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
+        auto& error = c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
+        error.note(threshold.span, "it is for this");
+        if (found->by_hand)
+            error.note("a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) <= 0.35'");
+        error.note(std::string(kAgain));
         return;
     }
-    threshold.value = found->second.epsilon;
-    threshold.value64 = static_cast<double>(found->second.epsilon);
-    threshold.n = found->second.n;
-    threshold.k = found->second.k;
+    threshold.value = entry.epsilon;
+    threshold.value64 = static_cast<double>(entry.epsilon);
+    threshold.n = entry.n;
+    threshold.k = entry.k;
 }
 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
     Predicate& predicate = c.model.predicates[index];
     Threshold& threshold = predicate.threshold;
-    take(c, predicate.name, predicate.threshold, file.path, file.predicates, [&](const thresholds::Entry& entry) {
-        return Differences(c.model, threshold, "predicate", provenance(c.model, index), entry).find();
-    });
+    const thresholds::Entry* entry =
+        find_entry(c, predicate.name, threshold, file.path, file.predicates, [&](const thresholds::Entry& found) {
+            return Differences(c.model, threshold, "predicate", provenance(c.model, index), found).find();
+        });
+    if (entry == nullptr) return;
+    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path, file.episodes);
     if (!threshold.adaptation || std::isnan(threshold.value)) return;
     const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
     if (!begin) {
@@ -159,12 +195,30 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
 
 void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
     MonitorCalibration& calibration = *monitor.calibration;
-    take(c, monitor.name, calibration.threshold, file.path, file.monitors, [&](const thresholds::Entry& entry) {
-        auto found = Differences(c.model, calibration.threshold, "formula", provenance(c.model, monitor), entry).find();
-        if (entry.against != word(calibration.against))
-            found.push_back(fmt::format("it was against: {}; it is: {}", entry.against, word(calibration.against)));
-        return found;
-    });
+    Threshold& shift = calibration.threshold;
+    const thresholds::Entry* entry =
+        find_entry(c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
+            auto found = Differences(c.model, shift, "formula", provenance(c.model, monitor), of).find();
+            if (of.against != word(calibration.against))
+                found.push_back(fmt::format("it was against: {}; it is: {}", of.against, word(calibration.against)));
+            return found;
+        });
+    if (entry == nullptr) return;
+    const std::string place = "monitors." + monitor.name;
+    if (const auto shared = shared_episode(entry->episodes, file.episodes)) {
+        c.sink
+            .report(data::in_file(
+                {Code::not_disjoint, fmt::format("'{}' has '{}', which is one of 'episodes', those that thresholds of "
+                                                 "predicates were calibrated on",
+                                                 place + ".episodes", *shared)},
+                file.path))
+            .note(shift.span, "it is for this")
+            .note(
+                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better there "
+                "than they will be");
+        return;
+    }
+    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path, entry->episodes);
 }
 
 std::vector<Monitor*> calibrated_monitors(Context& c) {

@@ -23,7 +23,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const check::Model unshifted = calibrate::unshifted(model);
     const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, labelled);
     const auto monitors = compile(unshifted, {}, sink);
-    const auto truths = compile(truth.model, {}, sink);
+    const auto truths = compile(truth.model, {}, sink, check::Values::boolean);  // what is true is not a matter of rho
     if (!monitors || !truths) return std::nullopt;
     return calibrate::calibrate_monitors(model, {monitors->plan, truths->plan, truth}, std::move(before), request,
                                          sink);

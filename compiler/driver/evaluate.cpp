@@ -49,7 +49,7 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     auto labelled = evaluate::find_labelled(model, asked, sink);
     if (!labelled) return false;
     evaluate::Subject subject = evaluate::subject(model, std::move(*labelled));
-    const auto truth = compile(std::move(subject.truth.model), request.limits, sink);
+    const auto truth = compile(std::move(subject.truth.model), request.limits, sink, check::Values::boolean);
     if (!truth) return false;
     const auto result = evaluate::evaluate(compiled->plan, truth->plan, subject, asked,
                                            thresholds_of(model, file.path(), request), sink);

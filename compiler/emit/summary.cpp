@@ -112,11 +112,22 @@ bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
     });
 }
 
+std::vector<check::Claim> claims_of(const plan::Plan& plan, const plan::Monitor& monitor) {
+    return check::claims(*plan.model, plan.model->monitors[monitor.index], plan.values);
+}
+
+bool sets_zero_aside(const plan::Plan& plan) {
+    return std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& monitor) {
+        const std::vector<check::Claim> claims = claims_of(plan, monitor);
+        return std::any_of(claims.begin(), claims.end(), [](const check::Claim& claim) { return claim.zero_aside; });
+    });
+}
+
 /// What the thresholds guarantee, a row a monitor, and a row a conjunct where nothing is said of the whole.
 std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"monitor", "guarantee"}};
     for (const plan::Monitor& monitor : plan.monitors)
-        for (const check::Claim& claim : check::claims(*plan.model, plan.model->monitors[monitor.index])) {
+        for (const check::Claim& claim : claims_of(plan, monitor)) {
             const bool whole = claim.part.empty();
             if (monitor.shifted) {
                 const check::Threshold& shift = plan.model->monitors[monitor.index].calibration->threshold;
@@ -156,8 +167,11 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     print_table(out, prefix, guarantee_rows(plan), 2);
     const std::string margin = prefix.starts_with("//") ? "// " : prefix;
     print_miss_rates(out, prefix, margin, plan);
-    if (!is_calibrated(plan, true)) return;  // nothing is said of episodes
-    out.line(blank);
+    const bool of_episodes = is_calibrated(plan, true);
+    const bool zero_aside = sets_zero_aside(plan);
+    if (of_episodes || zero_aside) out.line(blank);
+    if (zero_aside) out.line(margin + std::string(check::kZeroAside));
+    if (!of_episodes) return;
     out.line(margin +
              "Probabilities are over the demonstrations and the new episode together, exchangeable, per episode as "
              "recorded. coverage: of");

@@ -6,6 +6,7 @@
 #include <memory>
 #include <set>
 
+#include "calibrate/admission.hpp"
 #include "calibrate/parallel.hpp"
 #include "data/file.hpp"
 
@@ -33,6 +34,20 @@ bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& requ
     if (seen.size() > kMostNotes) error.note(fmt::format("and {} more", seen.size() - kMostNotes));
     error.note("keep the episodes for evaluation apart from those for calibration");
     return false;
+}
+
+/// At distance 0 a frame is easier to tell than any that is not a target.
+void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& episodes, const Request& request,
+                   diag::Sink& sink) {
+    const auto first =
+        std::find_if(episodes.begin(), episodes.end(), [](const EpisodeResult& episode) { return episode.leak; });
+    if (first == episodes.end()) return;
+    const auto leaked = std::count_if(first, episodes.end(), [](const EpisodeResult& episode) { return episode.leak; });
+    auto& warning = sink.report(data::in_file({diag::Code::target_in_evaluation, calibrate::text(model, *first->leak)},
+                                              request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
+    warning.note(fmt::format("{} of the {} episodes {} such a frame: the figures are better than on others", leaked,
+                             episodes.size(), leaked == 1 ? "has" : "have"));
+    warning.note("targets have to come from other recordings");
 }
 
 using Get = std::function<Counts(std::size_t episode)>;
@@ -141,6 +156,7 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
     for (const EpisodeResult& episode : episodes) {
         result.frames += episode.frames;
         result.repeated += contents.insert(episode.hash).second ? 0 : 1;
+        result.leaked += episode.leak ? 1 : 0;
     }
     const Bootstrap bootstrap(episodes.size());
     for (std::size_t i = 0; i < subject.labelled.size(); ++i) {
@@ -155,9 +171,7 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
                                                           : MonitorScore{});
         result.monitors.back().name = model.monitors[monitor.monitor].name;
         for (const Index p : monitor.lacking) {
-            const check::Predicate& predicate = model.predicates[p];
-            result.monitors.back().lacking.push_back(predicate.name.empty() ? predicate.text + predicate.threshold.text
-                                                                            : predicate.name);
+            result.monitors.back().lacking.push_back(model.predicates[p].shown());
         }
     }
     return result;
@@ -200,9 +214,11 @@ std::optional<std::vector<Index>> find_labelled(const check::Model& model, const
 std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
                                    const Request& request, const std::optional<thresholds::File>& seen,
                                    diag::Sink& sink) {
-    const auto episodes = calibrate::over_episodes<EpisodeResult>(
-        request.episodes, request, sink, [&] { return std::make_unique<Judge>(plan, truth, subject, request.names); });
+    const calibrate::Leaks leaks(*plan.model, subject.labelled);
+    const auto judge = [&] { return std::make_unique<Judge>(plan, truth, subject, leaks, request.names); };
+    const auto episodes = calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
     if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
+    warn_of_leaks(*plan.model, *episodes, request, sink);
     return summarise(*plan.model, subject, *episodes);
 }
 

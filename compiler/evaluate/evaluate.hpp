@@ -69,6 +69,7 @@ struct Evaluation {
     std::uint64_t episodes = 0;
     std::uint64_t frames = 0;
     std::uint64_t repeated = 0;  ///< episodes with the content of an earlier one
+    std::uint64_t leaked = 0;    ///< episodes with a frame that is a row of a target
     double step_seconds = 0;     ///< 0: the spec has no rate
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;

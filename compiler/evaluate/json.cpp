@@ -109,7 +109,8 @@ std::string monitor(const MonitorScore& m, const std::optional<double>& step_sec
 std::string json(const Evaluation& evaluation) {
     Object top(0);
     top.count("episodes", evaluation.episodes).count("frames", evaluation.frames);
-    top.count("repeated_episodes", evaluation.repeated).count("resamples", kResamples);
+    top.count("repeated_episodes", evaluation.repeated).count("leaked_episodes", evaluation.leaked);
+    top.count("resamples", kResamples);
     Object predicates(top.inner());
     for (const PredicateScore& p : evaluation.predicates) predicates.raw(p.name, predicate(p, predicates.inner()));
     Object monitors(top.inner());

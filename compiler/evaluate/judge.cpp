@@ -63,10 +63,12 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 }  // namespace
 
-Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const data::NamesInFile& names)
+Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const calibrate::Leaks& leaks,
+             const data::NamesInFile& names)
     : plan_(plan),
       truth_plan_(truth),
       subject_(subject),
+      leaks_(leaks),
       names_(names),
       said_at_(places(plan)),
       truth_at_(places(truth)),
@@ -100,6 +102,7 @@ diag::Result<EpisodeResult> Judge::score(const std::string& path) {
         const auto more = recording->next();
         if (!more) return more.failure();
         if (!*more) break;
+        if (!result.leak) result.leak = leaks_.find(recording->samples(), recording->frames() - 1);
         step(*recording, result);
     }
     finish();

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/leaks.hpp"
 #include "calibrate/recording.hpp"
 #include "data/trace.hpp"
 #include "evaluate/counts.hpp"
@@ -34,6 +35,7 @@ struct MonitorEpisode {
 
 struct EpisodeResult {
     std::string hash;
+    std::optional<calibrate::Leak> leak;  ///< the first frame that is a target
     std::uint64_t frames = 0;
     std::vector<Counts> predicates;           ///< per labelled predicate
     std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
@@ -45,7 +47,8 @@ struct EpisodeResult {
 /// Judges one episode after the other. Not shared between threads; all that it is given outlives it.
 class Judge {
 public:
-    Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const data::NamesInFile& names);
+    Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const calibrate::Leaks& leaks,
+          const data::NamesInFile& names);
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
 
@@ -71,6 +74,7 @@ private:
     const plan::Plan& plan_;
     const plan::Plan& truth_plan_;
     const Subject& subject_;
+    const calibrate::Leaks& leaks_;
     const data::NamesInFile& names_;
     std::vector<std::size_t> said_at_;   ///< per monitor, its index in plan_
     std::vector<std::size_t> truth_at_;  ///< per monitor of the ground truth, its index in truth_plan_

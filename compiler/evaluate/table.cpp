@@ -157,6 +157,9 @@ std::string table(const Evaluation& evaluation) {
     if (evaluation.repeated > 0)
         text += fmt::format("{} of the episodes repeat another's content: the intervals are too narrow\n",
                             evaluation.repeated);
+    if (evaluation.leaked > 0)
+        text += fmt::format("{} of the episodes {} a target among the frames: the figures are better than on others\n",
+                            evaluation.leaked, evaluation.leaked == 1 ? "has" : "have");
     if (!evaluation.predicates.empty()) text += predicates_part(evaluation);
     text += monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "steps");
     text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes, "episodes");

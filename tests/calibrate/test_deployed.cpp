@@ -8,7 +8,7 @@
 #include <map>
 
 #include "calibrate/bounds.hpp"
-#include "calibrate/rank.hpp"
+#include "check/conformal.hpp"
 #include "generated_program.hpp"
 #include "loading.hpp"
 #include "plan/evaluator.hpp"
@@ -165,9 +165,9 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
             for (int d = 0; d < kDemonstrations; ++d)
                 reaches.push_back(reach(*this, p, begin + static_cast<std::size_t>(d) * kFrames));
             std::sort(reaches.begin(), reaches.end());
-            const double kth = reaches[calibrate::rank("0.1", kDemonstrations) - 1];
+            const double kth = reaches[check::rank("0.1", kDemonstrations) - 1];
             const bool upper = model.predicates[p].upper_bound();
-            const float epsilon = upper ? calibrate::strictly_above(kth) : -calibrate::strictly_above(kth);
+            const float epsilon = upper ? check::strictly_above(kth) : -check::strictly_above(kth);
             const std::size_t test = begin + std::size_t{kDemonstrations} * kFrames;
             const bool by_score = reach(*this, p, test) <= kth;
             for (const auto& [flags, deltas] : built) {
@@ -188,12 +188,12 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
 
 TEST(StrictlyAbove, LeavesANormalDifference) {
     for (const float x : {-3.5F, -1e-20F, 0.0F, 1e-44F, 1.2e-38F, 1e-30F, 0.25F, 1e30F}) {
-        const float epsilon = calibrate::strictly_above(static_cast<double>(x));
+        const float epsilon = check::strictly_above(static_cast<double>(x));
         EXPECT_GT(epsilon, x);
         EXPECT_GE(epsilon - x, 1.17549435e-38F);
         EXPECT_LE(std::nextafter(epsilon, -INFINITY), std::max(x, x + 1.17549435e-38F));  // the first such
     }
-    EXPECT_TRUE(std::isinf(calibrate::strictly_above(3.4028234663852886e38)));
+    EXPECT_TRUE(std::isinf(check::strictly_above(3.4028234663852886e38)));
 }
 
 }  // namespace

@@ -62,12 +62,12 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     EXPECT_EQ(claims_of("F (a && F a)"), success + "0.1");  // one event, however often it is looked at
     EXPECT_EQ(claims_of("G !a"), alarm + "0.1");
     EXPECT_EQ(claims_of("!(F a || F b)"), alarm + "0.15");
-    EXPECT_EQ(claims_of("G (a -> s > 0.5)"), alarm + "0.1");
+    EXPECT_EQ(claims_of("G (a -> s >= 0.5)"), alarm + "0.1");
     EXPECT_EQ(claims_of("G (s > 0.5 -> F[0, 3] a)"), success + "0.1");
     EXPECT_EQ(claims_of("flag U a"), success + "0.1");
     EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
     EXPECT_EQ(claims_of("F (s > 0.5 && flag)"),
-              "exact: nothing in it is calibrated, and its predicates are their own truth");
+              "exact, robustness 0 aside: nothing in it is calibrated, and its predicates are their own truth");
 }
 
 TEST(Claims, NothingWhereNothingIsKnown) {
@@ -134,8 +134,8 @@ calibrate::Demonstration score(const Episode& episode) {
             if (!(p == 0 ? episode.a : episode.b)[static_cast<std::size_t>(t)]) continue;
             calibrate::Scores& scores = result.scores[p];
             const float delta = episode.samples[static_cast<std::size_t>(t)][p].values[0];
-            scores.worst = scores.has_score ? std::max(scores.worst, delta) : delta;
-            scores.worst_reach = static_cast<double>(scores.worst);
+            const auto reach = static_cast<double>(delta);
+            scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
             scores.has_score = true;
         }
     return result;

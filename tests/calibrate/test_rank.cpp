@@ -7,13 +7,13 @@
 #include <random>
 #include <vector>
 
-#include "calibrate/rank.hpp"
+#include "check/conformal.hpp"
 #include "check/guarantees.hpp"
 
 namespace etlc::tests {
 namespace {
 
-using calibrate::rank;
+using check::rank;
 
 /// ceil((1 - p / q) (n + 1)) in integers.
 std::uint64_t by_integers(std::uint64_t p, std::uint64_t q, std::uint64_t n) {
@@ -49,15 +49,15 @@ TEST(Rank, DoublesWouldBeWrong) {
 }
 
 TEST(Rank, ScoresNeeded) {
-    EXPECT_EQ(calibrate::scores_needed("0.1"), 9U);
-    EXPECT_EQ(calibrate::scores_needed("0.5"), 1U);
-    EXPECT_EQ(calibrate::scores_needed("0.9"), 1U);
-    EXPECT_EQ(calibrate::scores_needed("0.05"), 19U);
-    EXPECT_EQ(calibrate::scores_needed("0.3"), 3U);
-    EXPECT_EQ(calibrate::scores_needed("1e-400"), calibrate::kMaxScores);
+    EXPECT_EQ(check::scores_needed("0.1"), 9U);
+    EXPECT_EQ(check::scores_needed("0.5"), 1U);
+    EXPECT_EQ(check::scores_needed("0.9"), 1U);
+    EXPECT_EQ(check::scores_needed("0.05"), 19U);
+    EXPECT_EQ(check::scores_needed("0.3"), 3U);
+    EXPECT_EQ(check::scores_needed("1e-400"), check::kMaxScores);
     for (std::uint64_t p = 1; p < 1000; ++p) {
         const std::string alpha = fmt::format("0.{:03}", p);
-        const std::uint64_t n = calibrate::scores_needed(alpha);
+        const std::uint64_t n = check::scores_needed(alpha);
         EXPECT_LE(rank(alpha, n), n);
         if (n == 1) continue;
         EXPECT_GT(rank(alpha, n - 1), n - 1);

@@ -8,7 +8,9 @@
 #include <limits>
 
 #include "calibrate/calibrate.hpp"
+#include "check/adaptation.hpp"
 #include "check/check.hpp"
+#include "check/conformal.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"
 #include "random.hpp"
@@ -49,8 +51,8 @@ std::vector<Demonstration> demonstrations(const std::vector<Episode>& episodes, 
             scores.labelled.push_back({score, frame.positive});
             if (!frame.positive) continue;
             scores.reaches.push_back(static_cast<double>(score));
-            scores.worst = scores.has_score ? std::max(scores.worst, score) : score;
-            scores.worst_reach = static_cast<double>(scores.worst);
+            const auto reach = static_cast<double>(score);
+            scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
             scores.has_score = true;
         }
         result.emplace_back();
@@ -121,10 +123,10 @@ TEST(Fitted, RanksAsBruteForceDoes) {
                     expected = upper ? std::min(expected, candidate) : std::max(expected, candidate);
                 }
                 ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << method << " " << n;
-                if (method == "conformal") {
-                    ASSERT_EQ(fitted.scores.size(), count);
-                    ASSERT_TRUE(std::is_sorted(fitted.scores.begin(), fitted.scores.end()));
-                }
+                ASSERT_EQ(fitted.scores.size(), method == "conformal" ? count : 1);
+                ASSERT_TRUE(std::is_sorted(fitted.scores.begin(), fitted.scores.end()));
+                const std::size_t at = method == "conformal" ? check::at_rank(k, count, upper) : 0;
+                ASSERT_EQ(check::beyond(fitted.scores[at], upper), expected);
             }
         }
     }
@@ -153,13 +155,15 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
                 ASSERT_EQ(std::get<calibrate::OutOfRange>(fit).epsilon, fitted.epsilon);
                 continue;
             }
-            const auto& start = std::get<Fitted>(fit);
-            const float beyond = upper ? start.epsilon - fitted.epsilon : fitted.epsilon - start.epsilon;
+            const auto& unmoved = std::get<Fitted>(fit);
+            ASSERT_EQ(unmoved.epsilon, fitted.epsilon);
+            ASSERT_EQ(unmoved.scores, fitted.scores);
+            ASSERT_EQ(unmoved.k, fitted.k);
+            const float start = *check::start(*adaptive.predicates[0].threshold.adaptation, unmoved.epsilon, upper);
+            const float beyond = upper ? start - fitted.epsilon : fitted.epsilon - start;
             ASSERT_GE(beyond, 0);
             ASSERT_LT(beyond, 0x1p-23F);
-            ASSERT_EQ(start.epsilon, std::round(start.epsilon * 0x1p23F) * 0x1p-23F);
-            ASSERT_EQ(start.scores, fitted.scores);
-            ASSERT_EQ(start.k, fitted.k);
+            ASSERT_EQ(start, std::round(start * 0x1p23F) * 0x1p-23F);
         }
     }
     EXPECT_GT(outside, 10);
@@ -207,6 +211,7 @@ TEST(Fitted, F1AsBruteForceDoes) {
             ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << n;
             ASSERT_DOUBLE_EQ(fitted.f1, best);
             ASSERT_EQ(fitted.n, frames);
+            ASSERT_EQ(fitted.scores, std::vector<double>{static_cast<double>(expected)});
         }
     }
 }

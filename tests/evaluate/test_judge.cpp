@@ -133,5 +133,24 @@ TEST(Evaluate, CountsEpisodesThatRepeatAnother) {
     EXPECT_EQ(evaluated(kNow, {episode("yn", "yn"), episode("yn", "nn"), episode("ny", "yn")}).repeated, 1U);
 }
 
+TEST(Evaluate, CountsEpisodesWithATargetAmongTheFrames) {
+    const std::string spec =
+        "spec t; input z : f32[2]; input px : f32; target g = [[1, 0], [3, 4]];"
+        "predicate p = min cosine(z, g) <= 0.1; truth p = px < 1; monitor m = F p;";
+    const std::string head = "z[0],z[1],px\n";
+    EXPECT_EQ(evaluated(spec, {head + "3,4.5,0\n", head + "0,1,0\n6,8,0\n", head + "0.5,0,0\n"}).leaked, 2U);
+}
+
+/// At its threshold a comparison has the robustness 0, which a monitor takes for satisfied, and yet may say no.
+TEST(Evaluate, OfWhatIsItsOwnTruthTheComparisonDecides) {
+    const auto steps = [](const std::string& formula) {
+        return evaluated("spec t; input x : f32; monitor m = " + formula + ";", {"x\n1\n0\n"}).monitors[0].steps.counts;
+    };
+    EXPECT_EQ(steps("G x > 0").false_positives, 1U);
+    EXPECT_EQ(steps("G !(x <= 0)").false_positives, 1U);
+    EXPECT_EQ(steps("G x >= 0").true_positives, 2U);
+    EXPECT_EQ(steps("G !(x < 0)").true_positives, 2U);
+}
+
 }  // namespace
 }  // namespace etlc::tests

@@ -1,6 +1,8 @@
-// Thresholds files: any text is a message, or a file that is the same after writing and reading it again.
+// Thresholds files: any text is a message, or a file that is the same after writing and reading it again, and of which
+// every entry agrees with itself or is told why not.
 #include <string>
 
+#include "check/consistency.hpp"
 #include "fuzz_target.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -15,5 +17,11 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const auto again = thresholds::parse(written, "x");
     fuzz::require(static_cast<bool>(again), "what is written can be read");
     fuzz::require(thresholds::write(*again) == written, "writing what was read changes nothing");
+    for (const auto& [name, entry] : file->predicates)
+        if (const auto found = check::contradiction(entry, "predicates", true, file->episodes))
+            fuzz::require_printable(found->message);
+    for (const auto& [name, entry] : file->monitors)
+        if (const auto found = check::contradiction(entry, "monitors", false, entry.episodes))
+            fuzz::require_printable(found->message);
     return 0;
 }

@@ -29,15 +29,13 @@ std::string made_adaptive(const std::string& line, Random& random) {
                        random.word({"0.25", "0.5", "1"}), lo, hi);
 }
 
-thresholds::Entry entry(const check::Model& model, check::Index predicate, float start) {
+thresholds::Entry entry(const check::Model& model, check::Index predicate, float start,
+                        std::vector<std::string>& episodes) {
     const check::Provenance provenance = check::provenance(model, predicate);
     thresholds::Entry result;
     result.method = "adaptive";
     result.alpha = "0.25";
-    result.epsilon = start;
-    result.n = 3;
-    result.k = 3;
-    result.scores = {0, 0, 0};
+    episodes = calibrate_to(start, model.predicates[predicate].upper_bound(), result);
     result.predicate = provenance.predicate;
     result.truth = "array";
     result.targets = provenance.targets;
@@ -83,7 +81,7 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
     file.spec = uncalibrated->name;
     for (check::Index p = 0; p < starts.size(); ++p)
         if (uncalibrated->predicates[p].threshold.adaptation)
-            file.predicates[uncalibrated->predicates[p].name] = entry(*uncalibrated, p, starts[p]);
+            file.predicates[uncalibrated->predicates[p].name] = entry(*uncalibrated, p, starts[p], file.episodes);
     result.thresholds = thresholds::write(file);
     result.model = load_with_thresholds(result.text, result.thresholds);
     return result;

@@ -5,11 +5,15 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cfloat>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <limits>
 
 #include "check/check.hpp"
+#include "check/conformal.hpp"
 #include "diag/render.hpp"
 #include "parse/parse.hpp"
 
@@ -66,6 +70,18 @@ std::string read_text(const std::string& path) {
     std::ifstream stream(path, std::ios::binary);
     if (!stream) ADD_FAILURE() << path << " cannot be read";
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
+}
+
+std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry) {
+    const double least = static_cast<double>(upper_bound ? epsilon : -epsilon) - static_cast<double>(FLT_MIN);
+    const double score = std::nextafter(least, -std::numeric_limits<double>::infinity());
+    entry.epsilon = epsilon;
+    entry.n = check::scores_needed(entry.alpha);
+    entry.k = entry.n;
+    entry.scores.assign(entry.n, upper_bound ? score : -score);
+    std::vector<std::string> episodes;
+    for (std::uint64_t i = 0; i < entry.n; ++i) episodes.push_back(fmt::format("{:016x}", i));
+    return episodes;
 }
 
 }  // namespace etlc::tests

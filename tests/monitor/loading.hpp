@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/model.hpp"
+#include "thresholds/thresholds.hpp"
 
 namespace etlc::tests {
 
@@ -14,6 +15,10 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
 
 /// The same where its thresholds file holds this JSON.
 std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds);
+
+/// Makes the entry one that was calibrated from n equal scores of n episodes, the fewest that alpha takes, so that it
+/// has this threshold. Takes its alpha; gives the episodes.
+std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry);
 /// Before there are thresholds: calibrated ones are NaN.
 std::optional<check::Model> load_uncalibrated(const std::string& text);
 

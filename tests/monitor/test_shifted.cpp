@@ -57,12 +57,10 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
         thresholds::Entry& entry = file.monitors[monitor.name];
         entry.method = "conformal";
         entry.alpha = "0.1";
-        entry.epsilon = random.chance(0.2)   ? 0.0F
-                        : random.chance(0.3) ? static_cast<float>(random.grid(-3, 3, 0.25))
-                                             : static_cast<float>(4 * random.uniform() - 2);
-        entry.n = 9;
-        entry.k = 9;
-        entry.scores = std::vector<double>(9, 0.0);
+        const float shift = random.chance(0.2)   ? 0.0F
+                            : random.chance(0.3) ? static_cast<float>(random.grid(-3, 3, 0.25))
+                                                 : static_cast<float>(4 * random.uniform() - 2);
+        entry.episodes = calibrate_to(shift, monitor.calibration->against == check::Against::missed_alarm, entry);
         entry.predicate = provenance.predicate;
         entry.truth = provenance.truth;
         entry.targets = provenance.targets;

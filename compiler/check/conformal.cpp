@@ -1,14 +1,18 @@
-#include "calibrate/rank.hpp"
+#include "check/conformal.hpp"
+
+#include <cfloat>
+#include <cmath>
+#include <limits>
 
 #include "check/decimal.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::check {
 
 namespace {
 
 /// floor(alpha * factor), digit by digit from the last: with alpha = 0.d1 d2 ... the carry out of d1 is what stands
 /// before the point.
-std::uint64_t whole_part_of_product(const check::Decimal& alpha, std::uint64_t factor) {
+std::uint64_t whole_part_of_product(const Decimal& alpha, std::uint64_t factor) {
     std::uint64_t carry = 0;
     for (std::size_t i = alpha.digits.size(); i-- > 0;)
         carry = (static_cast<std::uint64_t>(alpha.digits[i] - '0') * factor + carry) / 10;
@@ -19,7 +23,7 @@ std::uint64_t whole_part_of_product(const check::Decimal& alpha, std::uint64_t f
 }  // namespace
 
 std::uint64_t rank(std::string_view alpha, std::uint64_t n) {
-    return n + 1 - whole_part_of_product(check::Decimal::parse(alpha), n + 1);
+    return n + 1 - whole_part_of_product(Decimal::parse(alpha), n + 1);
 }
 
 std::uint64_t scores_needed(std::string_view alpha) {
@@ -35,4 +39,16 @@ std::uint64_t scores_needed(std::string_view alpha) {
     return low;
 }
 
-}  // namespace etlc::calibrate
+float strictly_above(double high) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const double least = high + static_cast<double>(FLT_MIN);
+    if (!(least < static_cast<double>(FLT_MAX))) return kInfinity;
+    const auto nearest = static_cast<float>(least);
+    return static_cast<double>(nearest) > least ? nearest : std::nextafter(nearest, kInfinity);
+}
+
+float beyond(double score, bool upper_bound) {
+    return upper_bound ? strictly_above(score) : 0.0F - strictly_above(-score);
+}
+
+}  // namespace etlc::check
