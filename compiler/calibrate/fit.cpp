@@ -75,6 +75,7 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
 }
 
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of) {
+    const bool is_f1 = predicate.threshold.origin == ThresholdOrigin::f1;
     std::vector<Scores::Labelled> labelled;
     std::vector<double> reaches;
     std::vector<double> by_episode;
@@ -83,12 +84,11 @@ Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& dem
         labelled.insert(labelled.end(), scores.labelled.begin(), scores.labelled.end());
         if (predicate.threshold.origin == ThresholdOrigin::class_conditional) {
             reaches.insert(reaches.end(), scores.reaches.begin(), scores.reaches.end());
-        } else if (scores.has_score) {
+        } else if (!is_f1 && scores.has_score) {
             reaches.push_back(scores.worst_reach);
             by_episode.push_back(scores.worst_reach);
         }
     }
-    const bool is_f1 = predicate.threshold.origin == ThresholdOrigin::f1;
     Fit fit = is_f1 ? fit_f1(std::move(labelled), predicate.strict())
                     : fit_rank(std::move(reaches), predicate.threshold.alpha);
     if (auto* fitted = std::get_if<Fitted>(&fit)) {

@@ -24,6 +24,13 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
     return result;
 }
 
+std::vector<Index> labelled_predicates(const GroundTruth& truth) {
+    std::vector<Index> found;
+    for (Index predicate = 0; predicate < truth.inputs.size(); ++predicate)
+        if (truth.inputs[predicate] != check::kNone) found.push_back(predicate);
+    return found;
+}
+
 plan::Sample sample_of(Label label) {
     if (label == Label::unknown) return {};
     return {true, {label == Label::yes ? 1.0F : 0.0F}};

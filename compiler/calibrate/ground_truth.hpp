@@ -20,6 +20,9 @@ struct GroundTruth {
 
 GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled);
 
+/// The predicates that have labels, ascending.
+std::vector<Index> labelled_predicates(const GroundTruth& truth);
+
 /// The label as the sample of such an input; unknown is missing.
 plan::Sample sample_of(Label label);
 

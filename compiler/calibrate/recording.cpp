@@ -83,6 +83,29 @@ std::vector<Index> identity_inputs(const check::Model& model) {
     return result;
 }
 
+diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
+                                             const data::NamesInFile& names) {
+    std::vector<Index> asked;
+    std::vector<Channel> channels;
+    for (Index p = 0; p < model.predicates.size(); ++p) {
+        if (model.predicates[p].name.empty() || truth_of(model, p) != kNone) continue;
+        asked.push_back(p);
+        channels.push_back({array_name(model, p), Channel::Kind::boolean, 1, true});
+    }
+    std::vector<Index> labelled;
+    for (const check::Truth& truth : model.truths) labelled.push_back(truth.predicate);
+    if (!asked.empty()) {
+        for (const Index input : identity_inputs(model))  // which tell the number of steps
+            channels.push_back(channel_of(model.inputs[input]));
+        const auto trace = data::open_trace(path, data::renamed(channels, names));
+        if (!trace) return trace.failure();
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            if ((*trace)->has(i)) labelled.push_back(asked[i]);
+    }
+    std::sort(labelled.begin(), labelled.end());
+    return labelled;
+}
+
 diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open) {
     const check::Model& model = *wanted.model;
     const TruthEvaluator all(model, formulas_of(model, wanted.predicates));

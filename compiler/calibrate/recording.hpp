@@ -28,6 +28,11 @@ struct Wanted {
 /// samples of these give equal scores, whatever else they hold. Without such a predicate, the inputs of all.
 std::vector<Index> identity_inputs(const check::Model& model);
 
+/// The predicates whose truth is known: from the spec, or from an array in the episode of that path. Failures do not
+/// name the path.
+diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
+                                             const data::NamesInFile& names);
+
 /// Opens an episode with these channels.
 using Opener = std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
 

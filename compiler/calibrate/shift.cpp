@@ -123,12 +123,22 @@ std::vector<Index> calibrated_monitors(const check::Model& model) {
     return found;
 }
 
-std::vector<Index> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors) {
+std::optional<std::vector<Index>> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors,
+                                                      const Request& request, diag::Sink& sink) {
+    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
+    if (sink.has_errors()) return std::nullopt;
+    const auto labelled = labelled_in(model, paths[0], request.names);
+    if (!labelled) {
+        sink.report(data::in_file(labelled.failure(), paths[0]));
+        return std::nullopt;
+    }
     std::set<Index> found;
     for (const Index monitor : monitors)
         for (const Index predicate : check::predicates_of(model, model.monitors[monitor].formula))
-            if (!check::is_own_truth(model, predicate)) found.insert(predicate);
-    return {found.begin(), found.end()};
+            if (!check::is_own_truth(model, predicate) ||
+                std::binary_search(labelled->begin(), labelled->end(), predicate))
+                found.insert(predicate);
+    return std::vector<Index>(found.begin(), found.end());
 }
 
 check::Model unshifted(check::Model model) {
@@ -141,7 +151,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, const M
     const std::vector<Index> monitors = calibrated_monitors(model);
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
-    const Leaks leaks(model, labelled_predicates(model, monitors));
+    const Leaks leaks(model, labelled_predicates(plans.ground_truth));
     const auto episodes = over_episodes<MonitorEpisode>(paths, request, sink, [&] {
         return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
     });

@@ -19,8 +19,10 @@ namespace etlc::calibrate {
 /// Monitors of the model that are calibrated as a whole.
 std::vector<Index> calibrated_monitors(const check::Model& model);
 
-/// Predicates in these monitors that need labels: all that are not their own truth.
-std::vector<Index> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors);
+/// Predicates in these monitors that get labels: all that are not their own truth, and those that the first episode has
+/// an array of labels for. Nothing where the sink now says why.
+std::optional<std::vector<Index>> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors,
+                                                      const Request& request, diag::Sink& sink);
 
 /// The model without shifts: what its plan is made of.
 check::Model unshifted(check::Model model);

@@ -46,7 +46,7 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       highest_(plans.monitors),
       lowest_(plans.monitors),
       truths_(plans.truths),
-      wanted_{&model, inputs_of(model, plans), labelled_predicates(model, monitors), identity_inputs(model)} {
+      wanted_{&model, inputs_of(model, plans), labelled_predicates(plans.ground_truth), identity_inputs(model)} {
     for (const Index monitor : monitors) {
         said_at_.push_back(position(plans.monitors, monitor));
         truth_at_.push_back(position(plans.truths, monitor));

@@ -19,9 +19,10 @@ using calibrate::Calibration;
 
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const calibrate::Request& request, diag::Sink& sink) {
-    const auto labelled = calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model));
+    const auto labelled = calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model), request, sink);
+    if (!labelled) return std::nullopt;
     const check::Model unshifted = calibrate::unshifted(model);
-    const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, labelled);
+    const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, *labelled);
     const auto monitors = compile(unshifted, {}, sink);
     const auto truths = compile(truth.model, {}, sink, check::Values::boolean);  // what is true is not a matter of rho
     if (!monitors || !truths) return std::nullopt;

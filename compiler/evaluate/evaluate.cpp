@@ -180,35 +180,10 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
 }  // namespace
 
 std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink) {
-    std::vector<bool> has_truth(model.predicates.size());
-    for (const check::Truth& truth : model.truths) has_truth[truth.predicate] = true;
-    std::vector<data::Channel> channels;
-    std::vector<Index> asked;
-    for (Index p = 0; p < model.predicates.size(); ++p) {
-        if (has_truth[p] || model.predicates[p].name.empty()) continue;
-        channels.push_back({"truth." + model.predicates[p].name, data::Channel::Kind::boolean, 1, true});
-        asked.push_back(p);
-    }
-    if (!channels.empty() && !request.episodes.empty()) {
-        for (const Index input : calibrate::identity_inputs(model)) {  // which tell the number of steps
-            const check::Input& i = model.inputs[input];
-            const auto kind = i.type == check::InputType::boolean ? data::Channel::Kind::boolean
-                              : i.is_embedding()                  ? data::Channel::Kind::vector
-                                                                  : data::Channel::Kind::scalar;
-            channels.push_back({i.name, kind, i.dimension});
-        }
-        const auto trace = data::open_trace(request.episodes[0], data::renamed(channels, request.names));
-        if (!trace) {
-            sink.report(data::in_file(trace.failure(), request.episodes[0]));
-            return std::nullopt;
-        }
-        for (std::size_t i = 0; i < asked.size(); ++i)
-            if ((*trace)->has(i)) has_truth[asked[i]] = true;
-    }
-    std::vector<Index> labelled;
-    for (Index p = 0; p < model.predicates.size(); ++p)
-        if (has_truth[p]) labelled.push_back(p);
-    return labelled;
+    auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
+    if (labelled) return std::move(*labelled);
+    sink.report(data::in_file(labelled.failure(), request.episodes[0]));
+    return std::nullopt;
 }
 
 std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,

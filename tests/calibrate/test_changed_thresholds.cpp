@@ -19,7 +19,7 @@ using Json = nlohmann::ordered_json;
 const std::string kSpec =
     "spec t; input x, y : f32; input z : f32[1] hold 1; target g = [[0]]; target h = [[3], [5]];\n"
     "predicate a = x <= calibrated(conformal, alpha = 0.2); truth a = y > 0.5;\n"
-    "predicate b = min l2(z, g) < calibrated(conformal, alpha = 0.3); truth b = min l2(z, h) > 4;\n"
+    "predicate b = min l2(z, g) < calibrated(conformal, alpha = 0.3); truth b = min l2(z, h) > 2.5;\n"
     "predicate c = x > calibrated(conformal, alpha = 0.25); truth c = y <= 0.5;\n"
     "predicate d = min l2(z, g) - x <= calibrated(class_conditional, alpha = 0.2); truth d = y > 0.5;\n"
     "predicate e = x >= calibrated(f1); truth e = y <= 0.5;\n"
