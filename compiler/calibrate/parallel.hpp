@@ -1,7 +1,8 @@
 // Episodes, several at a time.
-// Takes: what reads one episode, a copy for every thread. Gives: what it made of each, in the order of the paths. Keeps
-// true: the order, and which failures are reported, do not depend on the number of threads. Threads that cannot be
-// made are done without, and so are those for which memory is too short, as long as one can work.
+// Takes: what reads one episode, a copy for every thread. Gives: what it made of each, in the order
+// of the paths. Keeps true: the order, and which failures are reported, do not depend on the number
+// of threads. Threads that cannot be made are done without, and so are those for which memory is
+// too short, as long as one can work.
 #pragma once
 
 #include <algorithm>
@@ -21,12 +22,13 @@ namespace etlc::calibrate {
 
 inline constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
 
-/// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at most `most`, and no
-/// more than can be started. All have returned at the end. Gives: the first exception that ended one of them.
+/// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at
+/// most `most`, and no more than can be started. All have returned at the end. Gives: the first
+/// exception that ended one of them.
 std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
 
-/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an episode cannot be
-/// read: the sink then says why. Of the request it uses `jobs` and `progress`.
+/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an
+/// episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
 template <class T, class Request, class Make>
 std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths, const Request& request,
                                             diag::Sink& sink, Make make) {

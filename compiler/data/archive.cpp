@@ -104,9 +104,8 @@ diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
     struct stat status {};
     if (!file || ::fstat(*file, &status) != 0)
         return Failure{Code::unreadable_data_file, fmt::format("cannot be read: {}", error_words(errno))};
-    return read_zip_layout(static_cast<std::uint64_t>(status.st_size), [&](std::uint64_t at, char* to, std::size_t n) {
-        return read_all_at(*file, at, to, n);
-    });
+    return read_zip_layout(static_cast<std::uint64_t>(status.st_size),
+                           [&](std::uint64_t at, char* to, std::size_t n) { return read_all_at(*file, at, to, n); });
 }
 
 /// Whether libzip, which has rules of its own for where an archive ends, has found these members.

@@ -24,7 +24,8 @@ constexpr int kMostLinks = 40;         ///< in a chain of symbolic links, as in 
 constexpr int kMostTurns = 200;        ///< that a commit waits for others, kTurnMicroseconds each
 constexpr unsigned kTurnMicroseconds = 5000;
 
-/// The file that a chain of symbolic links ends at, whether it exists or not; empty where the chain does not end.
+/// The file that a chain of symbolic links ends at, whether it exists or not; empty where the chain
+/// does not end.
 fs::path behind_links(fs::path path) {
     for (int i = 0; i < kMostLinks; ++i) {
         std::string target(PATH_MAX, '\0');
@@ -48,7 +49,8 @@ bool names_no_file(const fs::path& path) {
 /// Held while names in a folder change hands.
 class Turn {
 public:
-    /// Waits for a second at most: the lock keeps files of two calls apart, but nothing hangs on it.
+    /// Waits for a second at most: the lock keeps files of two calls apart, but nothing hangs on
+    /// it.
     explicit Turn(int folder)
         : folder_(uninterrupted([&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
         for (int i = 0; folder_ && i < kMostTurns; ++i) {
@@ -134,7 +136,8 @@ bool AtomicFile::open_temporary(mode_t mode) {
 
 void AtomicFile::copy_permissions(const struct stat& of) {
     mode_t mode = of.st_mode & 0777;
-    // Where the group cannot be kept, the group that the new file has instead may do no more than everybody.
+    // Where the group cannot be kept, the group that the new file has instead may do no more than
+    // everybody.
     if (::fchown(*file_, of.st_uid, of.st_gid) != 0 && ::fchown(*file_, static_cast<uid_t>(-1), of.st_gid) != 0)
         mode &= ~static_cast<mode_t>(S_IRWXG) | (mode & S_IRWXO) << 3U;
     static_cast<void>(::fchmod(*file_, mode));  // it stays 0600: less than what was there may, never more

@@ -1,11 +1,13 @@
 // Files that appear whole or not at all.
-// Takes: a path and bytes. Gives: a file of that name with these bytes, or a Failure that carries the code which the
-// caller names; its message does not repeat the path: `in_file` (data/file.hpp) puts both together.
-// Keeps true: a failed write leaves what stood there before, and no other file. A process that is killed leaves none
-// either: until it is complete a file has no name, where the file system knows such files. There is a window of a few
-// system calls while names change hands, and there are file systems without nameless files: a kill then leaves
-// `.etlc-PROCESS-NUMBER.part`. A file that is replaced keeps its permissions, and its owner and group where the system
-// lets them be kept. Nothing waits for the disk: a machine that loses its power loses what it had not yet stored.
+// Takes: a path and bytes. Gives: a file of that name with these bytes, or a Failure that carries
+// the code which the caller names; its message does not repeat the path: `in_file` (data/file.hpp)
+// puts both together. Keeps true: a failed write leaves what stood there before, and no other file.
+// A process that is killed leaves none either: until it is complete a file has no name, where the
+// file system knows such files. There is a window of a few system calls while names change hands,
+// and there are file systems without nameless files: a kill then leaves
+// `.etlc-PROCESS-NUMBER.part`. A file that is replaced keeps its permissions, and its owner and
+// group where the system lets them be kept. Nothing waits for the disk: a machine that loses its
+// power loses what it had not yet stored.
 #pragma once
 
 #include <sys/stat.h>
@@ -28,8 +30,8 @@ struct Uncommitted {
 };
 
 /// A file that takes its own name only when it is complete.
-/// A path that is a device, a pipe, /dev/stdout or /dev/stderr is written to directly; of a symbolic link, the file it
-/// points to is made or replaced.
+/// A path that is a device, a pipe, /dev/stdout or /dev/stderr is written to directly; of a
+/// symbolic link, the file it points to is made or replaced.
 class AtomicFile {
 public:
     static diag::Result<AtomicFile> create(const std::string& path, diag::Code code);
@@ -75,8 +77,9 @@ private:
     diag::Code code_;
 };
 
-/// The files take their names in this order, or none of them does: one that cannot makes those before it take back
-/// theirs. Processes that commit to the folder of the last file take turns, so that what they write does not mix.
+/// The files take their names in this order, or none of them does: one that cannot makes those
+/// before it take back theirs. Processes that commit to the folder of the last file take turns, so
+/// that what they write does not mix.
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
 
 /// The whole of `bytes` as the content of `path`.

@@ -1,5 +1,6 @@
 // File descriptors.
-// Keeps true: one is closed with its object; what a signal interrupts goes on; `errno` says why something failed.
+// Keeps true: one is closed with its object; what a signal interrupts goes on; `errno` says why
+// something failed.
 #pragma once
 
 #include <cerrno>

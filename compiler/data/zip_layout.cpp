@@ -26,7 +26,7 @@ constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocatorBytes = 20;
 constexpr std::size_t kMostComment = 0xffff;
 constexpr std::uint64_t kMostDirectoryBytes = 64U << 20U;  ///< of half a million members
-constexpr std::uint64_t kIn64 = 0xffffffff;  ///< a field of 32 bits whose value stands elsewhere, in 64
+constexpr std::uint64_t kIn64 = 0xffffffff;                ///< a field of 32 bits whose value stands elsewhere, in 64
 constexpr std::uint64_t kCountIn64 = 0xffff;
 
 Failure malformed(std::string message) {
@@ -64,7 +64,8 @@ public:
     }
 
 private:
-    /// The record at the end of the file says where the directory is; another one may not be behind it.
+    /// The record at the end of the file says where the directory is; another one may not be behind
+    /// it.
     std::optional<Failure> find_directory() {
         if (size_ < kEndBytes) return no_archive();
         const std::uint64_t searched = std::min<std::uint64_t>(size_, kEndBytes + kMostComment);
@@ -134,7 +135,8 @@ private:
         return rest.empty() ? std::nullopt : std::optional(damaged());
     }
 
-    /// Takes what stands in the extra field of 64-bit values, in the order unpacked, packed, offset.
+    /// Takes what stands in the extra field of 64-bit values, in the order unpacked, packed,
+    /// offset.
     static bool widen(std::string_view extra, std::uint64_t unpacked, ZipMember& member) {
         std::string_view wide;
         while (extra.size() >= 4) {
@@ -175,8 +177,8 @@ private:
         const auto again = read(member.offset + kLocalBytes, name);
         if (!again) return unreadable();
         if (*again != member.name)
-            return malformed(fmt::format("has a member that is {} in one place and {} in another",
-                                         in_quotes(*again), in_quotes(member.name)));
+            return malformed(fmt::format("has a member that is {} in one place and {} in another", in_quotes(*again),
+                                         in_quotes(member.name)));
         // Behind the data its checksum and sizes, in 32 or 64 bits, with or without a signature.
         const std::uint64_t behind = room - before - member.packed_bytes;
         const bool descriptor = behind == 12 || behind == 16 || behind == 20 || behind == 24;

@@ -1,8 +1,9 @@
 // How a zip archive lies in its file: as one that every reader reads alike.
-// Takes: the bytes. Gives: what its directory lists, or why it is refused. Keeps true: the members begin at the file's
-// first byte and follow each other without a gap, then the directory, then the record that ends the file. So there is
-// no second archive before, behind or between them, of which one reader would take the first and another the last.
-// Source: PKWARE, APPNOTE.TXT 6.3.10, section 4.3.
+// Takes: the bytes. Gives: what its directory lists, or why it is refused. Keeps true: the members
+// begin at the file's first byte and follow each other without a gap, then the directory, then the
+// record that ends the file. So there is no second archive before, behind or between them, of which
+// one reader would take the first and another the last. Source: PKWARE, APPNOTE.TXT 6.3.10, section
+// 4.3.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +23,7 @@ struct ZipMember {
     std::string name;
     std::uint32_t crc = 0;
     std::uint64_t packed_bytes = 0;
-    std::uint64_t offset = 0;  ///< of its header
+    std::uint64_t offset = 0;   ///< of its header
     bool sizes_follow = false;  ///< its header was written before its size was known
 };
 

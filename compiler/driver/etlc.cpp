@@ -27,7 +27,8 @@ namespace {
 using namespace etlc;
 
 constexpr char kExitStatus[] =
-    "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the call is wrong; 3, a\n"
+    "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the call is wrong; 3, "
+    "a\n"
     "fault of etlc itself.";
 
 struct Call {

@@ -22,7 +22,8 @@ std::string words(const std::string& path) {
     return path == kStandardOutput ? "standard output" : path;
 }
 
-/// What tells a file from all others: where it is stored, or, of one that is still to be made, its folder and name.
+/// What tells a file from all others: where it is stored, or, of one that is still to be made, its
+/// folder and name.
 struct Identity {
     dev_t device = 0;
     ino_t inode = 0;
@@ -64,10 +65,10 @@ bool check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         if (!other) continue;
         sound = false;
         const std::string same = other->path == path ? "" : fmt::format(", as {}", words(other->path));
-        sink.report(data::in_file({Code::output_clash, other->is_input
-                                                           ? fmt::format("is read by this call{}: it would be lost", same)
-                                                           : fmt::format("is another output of this call{}", same)},
-                                  words(path)));
+        sink.report(data::in_file(
+            {Code::output_clash, other->is_input ? fmt::format("is read by this call{}: it would be lost", same)
+                                                 : fmt::format("is another output of this call{}", same)},
+            words(path)));
     }
     return sound;
 }

@@ -34,8 +34,9 @@ int say_what_failed() noexcept {
 
 namespace {
 
-/// Libraries have functions that may not throw and need memory all the same: destructors of nlohmann::json, iterators
-/// of std::filesystem. An exception that such a function is left by is no current one, and can only be that.
+/// Libraries have functions that may not throw and need memory all the same: destructors of
+/// nlohmann::json, iterators of std::filesystem. An exception that such a function is left by is no
+/// current one, and can only be that.
 [[noreturn]] void end() noexcept {
     if (std::current_exception()) ::_exit(say_what_failed());
     if (std::uncaught_exceptions() == 0) ::abort();

@@ -81,8 +81,7 @@ private:
             const check::Index input = plan_.inputs[c];
             std::string why;
             auto narrowed = plan::narrow(plan_.model->inputs[input], sample.present[c], sample.values[c], why);
-            if (!narrowed)
-                return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
+            if (!narrowed) return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
             samples[input] = std::move(*narrowed);
         }
         return true;

@@ -1,8 +1,9 @@
-// A library to preload: it makes calls that a program leaves to the system fail, on demand.
-// Takes, from the environment, ETLC_INJECT=CALL:FIRST:COUNT:ACTION. CALL is one of kCalls; its calls number FIRST
-// (from 1) to FIRST + COUNT - 1 after the beginning of main() meet with ACTION: the number of an error, `short` (half
-// of what is to be written is), `kill` or `killed` (the process dies before the call, after it). ETLC_INJECT_COUNTS
-// names a file to which, at the end of main(), goes how often each was called.
+// A library to preload: it makes calls that a program leaves to the system fail, on demand. Takes,
+// from the environment, ETLC_INJECT=CALL:FIRST:COUNT:ACTION. CALL is one of kCalls; its calls
+// number FIRST (from 1) to FIRST + COUNT - 1 after the beginning of main() meet with ACTION: the
+// number of an error, `short` (half of what is to be written is), `kill` or `killed` (the process
+// dies before the call, after it). ETLC_INJECT_COUNTS names a file to which, at the end of main(),
+// goes how often each was called.
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <pthread.h>
@@ -22,9 +23,24 @@
 
 namespace {
 
-enum Call { kMalloc, kWrite, kOpen, kClose, kLink, kRename, kUnlink, kDup, kLock, kChange, kThread, kSpawn, kPipe, kCalls };
-constexpr const char* kNames[kCalls] = {"malloc", "write",  "open",   "close",  "link",  "rename", "unlink",
-                                        "dup",    "lock",   "change", "thread", "spawn", "pipe"};
+enum Call {
+    kMalloc,
+    kWrite,
+    kOpen,
+    kClose,
+    kLink,
+    kRename,
+    kUnlink,
+    kDup,
+    kLock,
+    kChange,
+    kThread,
+    kSpawn,
+    kPipe,
+    kCalls
+};
+constexpr const char* kNames[kCalls] = {"malloc", "write", "open",   "close",  "link",  "rename", "unlink",
+                                        "dup",    "lock",  "change", "thread", "spawn", "pipe"};
 
 enum class Action { none, fail, halve, kill, kill_after };
 
@@ -66,11 +82,11 @@ void read_wish() {
     const char* const wish = std::getenv("ETLC_INJECT");
     char call[16];
     char action[16];
-    if (wish == nullptr || std::sscanf(wish, "%15[^:]:%ld:%ld:%15s", call, &injection.first, &injection.count, action) != 4)
+    if (wish == nullptr ||
+        std::sscanf(wish, "%15[^:]:%ld:%ld:%15s", call, &injection.first, &injection.count, action) != 4)
         return;
-    injection.call = static_cast<int>(std::find_if(kNames, kNames + kCalls, [&](const char* name) {
-                                          return std::strcmp(name, call) == 0;
-                                      }) - kNames);
+    injection.call = static_cast<int>(
+        std::find_if(kNames, kNames + kCalls, [&](const char* name) { return std::strcmp(name, call) == 0; }) - kNames);
     injection.error = std::atoi(action);
     injection.action = std::strcmp(action, "short") == 0    ? Action::halve
                        : std::strcmp(action, "kill") == 0   ? Action::kill
@@ -100,7 +116,8 @@ int armed_main(int argc, char** argv, char** environment) {
 
 }  // namespace
 
-// What is exported has the names and the types of the C library's functions; what they do is passed on to.
+// What is exported has the names and the types of the C library's functions; what they do is passed
+// on to.
 extern "C" {
 
 void* __libc_malloc(std::size_t);

@@ -12,7 +12,8 @@ namespace etlc::faults {
 
 namespace {
 
-/// The checksum that a header asks its file of targets for: `using Targets = etlmon::Targets<SIZE, 0x...>`.
+/// The checksum that a header asks its file of targets for: `using Targets = etlmon::Targets<SIZE,
+/// 0x...>`.
 std::uint64_t asked_for(const std::string& header) {
     const std::size_t targets = header.find("etlmon::Targets<");
     const std::size_t number = header.find("0x", targets);
@@ -31,8 +32,10 @@ bool is_targets(const std::string& name) {
 
 /// Whether the header takes the file of targets beside it.
 bool fits(const Files& files) {
-    const auto targets = std::find_if(files.begin(), files.end(), [](const auto& file) { return is_targets(file.first); });
-    const auto header = std::find_if(files.begin(), files.end(), [](const auto& file) { return file.first.ends_with(".hpp"); });
+    const auto targets =
+        std::find_if(files.begin(), files.end(), [](const auto& file) { return is_targets(file.first); });
+    const auto header =
+        std::find_if(files.begin(), files.end(), [](const auto& file) { return file.first.ends_with(".hpp"); });
     return targets == files.end() || header == files.end() || asked_for(header->second) == checksum(targets->second);
 }
 
@@ -41,11 +44,13 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
     for (const std::string& name : command.files) {
         const auto file = files.find(name);
         if (file == files.end()) return name + " is gone";
-        if (file->second != command.before.at(name) && file->second != command.after.at(name)) return name + " is damaged";
+        if (file->second != command.before.at(name) && file->second != command.after.at(name))
+            return name + " is damaged";
     }
     const bool mixed = files != command.before && files != command.after;
     if (mixed && !killed) return "files of this call lie beside earlier ones";
-    if (command.name == "compile" && mixed && fits(files) && asked_for(files.at("dock.hpp")) == 0) return "the header has no checksum";
+    if (command.name == "compile" && mixed && fits(files) && asked_for(files.at("dock.hpp")) == 0)
+        return "the header has no checksum";
     const bool both = files.contains("dock.hpp") && files.contains("dock.targets.bin");
     if (both && fits(files) != ((files.at("dock.hpp") == command.after.at("dock.hpp")) ==
                                 (files.at("dock.targets.bin") == command.after.at("dock.targets.bin"))))
@@ -67,14 +72,16 @@ bool cannot_speak(const Command& command, const Surroundings& around) {
 }
 
 /// What is wrong with a run that ended by itself.
-std::string wrong_ending(const Command& command, const Surroundings& around, const Outcome& outcome, const Files& files) {
+std::string wrong_ending(const Command& command, const Surroundings& around, const Outcome& outcome,
+                         const Files& files) {
     const Outcome& undisturbed = command.undisturbed;
     const bool silent = around.error != Stream::open || cannot_speak(command, around);
     if (outcome.status != 0 && outcome.status != 1) return fmt::format("exit status {}", outcome.status);
     if (outcome.status == 0) {
         if (undisturbed.status != 0) return "a mistake goes by";
         if (files != command.after) return "exit status 0, and a file is not written";
-        if (outcome.output != (around.output == Stream::open ? undisturbed.output : "")) return "standard output differs";
+        if (outcome.output != (around.output == Stream::open ? undisturbed.output : ""))
+            return "standard output differs";
         if (around.output != Stream::open && !undisturbed.output.empty()) return "standard output is lost";
         if (around.error == Stream::full && !undisturbed.error.empty()) return "standard error is lost";
         if (!silent && outcome.error != undisturbed.error) return "standard error differs";
@@ -82,7 +89,8 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
     }
     if (!undisturbed.output.starts_with(outcome.output)) return "standard output is something else";
     // Diagnostics are what comes last: where a part of them is lost, the rest is done.
-    const bool all_but_diagnostics = undisturbed.status == 0 && files == command.after && outcome.output == undisturbed.output;
+    const bool all_but_diagnostics =
+        undisturbed.status == 0 && files == command.after && outcome.output == undisturbed.output;
     const bool lost_diagnostics = !undisturbed.error.empty() && outcome.error != undisturbed.error;
     if (!silent && outcome.error.empty() && !(all_but_diagnostics && lost_diagnostics)) return "no message";
     if (!silent && !command.files.empty() && all_but_diagnostics && !lost_diagnostics)

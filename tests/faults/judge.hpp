@@ -1,9 +1,10 @@
 // What etlc must do, whatever happens to it.
 // Keeps true, of every run:
 // - it ends by a signal only where it was sent SIGKILL;
-// - exit status 0 means that all outputs are there, complete and as ever; otherwise it is 1, with a message;
-// - a file is as it was or as it is to be; where the process could end by itself, all of them are as they were, or all
-//   as they are to be and only diagnostics were lost;
+// - exit status 0 means that all outputs are there, complete and as ever; otherwise it is 1, with a
+//   message;
+// - a file is as it was or as it is to be; where the process could end by itself, all of them are
+//   as they were, or all as they are to be and only diagnostics were lost;
 // - no temporary file stays, except where names changed hands when the process was killed;
 // - a header and a file of targets of different calls do not fit.
 #pragma once

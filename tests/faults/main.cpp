@@ -1,6 +1,7 @@
 // faults ETLC DATA [--long]: etlc among faults of the system. DATA is tests/unit/data.
-// Every command runs while calls of the system fail, threads cannot be made, memory, files and streams have limits, and
-// while it is killed; two run at the same time. Exit status 1 where a run does other than it must (see Judge).
+// Every command runs while calls of the system fail, threads cannot be made, memory, files and
+// streams have limits, and while it is killed; two run at the same time. Exit status 1 where a run
+// does other than it must (see Judge).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -21,11 +22,11 @@ constexpr long kEvery = 1'000'000;  ///< calls: from one on, all
 
 /// How much of each kind there is.
 struct Extent {
-    long places;      ///< at which a call is disturbed, of each kind and command
+    long places;  ///< at which a call is disturbed, of each kind and command
     long allocations;
-    int memories;     ///< limits of the address space
-    int kills;        ///< at random moments
-    int pairs;        ///< of calls at the same time
+    int memories;  ///< limits of the address space
+    int kills;     ///< at random moments
+    int pairs;     ///< of calls at the same time
 };
 constexpr Extent kShort{5, 24, 6, 10, 20};
 constexpr Extent kLong{40, 400, 60, 300, 300};
@@ -97,7 +98,8 @@ private:
     void fail_calls(const Command& command) {
         for (const Disturbance& disturbance : disturbances()) {
             const std::string call = disturbance.call;
-            // CLI11 writes its help through streams, which keep quiet about a single piece of memory that was missing.
+            // CLI11 writes its help through streams, which keep quiet about a single piece of
+            // memory that was missing.
             if (call == "malloc" && disturbance.count == 1 && command.words.back() == "--help") continue;
             const long most = call == "malloc" ? extent_.allocations : extent_.places;
             for (const long first : spread(command.calls.at(call), most))
@@ -120,7 +122,8 @@ private:
                     const auto words = [](Stream stream) {
                         return stream == Stream::open ? "open" : stream == Stream::full ? "full" : "closed";
                     };
-                    disturb(command, around, fmt::format("input {}, output {}, error {}", words(input), words(output), words(error)));
+                    disturb(command, around,
+                            fmt::format("input {}, output {}, error {}", words(input), words(output), words(error)));
                 }
     }
 
@@ -139,7 +142,8 @@ private:
         const rlim_t enough = least_memory(command);
         for (int i = 0; i < extent_.memories; ++i) {
             Surroundings around;
-            around.address_space = least + (enough - least) * static_cast<rlim_t>(i) / static_cast<rlim_t>(extent_.memories);
+            around.address_space =
+                least + (enough - least) * static_cast<rlim_t>(i) / static_cast<rlim_t>(extent_.memories);
             disturb(command, around, fmt::format("at most {} KiB of memory", around.address_space >> 10U));
         }
     }

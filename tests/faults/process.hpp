@@ -1,5 +1,6 @@
 // One run of a program among faults.
-// Takes: the program's words and what shall go wrong around it. Gives: how it ended and what it said.
+// Takes: the program's words and what shall go wrong around it. Gives: how it ended and what it
+// said.
 #pragma once
 
 #include <sys/resource.h>

@@ -110,7 +110,9 @@ Scene::Scene(std::string etlc, const fs::path& data) : etlc_(std::move(etlc)) {
         {"a wrong spec", {"wrong.etl", "--check"}, {}},
         {"run", {"run", "dock.etl", "--trace", "episodes/0.csv", "-o", "verdicts.csv"}, {"verdicts.csv"}},
         {"run of .npz", {"run", "arrays.etl", "--trace", "trace_stored.npz"}, {}},
-        {"run of .h5", {"run", "groups.etl", "--trace", "trace.h5:data/demo_1", "--map", "z=obs/z", "-o", "h5.csv"}, {"h5.csv"}},
+        {"run of .h5",
+         {"run", "groups.etl", "--trace", "trace.h5:data/demo_1", "--map", "z=obs/z", "-o", "h5.csv"},
+         {"h5.csv"}},
         {"calibrate", with({"calibrate", "fit.etl"}, episodes), {"fit.thresholds.json"}},
         {"calibrate to standard output", with({"calibrate", "fit.etl", "-o", "-"}, episodes), {}},
         {"calibrate monitors", with({"calibrate", "whole.etl"}, episodes), {"whole.thresholds.json"}},
@@ -138,8 +140,11 @@ void Scene::write_inputs(const fs::path& data) const {
 }
 
 void Scene::write_specs(bool now) const {
-    const std::vector<std::pair<const char*, const char*>> specs = {
-        {"dock.etl", kSpec}, {"fit.etl", kCalibrated}, {"whole.etl", kWhole}, {"arrays.etl", kArrays}, {"groups.etl", kGroups}};
+    const std::vector<std::pair<const char*, const char*>> specs = {{"dock.etl", kSpec},
+                                                                    {"fit.etl", kCalibrated},
+                                                                    {"whole.etl", kWhole},
+                                                                    {"arrays.etl", kArrays},
+                                                                    {"groups.etl", kGroups}};
     for (const auto& [name, text] : specs) write_text(folder_ / name, fmt::format(fmt::runtime(text), now ? 1 : 0.75));
 }
 
@@ -194,7 +199,8 @@ std::vector<std::string> Scene::left_over(const Command&) const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_)) {
         const std::string name = entry.path().filename().string();
-        if (entry.is_regular_file() && std::find(inputs_.begin(), inputs_.end(), name) == inputs_.end()) names.push_back(name);
+        if (entry.is_regular_file() && std::find(inputs_.begin(), inputs_.end(), name) == inputs_.end())
+            names.push_back(name);
     }
     return names;
 }

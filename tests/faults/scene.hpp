@@ -1,6 +1,6 @@
 // The calls of etlc that the campaign disturbs, each in a folder with all that it reads.
-// Keeps true: before a run its output files are there with what an earlier spec gave, so that a lost or mixed output
-// shows.
+// Keeps true: before a run its output files are there with what an earlier spec gave, so that a
+// lost or mixed output shows.
 #pragma once
 
 #include <filesystem>
