@@ -102,7 +102,7 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
         "at "
         "some step\n"
         "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % quantile, without ties)\n",
-        monitor.name, check::print(model, monitor.formula), fitted.epsilon, monitor.calibration->threshold.alpha,
+        monitor.name, check::shown(model, monitor.formula), fitted.epsilon, monitor.calibration->threshold.alpha,
         fitted.k, fitted.n, against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
         check::text(check::claims(model, monitor)[0]), fitted.n, 1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));

@@ -84,7 +84,7 @@ private:
             if (is_new) continue;
             c_.report(
                 Code::same_operands, c_.operator_spans[at],
-                fmt::format("{} has the operand '{}' twice", operator_word(formula.kind), print(model_, operand)));
+                fmt::format("{} has the operand '{}' twice", operator_word(formula.kind), shown(model_, operand)));
             return;
         }
         for (const Index operand : formula.operands) {
@@ -93,7 +93,7 @@ private:
             if (!seen.contains(structures_[inner])) continue;
             c_.report(Code::same_operands, c_.operator_spans[at],
                       fmt::format("{} has the operand '{}' and its negation", operator_word(formula.kind),
-                                  print(model_, inner)));
+                                  shown(model_, inner)));
             return;
         }
     }
@@ -102,7 +102,7 @@ private:
         const Formula& formula = model_.formulas[at];
         if (formula.kind != Kind::eventually || model_.formulas[formula.operands[0]].kind != Kind::implication) return;
         const Formula& implication = model_.formulas[formula.operands[0]];
-        const std::string left = print(model_, implication.operands[0]);
+        const std::string left = shown(model_, implication.operands[0]);
         c_.report(Code::eventual_implication, c_.operator_spans[at],
                   fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
             .note("G (a -> F b) says that every a is followed by a b, F (a && b) that both happen at once");

@@ -57,17 +57,32 @@ std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
     return found;
 }
 
-/// The operands of the conjunction that the formula is, or the formula.
-void collect_conjuncts(const Model& model, Literal literal, std::vector<Literal>& conjuncts) {
-    const Kind kind = model.formulas[literal.formula].kind;
-    const bool splits = kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
-                        ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
-    if (!splits) {
-        conjuncts.push_back(literal);
-        return;
+/// The operands of the conjunction that the formula is, each once, or the formula.
+class Conjuncts {
+public:
+    explicit Conjuncts(const Model& model) : model_(model), seen_(model.formulas.size()) {}
+
+    std::vector<Literal> of(Literal literal) && {
+        collect(literal);
+        return std::move(conjuncts_);
     }
-    for (const Literal operand : operands_of(model, literal)) collect_conjuncts(model, operand, conjuncts);
-}
+
+private:
+    void collect(Literal literal) {
+        bool& seen = literal.negated ? seen_[literal.formula].negative : seen_[literal.formula].positive;
+        if (seen) return;
+        seen = true;
+        const Kind kind = model_.formulas[literal.formula].kind;
+        const bool splits = kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
+                            ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
+        if (!splits) return conjuncts_.push_back(literal);
+        for (const Literal operand : operands_of(model_, literal)) collect(operand);
+    }
+
+    const Model& model_;
+    std::vector<Polarity> seen_;
+    std::vector<Literal> conjuncts_;
+};
 
 /// Exact sum of decimals in (0, 1): their digits after the point, added from the right.
 std::string sum(const std::vector<std::string>& alphas) {
@@ -178,12 +193,11 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values val
     }
     std::vector<Claim> result{claim(model, {monitor.formula, false}, values)};
     if (result.front().kind != Claim::Kind::nothing) return result;
-    std::vector<Literal> conjuncts;
-    collect_conjuncts(model, {monitor.formula, false}, conjuncts);
+    const std::vector<Literal> conjuncts = Conjuncts(model).of({monitor.formula, false});
     if (conjuncts.size() < 2) return result;
     for (const Literal conjunct : conjuncts) {
         Claim part = claim(model, conjunct, values);
-        part.part = print(model, conjunct.formula);
+        part.part = shown(model, conjunct.formula);
         if (conjunct.negated) part.part = fmt::format("!({})", part.part);
         result.push_back(std::move(part));
     }

@@ -247,6 +247,9 @@ std::string print(const Model& model, Index formula);
 inline constexpr std::uint64_t kMaxPrinted = 1000;
 bool lets_are_written_out(const Model& model, Index formula);
 
+/// The formula for people to read: lets are written out, and parts of a long one left out (check/elision.hpp).
+std::string shown(const Model& model, Index formula);
+
 /// The expression as canonical text: equal values of numbers are written alike.
 std::string print(const Model& model, const Expr& expression);
 

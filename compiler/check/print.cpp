@@ -3,6 +3,7 @@
 #include <unordered_map>
 
 #include "check/decimal.hpp"
+#include "check/elision.hpp"
 #include "check/model.hpp"
 
 namespace etlc::check {
@@ -44,76 +45,61 @@ Operator operator_of(Kind kind) {
     return {"", kAtom};
 }
 
-class FormulaPrinter {
+class Phrases {
 public:
-    FormulaPrinter(const Model& model, Index root) : model_(model), root_(root) {
-        if (lets_are_written_out(model, root)) return;
-        for (const Let& let : model.lets)
-            if (let.formula != kNone) let_names_.try_emplace(let.formula, let.name);
-    }
+    /// `let_names` stand for formulas below the root.
+    Phrases(const Model& model, Index root, std::unordered_map<Index, std::string> let_names = {})
+        : model_(model), root_(root), let_names_(std::move(let_names)) {}
 
-    std::string print() && {
-        write(root_, kIff);
-        return std::move(out_);
+    Phrase operator()(Index index) const {
+        if (const auto* name = let_name(index)) return {.opening = *name};
+        const Formula& formula = model_.formulas[index];
+        const Operator op = operator_of(formula.kind);
+        if (op.level == kAtom) return {.opening = atom(formula, op)};
+        const std::string symbol = std::string(op.symbol) + interval(formula);
+        Phrase phrase;
+        if (op.level < kPrefix) phrase.separator = ' ' + symbol + ' ';
+        if (op.level == kPrefix) phrase.opening = formula.kind == Kind::negation ? symbol : symbol + ' ';
+        for (std::size_t i = 0; i < formula.operands.size(); ++i)
+            phrase.operands.push_back({formula.operands[i], level(formula.operands[i]) < weakest(op.level, i == 0)});
+        return phrase;
     }
 
 private:
-    void write(Index index, int weakest) {
-        if (const auto let = let_names_.find(index); let != let_names_.end() && index != root_) {
-            out_ += let->second;
-            return;
-        }
-        const Formula& formula = model_.formulas[index];
-        const Operator op = operator_of(formula.kind);
-        const bool parentheses = op.level < weakest;
-        if (parentheses) out_ += '(';
-        if (op.level == kAtom) write_atom(formula, op);
-        if (op.level == kPrefix) write_prefix(formula, op);
-        if (op.level < kPrefix) write_infix(formula, op);
-        if (parentheses) out_ += ')';
+    const std::string* let_name(Index index) const {
+        const auto let = let_names_.find(index);
+        return let != let_names_.end() && index != root_ ? &let->second : nullptr;
     }
 
-    void write_atom(const Formula& formula, const Operator& op) {
-        out_ += op.symbol;
-        if (formula.kind == Kind::boolean_input) out_ += model_.inputs[formula.index].name;
-        if (formula.kind != Kind::predicate) return;
-        out_ += model_.predicates[formula.index].shown();
+    int level(Index index) const {
+        return let_name(index) != nullptr ? kAtom : operator_of(model_.formulas[index].kind).level;
     }
 
-    void write_prefix(const Formula& formula, const Operator& op) {
-        out_ += op.symbol;
-        write_interval(formula);
-        if (formula.kind != Kind::negation) out_ += ' ';
-        write(formula.operands[0], kPrefix);
+    /// The loosest operator that an operand may have without parentheses.
+    static int weakest(Level level, bool first) {
+        if (level == kPrefix) return kPrefix;
+        const bool left_associative = level == kIff;
+        const bool right_associative = level == kImplies || level == kUntil;
+        const bool tighter = (right_associative && first) || (left_associative && !first);
+        return level + (tighter ? 1 : 0);
     }
 
-    void write_infix(const Formula& formula, const Operator& op) {
-        const bool left = op.level == kIff;
-        const bool right = op.level == kImplies || op.level == kUntil;
-        for (std::size_t i = 0; i < formula.operands.size(); ++i) {
-            if (i > 0) {
-                out_ += ' ';
-                out_ += op.symbol;
-                write_interval(formula);
-                out_ += ' ';
-            }
-            const bool first = i == 0;
-            const bool tighter = (right && first) || (left && !first);
-            write(formula.operands[i], op.level + (tighter ? 1 : 0));
-        }
+    std::string atom(const Formula& formula, const Operator& op) const {
+        if (formula.kind == Kind::boolean_input) return model_.inputs[formula.index].name;
+        if (formula.kind != Kind::predicate) return std::string(op.symbol);
+        return model_.predicates[formula.index].shown();
     }
 
-    void write_interval(const Formula& formula) {
-        if (formula.kind == Kind::next || formula.kind == Kind::previous) return;
-        if (formula.low == 0 && formula.high == kUnbounded) return;
+    static std::string interval(const Formula& formula) {
+        if (formula.kind == Kind::next || formula.kind == Kind::previous) return "";
+        if (formula.low == 0 && formula.high == kUnbounded) return "";
         const std::string high = formula.high == kUnbounded ? "inf" : std::to_string(formula.high);
-        out_ += '[' + std::to_string(formula.low) + ", " + high + ']';
+        return '[' + std::to_string(formula.low) + ", " + high + ']';
     }
 
     const Model& model_;
     Index root_;
     std::unordered_map<Index, std::string> let_names_;
-    std::string out_;
 };
 
 // ---- expressions ---------------------------------------------------------------------------------------------------
@@ -178,7 +164,15 @@ bool lets_are_written_out(const Model& model, Index formula) {
 }
 
 std::string print(const Model& model, Index formula) {
-    return FormulaPrinter(model, formula).print();
+    std::unordered_map<Index, std::string> let_names;
+    if (!lets_are_written_out(model, formula))
+        for (const Let& let : model.lets)
+            if (let.formula != kNone) let_names.try_emplace(let.formula, let.name);
+    return whole_text(formula, Phrases(model, formula, std::move(let_names)));
+}
+
+std::string shown(const Model& model, Index formula) {
+    return elided_text(formula, Phrases(model, formula));
 }
 
 std::string print(const Model& model, const Expr& expression) {

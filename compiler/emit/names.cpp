@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cctype>
 
 #include "plan/budget.hpp"
@@ -193,15 +194,20 @@ private:
     std::string part_name(std::uint32_t r) const {
         const std::string words = identifier(graph_.text(plan_.readings[r].node), "");
         if (!words.empty() && words.size() <= kLongestPartName) return words;
-        for (const plan::Monitor& monitor : plan_.monitors)
-            if (!monitor.sliding && contains(monitor.reading, r)) return monitor.name + "_part";
-        return "part";
+        return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
     }
 
-    bool contains(std::uint32_t whole, std::uint32_t part) const {
-        if (whole == part) return true;
-        const auto& operands = plan_.readings[whole].operands;
-        return std::any_of(operands.begin(), operands.end(), [&](std::uint32_t o) { return contains(o, part); });
+    /// The first monitor whose reading each reading is a part of. Operands stand before what they are operands of.
+    std::vector<const plan::Monitor*> first_monitors() const {
+        std::vector<std::size_t> first(plan_.readings.size(), plan_.monitors.size());
+        for (std::size_t m = plan_.monitors.size(); m-- > 0;)
+            if (!plan_.monitors[m].sliding) first[plan_.monitors[m].reading] = m;
+        for (std::size_t r = first.size(); r-- > 0;)
+            for (const std::uint32_t operand : plan_.readings[r].operands)
+                first[operand] = std::min(first[operand], first[r]);
+        std::vector<const plan::Monitor*> result;
+        for (const std::size_t m : first) result.push_back(m < plan_.monitors.size() ? &plan_.monitors[m] : nullptr);
+        return result;
     }
 
     void name_registers(std::uint32_t r, const std::string& name) {
@@ -280,6 +286,7 @@ private:
     const plan::Plan& plan_;
     const check::Model& model_;
     const ir::Graph& graph_;
+    std::vector<const plan::Monitor*> monitor_of_ = first_monitors();  ///< per reading
     Names names_;
     Scope measure_scope_{{"in", "now", "missing", "point", "Value", "Atoms"}};
     Scope atoms_scope_{{"Value", "Key", "Reading"}};

@@ -4,6 +4,8 @@
 #include <set>
 #include <utility>
 
+#include "check/horizons.hpp"
+
 namespace etlc::evaluate {
 
 namespace {
@@ -30,34 +32,29 @@ bool is_eventually(const Formula& f) {
     return f.kind == Kind::eventually && f.low == 0 && f.high == check::kUnbounded;
 }
 
-bool looks_ahead(const check::Model& model, Index formula) {
-    const Formula& f = model.formulas[formula];
-    switch (f.kind) {
-        case Kind::next:
-        case Kind::eventually:
-        case Kind::always:
-        case Kind::until:
-        case Kind::weak_until:
-        case Kind::release: return true;
-        default: break;
-    }
-    return std::any_of(f.operands.begin(), f.operands.end(), [&](Index o) { return looks_ahead(model, o); });
-}
-
-void flatten(const check::Model& model, Index formula, std::vector<Index>& conjuncts) {
-    const Formula& f = model.formulas[formula];
-    if (f.kind != Kind::conjunction) return conjuncts.push_back(formula);
-    for (const Index operand : f.operands) flatten(model, operand, conjuncts);
+/// The operands of the conjunction that the formula is, each once, or the formula.
+std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
+    std::vector<Index> conjuncts;
+    std::vector<bool> seen(model.formulas.size());
+    const auto collect = [&](const auto& self, Index at) -> void {
+        if (seen[at]) return;
+        seen[at] = true;
+        const Formula& f = model.formulas[at];
+        if (f.kind != Kind::conjunction) return conjuncts.push_back(at);
+        for (const Index operand : f.operands) self(self, operand);
+    };
+    collect(collect, formula);
+    return conjuncts;
 }
 
 /// The conjuncts of each of a, b, ... of F (a && F (b && ...)); fewer than two where the formula has another shape.
-std::vector<std::vector<Index>> stages_of(const check::Model& model, Index formula) {
+std::vector<std::vector<Index>> stages_of(const check::Model& model, const std::vector<check::Reach>& reaches,
+                                          Index formula) {
     std::vector<std::vector<Index>> stages;
     while (is_eventually(model.formulas[formula])) {
-        std::vector<Index> conjuncts;
-        flatten(model, model.formulas[formula].operands[0], conjuncts);
-        const auto ahead = [&](Index c) { return looks_ahead(model, c); };
-        const auto rest = std::stable_partition(conjuncts.begin(), conjuncts.end(), [&](Index c) { return !ahead(c); });
+        std::vector<Index> conjuncts = conjuncts_of(model, model.formulas[formula].operands[0]);
+        const auto in_present = [&](Index c) { return reaches[c].future == check::kNone; };
+        const auto rest = std::stable_partition(conjuncts.begin(), conjuncts.end(), in_present);
         const auto further = conjuncts.end() - rest;
         if (further > 1 || (further == 1 && !is_eventually(model.formulas[*rest]))) return {};
         if (rest == conjuncts.begin()) return {};
@@ -92,6 +89,7 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
     Subject result{labelled, calibrate::ground_truth(model, labelled), {}};
     check::Model& truth = result.truth.model;
     const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
+    const std::vector<check::Reach> reaches = check::reaches(model);
     for (Index m = 0; m < model.monitors.size(); ++m) {
         const check::Monitor& monitor = model.monitors[m];
         MonitorSubject& subject = result.monitors.emplace_back();
@@ -106,7 +104,7 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         if (!subject.lacking.empty()) continue;
         subject.truth = static_cast<Index>(truth.monitors.size());
         truth.monitors.push_back(true_monitors[m]);
-        const auto stages = stages_of(model, monitor.formula);
+        const auto stages = stages_of(model, reaches, monitor.formula);
         if (monitor.sliding || stages.size() < 2) continue;
         for (const auto& conjuncts : stages) subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));
     }

@@ -57,8 +57,10 @@ NodeId Graph::intern(Node node) {
 
     const bool future = info(node.op).tense == Tense::future;
     node.has_future = future;
+    node.unbounded_past = info(node.op).tense == Tense::past && !node.interval.bounded();
     for (NodeId operand : node.operands) {
         node.has_future |= nodes_[operand].has_future;
+        node.unbounded_past |= nodes_[operand].unbounded_past;
         node.horizon = std::max(node.horizon, nodes_[operand].horizon);
     }
     if (future) node.horizon = add_steps(node.horizon, node.interval.high);

@@ -59,6 +59,7 @@ struct Node {
     Interval interval{};   ///< of temporal operators
     std::vector<NodeId> operands;
     bool has_future = false;    ///< a future operator in it, itself included
+    bool unbounded_past = false;  ///< a past operator without an upper bound in it, itself included
     std::uint32_t horizon = 0;  ///< steps of future it needs; kUnbounded without end
     Span span{};                ///< where the spec first says it; not part of its identity
 
@@ -83,7 +84,8 @@ public:
     /// what it is worth where the prefix ends before.
     NodeId keep(Op op, Interval interval, std::vector<NodeId> operands, Span span);
 
-    /// The formula with symbols and names: "F (at_a && F at_b)".
+    /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a long one are left out
+    /// (check/elision.hpp).
     std::string text(NodeId id) const;
 
 private:

@@ -1,6 +1,7 @@
 // Graph nodes as formulas, for comments in generated code and for --emit graph.
 #include <fmt/format.h>
 
+#include "check/elision.hpp"
 #include "ir/lower.hpp"
 
 namespace etlc::ir {
@@ -32,17 +33,26 @@ std::string atom_text(const Graph& graph, const Node& node) {
     return node.negated ? fmt::format("!({})", words) : fmt::format("({})", words);
 }
 
-std::string operand_text(const Graph& graph, NodeId id) {
-    const Arity arity = info(graph[id].op).arity;
-    const bool bare = arity == Arity::atom || arity == Arity::unary || graph[id].op == Op::trigger;
-    return bare ? graph.text(id) : fmt::format("({})", graph.text(id));
+/// Trigger, for which the language has no letter, brings its own brackets.
+bool is_bare(const Node& node) {
+    const Arity arity = info(node.op).arity;
+    return arity == Arity::atom || arity == Arity::unary || node.op == Op::trigger;
 }
 
-std::string join(const Graph& graph, const Node& node) {
-    std::string result;
-    for (NodeId operand : node.operands) {
-        if (!result.empty()) result += fmt::format(" {} ", info(node.op).symbol);
-        result += operand_text(graph, operand);
+check::Phrase phrase(const Graph& graph, NodeId id) {
+    const Node& node = graph[id];
+    check::Phrase result;
+    for (NodeId operand : node.operands) result.operands.push_back({operand, !is_bare(graph[operand])});
+    switch (info(node.op).arity) {
+        case Arity::atom: result.opening = atom_text(graph, node); break;
+        case Arity::unary: result.opening = operator_text(node) + ' '; break;
+        case Arity::binary:
+        case Arity::many: result.separator = fmt::format(" {} ", operator_text(node)); break;
+    }
+    if (node.op == Op::trigger) {
+        result.opening = "!(!";
+        result.separator = fmt::format(" S{} !", interval_text(node.interval));
+        result.closing = ")";
     }
     return result;
 }
@@ -77,19 +87,7 @@ std::string print(const Program& program) {
 }
 
 std::string Graph::text(NodeId id) const {
-    const Node& node = nodes_[id];
-    const OpInfo& row = info(node.op);
-    switch (row.arity) {
-        case Arity::atom: return atom_text(*this, node);
-        case Arity::many: return join(*this, node);
-        case Arity::unary: return fmt::format("{} {}", operator_text(node), operand_text(*this, node.operands[0]));
-        case Arity::binary: break;
-    }
-    const std::string left = operand_text(*this, node.operands[0]);
-    const std::string right = operand_text(*this, node.operands[1]);
-    if (node.op == Op::trigger)  // the language has no letter for it
-        return fmt::format("!(!{} S{} !{})", left, interval_text(node.interval), right);
-    return fmt::format("{} {}{} {}", left, row.symbol, interval_text(node.interval), right);
+    return check::elided_text(id, [this](NodeId node) { return phrase(*this, node); });
 }
 
 }  // namespace etlc::ir

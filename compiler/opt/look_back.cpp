@@ -1,8 +1,6 @@
 // F (f && F[a,b] g) is F (g && O[a,b] f), and G (f || G[a,b] g) is G (g || H[a,b] f): whichever of two positions is
 // asked first, the pair is the same. The past is a window over one stream, where the future is a state per step of it.
 // Only for bounded windows, and f without unbounded past, whose range of unseen values would depend on what is known.
-#include <algorithm>
-
 #include "opt/opt.hpp"
 
 namespace etlc::opt {
@@ -12,13 +10,6 @@ namespace {
 using ir::Node;
 using ir::NodeId;
 using ir::Op;
-
-bool has_unbounded_past(const ir::Graph& graph, NodeId id) {
-    const Node& node = graph[id];
-    if (ir::info(node.op).tense == ir::Tense::past && !node.interval.bounded()) return true;
-    return std::any_of(node.operands.begin(), node.operands.end(),
-                       [&](NodeId operand) { return has_unbounded_past(graph, operand); });
-}
 
 }  // namespace
 
@@ -37,7 +28,7 @@ NodeId look_back(ir::Graph& graph, NodeId id) {
     const Node window = graph[future[0]];
     if (window.op != outer.op || !window.interval.bounded()) return id;
     const NodeId earlier = graph.combine(connective, std::move(present), inner.span);
-    if (has_unbounded_past(graph, earlier)) return id;
+    if (graph[earlier].unbounded_past) return id;
 
     const NodeId past = graph.unary(seeks ? Op::once : Op::historically, window.interval, earlier, window.span);
     const NodeId pair = graph.combine(connective, {window.operands[0], past}, inner.span);

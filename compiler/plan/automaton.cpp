@@ -1,7 +1,6 @@
 #include "plan/automaton.hpp"
 
 #include <algorithm>
-#include <map>
 #include <tuple>
 #include <unordered_map>
 
@@ -24,10 +23,17 @@ using Clauses = std::vector<Clause>;
 
 struct TooLarge {};
 
-Set unite(const Set& a, const Set& b) {
-    Set result;
+struct HashOfSet {
+    std::size_t operator()(const Set& set) const {
+        std::size_t hash = set.size();
+        for (NodeId id : set) hash = (hash ^ id) * 0x9e3779b97f4a7c15ULL + (hash >> 29U);
+        return hash;
+    }
+};
+
+void unite(const Set& a, const Set& b, Set& result) {
+    result.clear();
     std::set_union(a.begin(), a.end(), b.begin(), b.end(), std::back_inserter(result));
-    return result;
 }
 
 class Construction {
@@ -45,7 +51,16 @@ public:
         return std::move(automaton_);
     }
 
+    std::uint64_t work() const { return work_; }
+
 private:
+    void spend(std::uint64_t steps) {
+        work_ += steps;
+        if (work_ <= limits_.work) return;
+        reached_.out_of_work = true;
+        throw TooLarge{};
+    }
+
     // ---- what implies what
 
     /// rho of the first is never above rho of the second, at the same position of any prefix.
@@ -65,70 +80,93 @@ private:
         }
     }
 
-    bool all_implied(const Set& weaker, const Set& stronger) const {
-        return std::all_of(weaker.begin(), weaker.end(), [&](NodeId w) {
-            return std::any_of(stronger.begin(), stronger.end(), [&](NodeId s) { return implies(s, w); });
-        });
+    bool implied(NodeId weaker, const Set& stronger) {
+        spend(1);
+        if (std::binary_search(stronger.begin(), stronger.end(), weaker)) return true;
+        spend(stronger.size());
+        return std::any_of(stronger.begin(), stronger.end(), [&](NodeId s) { return implies(s, weaker); });
     }
 
     /// The first clause makes the second idle: whatever satisfies the second satisfies the first.
-    bool absorbs(const Clause& kept, const Clause& dropped) const {
+    bool absorbs(const Clause& kept, const Clause& dropped) {
+        spend(1);
+        if (kept.literals.size() > dropped.literals.size()) return false;
+        spend(dropped.literals.size());
         return std::includes(dropped.literals.begin(), dropped.literals.end(), kept.literals.begin(),
                              kept.literals.end()) &&
-               all_implied(kept.next, dropped.next);
+               std::all_of(kept.next.begin(), kept.next.end(), [&](NodeId w) { return implied(w, dropped.next); });
     }
 
-    void add(Clauses& clauses, Clause clause) {
+    void add(Clauses& clauses, const Clause& clause) {
         effort_ += kEffortPerClause + clauses.size();
         if (effort_ > kEffortPerTransition * limits_.transitions) throw TooLarge{};
         for (const Clause& other : clauses)
             if (absorbs(other, clause)) return;
         std::erase_if(clauses, [&](const Clause& other) { return absorbs(clause, other); });
-        clauses.push_back(std::move(clause));
+        spend(kWorkPerClause + clause.literals.size() + clause.next.size());
+        clauses.push_back(clause);
         if (clauses.size() > limits_.transitions || clauses.size() > kMaxClauses) throw TooLarge{};
+    }
+
+    /// Windows of one operand that touch.
+    bool merge(NodeId first, NodeId second) const {
+        const Node& a = graph_[first];
+        const Node& b = graph_[second];
+        if (a.op != Op::always || b.op != Op::always || a.operands != b.operands) return false;
+        const auto touches = [](Interval x, Interval y) { return !x.bounded() || y.low <= x.high + 1; };
+        return touches(a.interval, b.interval) && touches(b.interval, a.interval);
     }
 
     /// G[0,4] f and G[2,9] f are G[0,9] f: windows of one operand that touch become one, so that a requirement which
     /// repeats at every step is one obligation and not a set of them.
-    Set merge_always(Set obligations) {
+    void merge_always(Set& obligations) {
         for (std::size_t i = 0; i < obligations.size(); ++i) {
+            if (graph_[obligations[i]].op != Op::always) continue;
+            spend(obligations.size() - i);
             for (std::size_t j = i + 1; j < obligations.size(); ++j) {
-                const Node a = graph_[obligations[i]];
-                const Node& b = graph_[obligations[j]];
-                if (a.op != Op::always || b.op != Op::always || a.operands != b.operands) continue;
-                const auto touches = [](Interval x, Interval y) { return !x.bounded() || y.low <= x.high + 1; };
-                if (!touches(a.interval, b.interval) || !touches(b.interval, a.interval)) continue;
-                const Interval whole{std::min(a.interval.low, b.interval.low),
-                                     std::max(a.interval.high, b.interval.high)};
-                const NodeId merged = graph_.keep(Op::always, whole, a.operands, a.span);
+                if (!merge(obligations[i], obligations[j])) continue;
+                const Node a = graph_[obligations[i]];  // a copy: the graph grows meanwhile
+                const Interval b = graph_[obligations[j]].interval;
+                const Interval whole{std::min(a.interval.low, b.low), std::max(a.interval.high, b.high)};
+                const NodeId merged = keep(a, whole);
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(j));
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(i));
                 obligations.insert(std::lower_bound(obligations.begin(), obligations.end(), merged), merged);
                 obligations.erase(std::unique(obligations.begin(), obligations.end()), obligations.end());
-                return merge_always(std::move(obligations));
+                return merge_always(obligations);
             }
         }
-        return obligations;
     }
 
-    /// Obligations without those that another of the set implies.
-    Set reduce(const Set& unmerged) {
-        const Set obligations = merge_always(unmerged);
-        Set result;
-        for (std::size_t i = 0; i < obligations.size(); ++i) {
-            bool idle = false;
-            for (std::size_t j = 0; j < obligations.size() && !idle; ++j) {
-                if (i == j || !implies(obligations[j], obligations[i])) continue;
-                idle = !implies(obligations[i], obligations[j]) || j < i;  // of two equals the first stays
-            }
-            if (!idle) result.push_back(obligations[i]);
-        }
-        return result;
+    /// Obligations without those that another of the set implies. (None but equal ones imply each other.)
+    void reduce(Set& obligations) {
+        merge_always(obligations);
+        const Set all = obligations;
+        std::erase_if(obligations, [&](NodeId weaker) {
+            spend(all.size());
+            return std::any_of(all.begin(), all.end(),
+                               [&](NodeId stronger) { return stronger != weaker && implies(stronger, weaker); });
+        });
+    }
+
+    /// What both sets owe; both are reduced.
+    void owe_both(const Set& a, const Set& b, Set& result) {
+        spend(a.size() + b.size() + 2 * a.size() * b.size());
+        bool related = false;
+        for (NodeId x : a)
+            for (NodeId y : b) related = related || (x != y && (implies(x, y) || implies(y, x) || merge(x, y)));
+        unite(a, b, result);
+        if (related) reduce(result);
     }
 
     // ---- expansion
 
+    void spend_on(const Clauses& clauses) {
+        for (const Clause& clause : clauses) spend(kWorkPerClause + clause.literals.size() + clause.next.size());
+    }
+
     Clauses either(const Clauses& a, const Clauses& b) {
+        spend_on(a);
         Clauses result = a;
         for (const Clause& clause : b) add(result, clause);
         return result;
@@ -136,8 +174,14 @@ private:
 
     Clauses both(const Clauses& a, const Clauses& b) {
         Clauses result;
+        Clause made;
         for (const Clause& x : a)
-            for (const Clause& y : b) add(result, {unite(x.literals, y.literals), reduce(unite(x.next, y.next))});
+            for (const Clause& y : b) {
+                spend(x.literals.size() + y.literals.size());
+                unite(x.literals, y.literals, made.literals);
+                owe_both(x.next, y.next, made.next);
+                add(result, made);
+            }
         return result;
     }
 
@@ -154,8 +198,11 @@ private:
 
     /// The window one step later, as an obligation for the next position. It keeps its operator even where the window
     /// is [0,0], since at the end of the prefix F and U are false there and G and R are true.
-    Clauses later(const Node& node) {
-        return next(graph_.keep(node.op, node.interval.earlier(), node.operands, node.span));
+    Clauses later(const Node& node) { return next(keep(node, node.interval.earlier())); }
+
+    NodeId keep(const Node& node, Interval interval) {
+        spend(kWorkPerNode);
+        return graph_.keep(node.op, interval, node.operands, node.span);
     }
 
     const Clauses& expand(NodeId id) {
@@ -202,14 +249,19 @@ private:
     // ---- states and transitions
 
     std::uint32_t guard_number(const Set& literals) {
+        spend(kWorkPerClause + literals.size());
         const auto [entry, added] = guards_.emplace(literals, static_cast<std::uint32_t>(automaton_.guards.size()));
         if (added) automaton_.guards.push_back(literals);
         return entry->second;
     }
 
     std::uint32_t state_number(const Set& obligations) {
+        spend(obligations.size());
         const auto [entry, added] = states_.emplace(obligations, static_cast<std::uint32_t>(automaton_.states.size()));
-        if (added) automaton_.states.push_back(obligations);
+        if (added) {
+            spend(kWorkPerObligation * obligations.size());
+            automaton_.states.push_back(obligations);
+        }
         reached_.states = automaton_.states.size();
         if (reached_.states > limits_.states) throw TooLarge{};
         return entry->second;
@@ -229,6 +281,10 @@ private:
     // Where most clauses turn out to be idle, work and not size is what ends a construction.
     static constexpr std::uint64_t kEffortPerClause = 16;
     static constexpr std::uint64_t kEffortPerTransition = 256;
+    // Work in steps of a loop over a set: what takes longer, and what those that use the automaton do with it.
+    static constexpr std::uint64_t kWorkPerClause = 16;
+    static constexpr std::uint64_t kWorkPerNode = 64;
+    static constexpr std::uint64_t kWorkPerObligation = 32;
 
     ir::Graph& graph_;
     Literals literals_;
@@ -236,9 +292,10 @@ private:
     AutomatonSize& reached_;
     Automaton automaton_;
     std::uint64_t effort_ = 0;
+    std::uint64_t work_ = 0;
     std::unordered_map<NodeId, Clauses> expansions_;
-    std::map<Set, std::uint32_t> guards_;
-    std::map<Set, std::uint32_t> states_;
+    std::unordered_map<Set, std::uint32_t, HashOfSet> guards_;
+    std::unordered_map<Set, std::uint32_t, HashOfSet> states_;
 };
 
 }  // namespace
@@ -249,11 +306,14 @@ bool is_strong(Op op) {
 
 std::optional<Automaton> build_automaton(ir::Graph& graph, NodeId formula, Literals literals,
                                          const AutomatonLimits& limits, AutomatonSize& reached) {
+    Construction construction(graph, literals, limits, reached);
+    std::optional<Automaton> automaton;
     try {
-        return Construction(graph, literals, limits, reached).build(formula);
+        automaton = construction.build(formula);
     } catch (const TooLarge&) {
-        return std::nullopt;
     }
+    reached.work = construction.work();
+    return automaton;
 }
 
 }  // namespace etlc::plan

@@ -37,6 +37,7 @@ bool is_strong(ir::Op op);
 struct AutomatonLimits {
     std::size_t states = 65536;
     std::size_t transitions = 65536;
+    std::uint64_t work = std::uint64_t{1} << 28U;  ///< steps of loops over literals and obligations
 };
 
 /// What the construction takes as a literal: formulas without future, or all whose future is bounded.
@@ -46,6 +47,8 @@ enum class Literals : std::uint8_t { without_future, with_bounded_future };
 struct AutomatonSize {
     std::size_t states = 0;
     std::size_t transitions = 0;
+    std::uint64_t work = 0;    ///< that it took
+    bool out_of_work = false;  ///< which ended it, before its size did
 };
 std::optional<Automaton> build_automaton(ir::Graph& graph, ir::NodeId formula, Literals literals,
                                          const AutomatonLimits& limits, AutomatonSize& reached);

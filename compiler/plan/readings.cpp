@@ -12,22 +12,42 @@ using ir::Op;
 
 namespace {
 
+/// What all state machines of a plan may take to build, for each transition that one of them may have: 2^27 steps at
+/// the default limits, some tenths of a second. A count and not a time, so that a spec has one answer everywhere.
+constexpr std::uint64_t kWorkPerTransition = 8192;
+/// No machine takes more than its share, so that there is some for others.
+constexpr std::uint64_t kShares = 4;
+constexpr std::uint64_t kSmallShares = 16;
+
 /// Machines up to this size are preferred to anything else.
-constexpr AutomatonLimits kSmallMachine{256, 2048};
+constexpr std::size_t kSmallMachineStates = 256;
+constexpr std::size_t kSmallMachineTransitions = 2048;
 /// Operations from which on it is worth to look for another way.
 constexpr std::uint64_t kMuchWork = 20'000;
 
+constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
+
+std::uint64_t most_transitions(const Limits& limits) {
+    return std::min({limits.code_bytes / 4, limits.operations, kNumbered}) + 1;
+}
+
+std::uint64_t total_work(const Limits& limits) {
+    return most_transitions(limits) * kWorkPerTransition;
+}
+
 /// What the limits allow a single automaton; the whole plan is weighed afterwards.
-AutomatonLimits automaton_limits(const Limits& limits) {
-    constexpr std::uint64_t kNumbered = 65535;  // tables number states in 16 bits
+AutomatonLimits machine_limits(const Limits& limits) {
     AutomatonLimits result;
     result.states = static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
-    result.transitions = static_cast<std::size_t>(std::min({limits.code_bytes / 4, limits.operations, kNumbered}) + 1);
+    result.transitions = static_cast<std::size_t>(most_transitions(limits));
+    result.work = total_work(limits) / kShares;
     return result;
 }
 
-AutomatonLimits smaller(const AutomatonLimits& a, const AutomatonLimits& b) {
-    return {std::min(a.states, b.states), std::min(a.transitions, b.transitions)};
+AutomatonLimits small_machine_limits(const Limits& limits) {
+    const AutomatonLimits any = machine_limits(limits);
+    return {std::min(any.states, kSmallMachineStates), std::min(any.transitions, kSmallMachineTransitions),
+            total_work(limits) / kSmallShares};
 }
 
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
@@ -37,6 +57,15 @@ bool loops_freely(const Automaton& automaton, std::uint32_t state) {
 }
 
 }  // namespace
+
+ReadingBuilder::ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
+                               const Limits& limits, check::Values values)
+    : graph_(graph),
+      streams_(streams),
+      readings_(readings),
+      limits_(limits),
+      values_(values),
+      work_left_(total_work(limits)) {}
 
 std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
     if (const auto known = known_.find(id); known != known_.end()) return known->second;
@@ -159,14 +188,22 @@ Machine ReadingBuilder::machine_of(Automaton automaton) {
     return machine;
 }
 
+std::optional<Automaton> ReadingBuilder::automaton(NodeId id, Literals literals, AutomatonLimits limits,
+                                                   AutomatonSize& reached) {
+    limits.work = std::min(limits.work, work_left_);
+    auto result = build_automaton(graph_, id, literals, limits, reached);
+    work_left_ -= std::min(work_left_, reached.work);
+    return result;
+}
+
 std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits& limits) {
     AutomatonSize reached;
-    auto automaton = build_automaton(graph_, id, Literals::without_future, limits, reached);
-    if (!automaton) {
+    auto built = automaton(id, Literals::without_future, limits, reached);
+    if (!built) {
         oversize_.push_back({id, reached});
         return std::nullopt;
     }
-    Machine result = machine_of(std::move(*automaton));
+    Machine result = machine_of(std::move(*built));
     for (const auto& literals : result.automaton.guards) {
         std::vector<Slot> slots;
         for (NodeId literal : literals) slots.push_back(streams_.of(literal));
@@ -208,9 +245,9 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
         return reading;
     }
     AutomatonSize reached;
-    auto automaton = build_automaton(graph_, id, Literals::with_bounded_future, automaton_limits(limits_), reached);
-    if (!automaton) return std::nullopt;
-    pending.machine = machine_of(std::move(*automaton));
+    auto built = automaton(id, Literals::with_bounded_future, machine_limits(limits_), reached);
+    if (!built) return std::nullopt;
+    pending.machine = machine_of(std::move(*built));
     for (const auto& literals : pending.machine.automaton.guards) {
         std::vector<std::uint32_t> parts;
         for (NodeId literal : literals) parts.push_back(pending_part(pending, known, literal));
@@ -244,14 +281,14 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
         return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
     };
     const std::size_t failures = oversize_.size();
-    if (auto small = machine(id, smaller(automaton_limits(limits_), kSmallMachine)))
+    if (auto small = machine(id, small_machine_limits(limits_)))
         return add(as_reading(std::move(*small)));
     std::optional<Reading> best = pending(node, id);
     if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_))) best.reset();
     oversize_.resize(failures);
     if (splitting_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
     if (!best || cost_of(*best, values_).operations > kMuchWork)
-        if (auto large = machine(id, automaton_limits(limits_))) {
+        if (auto large = machine(id, machine_limits(limits_))) {
             Reading reading = as_reading(std::move(*large));
             if (!best || cost_of(reading, values_).operations < cost_of(*best, values_).operations)
                 best = std::move(reading);

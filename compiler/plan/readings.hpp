@@ -14,8 +14,7 @@ namespace etlc::plan {
 class ReadingBuilder {
 public:
     ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings, const Limits& limits,
-                   check::Values values)
-        : graph_(graph), streams_(streams), readings_(readings), limits_(limits), values_(values) {}
+                   check::Values values);
 
     /// A sub-formula whose automaton would exceed the limits.
     struct Oversize {
@@ -29,7 +28,7 @@ public:
 
 private:
     std::optional<std::uint32_t> combination(const ir::Node& node, NodeId id);
-    /// A state machine over formulas without future, of at most so many states and transitions.
+    /// A state machine over formulas without future, within these limits and the work that is left.
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
@@ -41,12 +40,14 @@ private:
     std::uint32_t add(Reading reading);
     Machine::State state(const std::vector<NodeId>& obligations);
     Machine machine_of(Automaton automaton);
+    std::optional<Automaton> automaton(NodeId id, Literals literals, AutomatonLimits limits, AutomatonSize& reached);
 
     ir::Graph& graph_;
     StreamBuilder& streams_;
     std::vector<Reading>& readings_;
     Limits limits_;
     check::Values values_;
+    std::uint64_t work_left_;
     bool splitting_ = false;
     std::map<NodeId, std::uint32_t> known_;
     std::vector<Oversize> oversize_;

@@ -26,10 +26,9 @@ std::string limit_figures(const Limits& limits) {
 
 // ---- operators that a state machine must count
 
-void collect_future(const ir::Graph& graph, ir::NodeId id, std::set<ir::NodeId>& found) {
-    if (!graph[id].has_future) return;
-    if (ir::info(graph[id].op).tense == ir::Tense::future) found.insert(id);
-    for (ir::NodeId operand : graph[id].operands) collect_future(graph, operand, found);
+void collect_future(const ir::Graph& graph, ir::NodeId id, std::set<ir::NodeId>& seen) {
+    if (!graph[id].has_future || !seen.insert(id).second) return;
+    for (ir::NodeId operand : graph[id].operands) collect_future(graph, operand, seen);
 }
 
 /// The steps of its window that a state machine counts one by one.
@@ -42,6 +41,7 @@ std::vector<ir::NodeId> costly_operators(const ir::Graph& graph, ir::NodeId part
     std::set<ir::NodeId> found;
     collect_future(graph, part, found);
     std::vector<ir::NodeId> result(found.begin(), found.end());
+    std::erase_if(result, [&](ir::NodeId id) { return ir::info(graph[id].op).tense != ir::Tense::future; });
     std::stable_sort(result.begin(), result.end(),
                      [&](ir::NodeId a, ir::NodeId b) { return counted(graph[a]) > counted(graph[b]); });
     if (counted(graph[result.front()]) > 0)
@@ -83,11 +83,13 @@ std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
 
 void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, const ir::Graph& graph,
                  const Limits& limits, check::Values values, diag::Sink& sink) {
+    const std::string_view why = part.reached.out_of_work ? "that takes more work to build than the limits allow"
+                                                          : "larger than the limits";
     auto& error = sink.report(
         diag::Code::formula_too_large, graph[part.node].span,
-        fmt::format("monitor '{}' needs a state machine larger than the limits for '{}': building it stopped at {} "
-                    "states and {} transitions, which take {} so far; {}",
-                    monitor.name, graph.text(part.node), part.reached.states, part.reached.transitions,
+        fmt::format("monitor '{}' needs a state machine {} for '{}': building it stopped at {} states and {} "
+                    "transitions, which take {} so far; {}",
+                    monitor.name, why, graph.text(part.node), part.reached.states, part.reached.transitions,
                     figures(cost_of(part.reached, values)), limit_figures(limits)));
     for (ir::NodeId id : costly_operators(graph, part.node)) {
         const ir::Node& node = graph[id];
