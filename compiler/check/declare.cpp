@@ -45,23 +45,6 @@ void declare_all(Context& c) {
         if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
 }
 
-/// The generated class has functions like distance_P for a predicate P: a monitor or an input of such a name would make
-/// two things of the generated header look alike.
-void check_accessors(Context& c, NameKind kind, std::string_view prefix) {
-    const NameKind owner_kind = NameKind::predicate;
-    for (const Entity& entity : c.scope.all(kind)) {
-        if (entity.duplicate || !entity.name.starts_with(prefix)) continue;
-        const Reference* owner = c.scope.find(std::string_view(entity.name).substr(prefix.size()));
-        if (owner == nullptr || owner->kind != owner_kind) continue;
-        const Entity& owned = c.scope.entity(*owner);
-        c.report(Code::accessor_clash, entity.span,
-                 fmt::format("'{}' is the name of a function that the generated class keeps for the {} '{}'",
-                             entity.name, word(owner_kind), owned.name))
-            .note(owned.span, fmt::format("'{}' is declared here", owned.name))
-            .note(fmt::format("another name would do, for example '{}'", entity.name + '_' + std::string(word(kind))));
-    }
-}
-
 }  // namespace
 
 void declare_names(Context& c) {
@@ -69,13 +52,9 @@ void declare_names(Context& c) {
     c.model.name = c.spec.name.text;
     check_spelling(c, c.spec.name, "spec", true);
     for (const NameKind kind :
-         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor}) {
+         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor})
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
-        for (const std::string_view prefix :
-             {"distance_", "nearest_", "threshold_", "initial_threshold_", "set_threshold_", "observe_"})
-            check_accessors(c, kind, prefix);
-    }
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)
         c.report(Code::no_monitor, c.spec.name.span, "the spec has no monitor, so there is nothing to compile")
             .note("add a line such as 'monitor m = G p;'");

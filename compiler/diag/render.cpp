@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "diag/source_view.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::diag {
 
@@ -29,7 +30,7 @@ public:
         const std::string_view colour = is_error ? palette_.error : palette_.warning;
         const bool in_spec = diagnostic.file.empty();
         headline(in_spec ? place(diagnostic.span) : place(diagnostic), is_error ? "error" : "warning", colour,
-                 fmt::format("{} [{}]", printable(diagnostic.message), info(diagnostic.code).code));
+                 fmt::format("{} [{}]", source::visible(diagnostic.message), info(diagnostic.code).code));
         if (in_spec && diagnostic.span) source_lines(*diagnostic.span);
         if (!in_spec && diagnostic.span) note({diagnostic.span, "named here"});
         for (const Note& n : diagnostic.notes) note(n);
@@ -50,14 +51,14 @@ public:
 
 private:
     std::string place(const std::optional<source::Span>& span) const {
-        const std::string path = printable(spec_.path());
+        const std::string path = source::visible(spec_.path());
         if (!span) return path;
         const source::Position at = spec_.position(span->begin);
         return fmt::format("{}:{}:{}", path, at.line, at.column);
     }
 
     static std::string place(const Diagnostic& diagnostic) {
-        std::string result = printable(diagnostic.file);
+        std::string result = source::visible(diagnostic.file);
         if (diagnostic.line > 0) result += fmt::format(":{}", diagnostic.line);
         if (diagnostic.line > 0 && diagnostic.column > 0) result += fmt::format(":{}", diagnostic.column);
         return result;
@@ -78,10 +79,10 @@ private:
 
     void note(const Note& n) {
         if (!n.span) {
-            text_ += fmt::format("      = {}note:{} {}\n", palette_.note, palette_.reset, printable(n.text));
+            text_ += fmt::format("      = {}note:{} {}\n", palette_.note, palette_.reset, source::visible(n.text));
             return;
         }
-        headline(place(n.span), "note", palette_.note, printable(n.text));
+        headline(place(n.span), "note", palette_.note, source::visible(n.text));
         source_lines(*n.span);
     }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <vector>
 
+#include "source/utf8.hpp"
+
 namespace etlc::diag {
 
 namespace {
@@ -55,39 +57,15 @@ std::uint8_t width_of(char32_t c) {
     return is_in(kWide, c) || (c >= 0x20000 && c <= 0x3FFFD) ? 2 : 1;
 }
 
-/// The code point that begins `text`; where there is none or it may not be shown, its length is 1 and its value 0.
-struct Decoded {
-    char32_t value;
-    std::size_t length;
-};
-
-Decoded decode(std::string_view text) {
-    const auto byte = [text](std::size_t i) { return static_cast<unsigned char>(text[i]); };
-    const unsigned char lead = byte(0);
-    if (lead < 0x80) return {lead == '\t' || (lead >= 0x20 && lead != 0x7F) ? lead : U'\0', 1};
-    const std::size_t length = lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
-    if (lead < 0xC2 || lead > 0xF4 || length > text.size()) return {0, 1};
-    char32_t value = lead & (0x7FU >> length);
-    for (std::size_t i = 1; i < length; ++i) {
-        if ((byte(i) & 0xC0U) != 0x80U) return {0, 1};
-        value = (value << 6U) | (byte(i) & 0x3FU);
-    }
-    constexpr std::array<char32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
-    const bool surrogate = value >= 0xD800 && value <= 0xDFFF;
-    const bool control = value < 0xA0 || value == 0x2028 || value == 0x2029 || (value >= 0x202A && value <= 0x202E) ||
-                         (value >= 0x2066 && value <= 0x2069);  // these reorder what a terminal shows
-    if (value < kLeast[length] || value > 0x10FFFF || surrogate) return {0, 1};
-    return {control ? U'\0' : value, length};
-}
-
 std::vector<Cell> cells_of(std::string_view line, std::size_t offset) {
     std::vector<Cell> cells;
     for (std::size_t i = 0; i < line.size();) {
-        const Decoded c = decode(line.substr(i));
-        const bool shown = c.value != 0;
-        cells.push_back(
-            {shown ? line.substr(i, c.length) : kReplacement, offset + i, shown ? width_of(c.value) : std::uint8_t{1}});
-        i += c.length;
+        const std::size_t length = source::utf8_length(line.substr(i));
+        const std::string_view bytes = line.substr(i, length == 0 ? 1 : length);
+        const char32_t value = length == 0 ? U'\0' : source::code_point(bytes);
+        const bool shown = value == U'\t' || !source::is_hidden(value);
+        cells.push_back({shown ? bytes : kReplacement, offset + i, shown ? width_of(value) : std::uint8_t{1}});
+        i += bytes.size();
     }
     return cells;
 }
@@ -117,12 +95,6 @@ Part part_around(std::string_view line, std::size_t at) {
 }
 
 }  // namespace
-
-std::string printable(std::string_view text) {
-    std::string result;
-    for (const Cell& cell : cells_of(text, 0)) result += cell.bytes;
-    return result;
-}
 
 SourceView view(const source::File& file, source::Span span) {
     const std::uint32_t line_number = file.position(span.begin).line;

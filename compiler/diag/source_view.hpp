@@ -17,7 +17,4 @@ struct SourceView {
 
 SourceView view(const source::File& file, source::Span span);
 
-/// `text` as valid UTF-8 without control characters (tabs stay): each offending byte becomes U+FFFD.
-std::string printable(std::string_view text);
-
 }  // namespace etlc::diag

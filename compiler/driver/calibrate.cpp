@@ -10,6 +10,7 @@
 #include "driver/progress.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::driver {
 
@@ -90,7 +91,8 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     // The report comes before the file takes its name: where a part of it is lost, nothing has changed.
     OutputFiles files(sink);
     return files.add(output, thresholds::write(result->file)) &&
-           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput), result->report) &&
+           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
+                     source::visible_lines(result->report)) &&
            files.commit();
 }
 

@@ -8,6 +8,7 @@
 #include "emit/emit.hpp"
 #include "opt/opt.hpp"
 #include "parse/parse.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::driver {
 
@@ -33,8 +34,9 @@ std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, 
 namespace {
 
 std::optional<std::string> text_of(const Compiled& compiled, const Request& request) {
-    if (request.emit == "graph") return ir::print(*compiled.program);
-    if (request.emit == "plan") return plan::print(compiled.plan, compiled.program->graph);
+    if (request.emit == "graph") return source::visible_lines(ir::print(*compiled.program));
+    if (request.emit == "plan")
+        return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
             return backend.emit(compiled.plan, compiled.program->graph,
@@ -63,7 +65,7 @@ std::optional<Output> emit(const source::File& file, const Request& request, dia
     if (request.emit == "ast") {
         const ast::Spec spec = parse::parse(file, sink);
         if (sink.has_errors()) return std::nullopt;
-        output.text = ast::print(spec);
+        output.text = source::visible_lines(ast::print(spec));
         return output;
     }
     auto compiled = compile(file, request, sink);

@@ -3,12 +3,14 @@
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 
+#include "check/reserved.hpp"
 #include "data/file.hpp"
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
@@ -21,6 +23,7 @@
 #include "driver/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
+#include "source/escape.hpp"
 
 namespace {
 
@@ -116,19 +119,22 @@ void add_common_options(CLI::App& app, Call& call) {
         ->capture_default_str();
 }
 
-/// a or a::b
-bool names_namespace(std::string_view name) {
-    bool starts = true;
-    for (std::size_t i = 0; i < name.size(); ++i) {
-        const auto c = static_cast<unsigned char>(name[i]);
-        const bool separator = starts ? false : name.substr(i, 2) == "::";
-        if (separator)
-            ++i;
-        else if (starts ? std::isalpha(c) == 0 : std::isalnum(c) == 0 && c != '_')
-            return false;
-        starts = separator;
+/// Why the generated code cannot be in this namespace, a or a::b; empty where it can.
+std::string mistake_in_namespace(const std::string& name) {
+    bool is_outermost = true;
+    for (std::size_t begin = 0; begin != std::string::npos; is_outermost = false) {
+        const std::size_t end = name.find("::", begin);
+        const std::string part = name.substr(begin, end - begin);
+        begin = end == std::string::npos ? end : end + 2;
+        const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+        const bool is_name = !part.empty() && std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
+                             std::all_of(part.begin(), part.end(), in_names);
+        if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
+        if (const auto why = check::why_forbidden(part, is_outermost))
+            return fmt::format("'{}' {}; another name would do, for example '{}'", part, *why,
+                               check::allowed_name(part, "monitors", is_outermost));
     }
-    return !starts;
+    return "";
 }
 
 std::string emit_help() {
@@ -147,11 +153,7 @@ void add_compile_options(CLI::App& app, Call& call) {
     app.add_flag("--standalone", call.request.standalone, "paste the runtime in: one file to copy into firmware");
     app.add_option("--namespace", call.request.name_space, "of the generated code (default: the spec's name)")
         ->type_name("NAME")
-        ->check(CLI::Validator(
-            [](const std::string& name) {
-                return names_namespace(name) ? std::string() : fmt::format("'{}' is not the name of a namespace", name);
-            },
-            ""));
+        ->check(CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
     app.add_option("--inline-targets", call.request.limits.inline_target_bytes,
                    "target sets of more bytes are not spelled out in the header, but go to a file beside it")
         ->type_name("BYTES")
@@ -183,7 +185,8 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
-    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n", mistake, app.get_name()));
+    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
+                                    source::visible_lines(mistake), app.get_name()));
     return driver::kWrongCall;
 }
 

@@ -8,6 +8,7 @@
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::driver {
 
@@ -59,7 +60,9 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     const bool prints = evaluation.json != kStandardOutput && evaluation.csv != kStandardOutput;
     return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(*result))) &&
            (evaluation.csv.empty() || files.add(evaluation.csv, evaluate::csv(*result))) &&
-           (!prints || files.add(std::string(kStandardOutput), evaluate::table(*result))) && files.commit();
+           (!prints || files.add(std::string(kStandardOutput),
+                                 source::visible_lines(evaluate::table(*result)))) &&
+           files.commit();
 }
 
 }  // namespace etlc::driver

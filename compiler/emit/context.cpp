@@ -23,7 +23,7 @@ std::string quoted(std::string_view text) {
         else if (!line.empty() && line.back() != ' ')
             line += ' ';
     }
-    while (!line.empty() && (line.back() == ' ' || line.back() == '\\')) line.pop_back();
+    while (!line.empty() && line.back() == ' ') line.pop_back();
     if (line.size() <= kLongestQuote) return line;
     std::size_t cut = kLongestQuote - 4;
     while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U) --cut;  // not inside a code point
@@ -40,8 +40,8 @@ bool is_register(StreamOp op) {
 
 std::string open_condition(ir::Interval interval) {
     std::string text;
-    if (interval.low > 0) text = fmt::format("step_ >= {}", interval.low);
-    if (interval.bounded()) text += fmt::format("{}step_ <= {}", text.empty() ? "" : " && ", interval.high);
+    if (interval.low > 0) text = fmt::format("position >= {}", interval.low);
+    if (interval.bounded()) text += fmt::format("{}position <= {}", text.empty() ? "" : " && ", interval.high);
     return text;
 }
 

@@ -39,12 +39,11 @@ std::string weights_argument(const Context& context, Index d) {
 std::string wide_call(const Context& context, Index d, const std::string& z) {
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
-        return fmt::format("{}.nearest<etlmon::{}>({}, {} + targets::{})", search->second,
-                           plan::metric_name(context.model.distances[d]), z, context.names.rows_member,
-                           context.names.target_array.at(d));
+        return fmt::format("{}.nearest<etlmon::{}>({}, rows + targets::{})", search->second,
+                           plan::metric_name(context.model.distances[d]), z, context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
-        return fmt::format("etlmon::measure_stored<{}>({}, {} + targets::{}{})", kernel_parameters(context, d), z,
-                           context.names.rows_member, context.names.target_array.at(d), weights_argument(context, d));
+        return fmt::format("etlmon::measure_stored<{}>({}, rows + targets::{}{})", kernel_parameters(context, d), z,
+                           context.names.target_array.at(d), weights_argument(context, d));
     return fmt::format("etlmon::measure<{}, targets::{}>({}{})", kernel_parameters(context, d),
                        context.names.target_array.at(d), z, weights_argument(context, d));
 }

@@ -3,19 +3,11 @@
 
 #include "emit/emit.hpp"
 #include "emit/printer.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::emit {
 
 namespace {
-
-std::string escaped(const std::string& text) {
-    std::string result;
-    for (char c : text) {
-        if (c == '"' || c == '\\') result += '\\';
-        result += c;
-    }
-    return result;
-}
 
 std::string label(const ir::Graph& graph, ir::NodeId id) {
     const ir::Node& node = graph[id];
@@ -31,7 +23,7 @@ std::string label(const ir::Graph& graph, ir::NodeId id) {
 void print_node(Printer& out, const ir::Graph& graph, ir::NodeId id, std::set<ir::NodeId>& done) {
     if (!done.insert(id).second) return;
     const bool atom = ir::info(graph[id].op).arity == ir::Arity::atom;
-    out.line("n{} [label=\"{}\"{}];", id, escaped(label(graph, id)), atom ? ", shape=box" : "");
+    out.line("n{} [label={}{}];", id, source::dot_string(label(graph, id)), atom ? ", shape=box" : "");
     for (ir::NodeId operand : graph[id].operands) {
         print_node(out, graph, operand, done);
         out.line("n{} -> n{};", id, operand);

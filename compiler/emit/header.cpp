@@ -117,11 +117,11 @@ std::vector<Member> own_members(const Context& context) {
     for (const auto& [m, name] : context.names.verdict_member)
         result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();", ""});
     if (context.boolean())
-        result.push_back({"Verdicts", context.names.verdicts_member, "the last ones; final ones stay",
-                          context.names.verdicts_member + " = Verdicts();", ""});
-    if (plan.counts_steps) result.push_back({"uint32_t", "step_", "index of the step; saturates", "step_ = 0;", ""});
-    if (plan.has_sliding) result.push_back({"uint32_t", "finished_", "calls of finish()", "finished_ = 0;", ""});
-    result.push_back({"uint32_t", "missing_steps_", "saturates", "missing_steps_ = 0;", ""});
+        result.push_back({"Verdicts", "answers", "the last ones; final ones stay",
+                          "answers = Verdicts();", ""});
+    if (plan.counts_steps) result.push_back({"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
+    if (plan.has_sliding) result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
+    result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates", "incomplete = 0;", ""});
     return result;
 }
 
@@ -151,16 +151,16 @@ bool asks_what_exists(const plan::Plan& plan) {
 
 void print_exists(Printer& out, const Context& context) {
     out.line("/// Whether the trace has the position `lag` steps before this one.");
-    out.line("bool exists(uint32_t lag) const noexcept {{ return step_ >= lag{}; }}",
-             context.plan.has_sliding ? " && finished_ <= lag" : "");
+    out.line("bool exists(uint32_t lag) const noexcept {{ return position >= lag{}; }}",
+             context.plan.has_sliding ? " && finishes <= lag" : "");
     out.line();
 }
 
 void print_atoms(Printer& out, const Context& context) {
     out.line("/// What this step says about each predicate.");
     out.open("struct Atoms {");
-    for (const auto& [p, name] : context.names.predicate_atom) out.line("Value {};", name);
-    for (const auto& [i, name] : context.names.flag_atom) out.line("Value {};", name);
+    for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
+    for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
     out.close("};");
     out.line();
 }
@@ -177,15 +177,14 @@ void print_constructors(Printer& out, const Context& context) {
         out.line("Monitor() noexcept { reset(); }");
         return out.line();
     }
-    const std::string& member = context.names.rows_member;
     out.line("/// Over the targets of {}, which must stay where they are. Where they are not ready, every",
              context.targets_file);
     out.line("/// predicate on them is unknown at every step.");
-    out.line("explicit Monitor(const Targets& targets) noexcept : {}(targets.rows()) {{ reset(); }}", member);
+    out.line("explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) { reset(); }");
     out.line("/// The same from the bytes of the file, all of which are read once to check them.");
     out.line("Monitor(const uint8_t* bytes, size_t size) noexcept : Monitor(Targets(bytes, size)) {}");
     out.line("static bool valid(const uint8_t* bytes, size_t size) noexcept { return Targets(bytes, size).ready(); }");
-    out.line("bool ready() const noexcept {{ return {} != nullptr; }}  ///< has its targets", member);
+    out.line("bool ready() const noexcept { return rows != nullptr; }  ///< has its targets");
     out.line();
 }
 
@@ -226,7 +225,7 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
             "/// a monitor that has reported its last is undecided from then on. Prefix monitors repeat their "
             "verdict.");
         out.open("Verdicts finish() noexcept {");
-        out.line("if (finished_ != 0xffffffffu) ++finished_;");
+        out.line("if (finishes != 0xffffffffu) ++finishes;");
         out.line(context.boolean() ? "return advance(Inputs());" : "return judge(Atoms());");
         out.close();
         out.line();
@@ -241,7 +240,7 @@ void print_public_part(Printer& out, const Context& context, const std::vector<M
     print_adaptive_interface(out, context);
     out.line("/// Steps on which some predicate or bool input {}was unknown; saturates.",
              context.boolean() ? "that was asked for " : "");
-    out.line("uint32_t missing_steps() const noexcept { return missing_steps_; }");
+    out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
 }
 
 /// measure() and judge(): public, and on disjoint members, for loops that do them at different times.
@@ -308,7 +307,7 @@ std::vector<Member> members(const Context& context) {
     std::stable_partition(all.begin(), all.end(),
                           [&](const Member& member) { return !context.boolean() || !is_bytes(member); });
     if (context.stores_targets())
-        all.insert(all.begin(), {"const float*", context.names.rows_member, "in " + context.targets_file, ""});
+        all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
     return all;
 }
 

@@ -40,7 +40,7 @@ void print_readings(Printer& out, const Context& context) {
         plan.has_sliding && !context.boolean();  // prefixes do not grow while finish() reports the last positions
     if (ends) {
         out.gap();
-        out.open("if (finished_ == 0) {");
+        out.open("if (finishes == 0) {");
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
@@ -55,16 +55,15 @@ void print_readings(Printer& out, const Context& context) {
 
 /// The answers so far, with those that can still change brought up to date.
 void print_open_verdicts(Printer& out, const Context& context) {
-    const std::string& kept = context.names.verdicts_member;
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
             print_wrapped(
-                out, fmt::format("{}.{} = exists({}) ? etlmon::sliding_verdict({}) : etlmon::BooleanVerdict();", kept,
+                out, fmt::format("answers.{} = exists({}) ? etlmon::sliding_verdict({}) : etlmon::BooleanVerdict();",
                                  monitor.name, monitor.horizon, context.value(monitor.stream)));
         else
             print_wrapped(
-                out, fmt::format("if ({}) {}.{} = etlmon::prefix_verdict({});", context.names.open_local.at(m), kept,
+                out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});", context.names.open_local.at(m),
                                  monitor.name, context.names.reading_local.at(monitor.reading)));
     }
 }
@@ -85,16 +84,16 @@ void print_advance(Printer& out, const Context& context) {
     print_atoms_on_demand(out, context);
     out.gap();
     for (const auto& [m, open] : context.names.open_local)
-        out.line("const bool {} = {}!{}.{}.final();", open, plan.has_sliding ? "finished_ == 0 && " : "",
-                 context.names.verdicts_member, plan.monitors[m].name);
+        out.line("const bool {} = {}!answers.{}.final();", open, plan.has_sliding ? "finishes == 0 && " : "",
+                 plan.monitors[m].name);
     out.gap();
     print_streams(out, context);
     print_readings(out, context);
     out.gap();
     print_open_verdicts(out, context);
-    out.line("if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;");
-    if (plan.counts_steps) out.line("if (step_ != 0xffffffffu) ++step_;");
-    out.line("return {};", context.names.verdicts_member);
+    out.line("if (missing && incomplete != 0xffffffffu) ++incomplete;");
+    if (plan.counts_steps) out.line("if (position != 0xffffffffu) ++position;");
+    out.line("return answers;");
     out.close();
 }
 
@@ -116,7 +115,7 @@ void print_judge(Printer& out, const Context& context) {
     out.line("Verdicts verdicts;");
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out, fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
-    if (plan.counts_steps) out.line("if (step_ != 0xffffffffu) ++step_;");
+    if (plan.counts_steps) out.line("if (position != 0xffffffffu) ++position;");
     out.line("return verdicts;");
     out.close();
 }

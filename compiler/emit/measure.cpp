@@ -163,7 +163,7 @@ void print_measure(Printer& out, const Context& context) {
     out.line("bool missing = false;");
     MeasurePrinter(out, context).print();
     out.line();
-    out.line("if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;");
+    out.line("if (missing && incomplete != 0xffffffffu) ++incomplete;");
     out.line("return now;");
     out.close();
 }

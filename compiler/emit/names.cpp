@@ -53,14 +53,34 @@ void append_word(std::string& name, std::string_view word) {
     name += word;
 }
 
-std::string without_trailing_underscore(std::string name) {
-    while (!name.empty() && name.back() == '_') name.pop_back();
-    return name;
+/// A data member that is named after the spec.
+std::string member(Scope& scope, const std::string& name) {
+    return scope.claim(name, "_");
 }
 
-/// A data member: its name and an underscore, of which C++ allows no two in a row.
-std::string member(Scope& scope, const std::string& name) {
-    return scope.claim(without_trailing_underscore(name)) + '_';
+/// A local that is named after the spec; one without an underscore would look like a name of the class itself.
+std::string local(Scope& scope, const std::string& name) {
+    return name.find('_') == std::string::npos ? scope.number(name) : scope.claim(name);
+}
+
+/// The functions of the class that are named after predicates.
+std::set<std::string> accessors(const check::Model& model, const plan::Plan& plan) {
+    std::set<std::string> names;
+    for (check::Index p : plan.predicates)
+        for (const char* prefix :
+             {"distance_", "nearest_", "threshold_", "initial_threshold_", "set_threshold_", "observe_"})
+            names.insert(prefix + model.predicates[p].name);
+    return names;
+}
+
+/// Read as it is, from what was measured or written down.
+bool is_atom(plan::StreamOp op) {
+    return op == plan::StreamOp::constant || op == plan::StreamOp::predicate || op == plan::StreamOp::flag;
+}
+
+std::string predicate_name(const check::Predicate& predicate) {
+    if (!predicate.name.empty()) return predicate.name;
+    return identifier(predicate.text + predicate.threshold.text, "comparison");
 }
 
 /// How often measure() names a scalar; a point is looked at before it is measured.
@@ -82,20 +102,39 @@ public:
         : plan_(plan),
           model_(*plan.model),
           graph_(graph),
-          measure_(plan.values == check::Values::boolean ? judge_ : measure_scope_),
-          atoms_(plan.values == check::Values::boolean ? judge_ : atoms_scope_) {}
+          boolean_(plan.values == check::Values::boolean),
+          judge_(accessors(model_, plan)),
+          measure_scope_(accessors(model_, plan)),
+          measure_(boolean_ ? judge_ : measure_scope_) {}
 
     Names name_all() {
+        name_atoms();
         name_measurements();
         name_streams();
         name_readings();
         name_constants();
-        names_.verdicts_member = member(members_, "verdicts");
-        names_.rows_member = member(members_, "targets");
         return std::move(names_);
     }
 
 private:
+    /// In Atoms they are called as they are; a Boolean class has locals for them.
+    std::string atom(const std::string& name) { return boolean_ ? local(judge_, name + "_now") : atoms_.claim(name); }
+
+    void name_atoms() {
+        for (const plan::Stream& stream : plan_.streams)
+            if (stream.op == plan::StreamOp::flag)
+                names_.flag_atom[stream.index] = atom(model_.inputs[stream.index].name);
+        for (check::Index p : plan_.predicates)
+            if (!model_.predicates[p].name.empty()) names_.predicate_atom[p] = atom(model_.predicates[p].name);
+        for (check::Index p : plan_.predicates) {
+            const check::Predicate& predicate = model_.predicates[p];
+            if (!predicate.name.empty()) continue;
+            const std::string words = predicate_name(predicate);
+            names_.predicate_atom[p] = local(boolean_ ? judge_ : atoms_, words);
+            names_.predicate_local[p] = local(measure_, words + "_delta");
+        }
+    }
+
     void name_measurements() {
         std::map<check::Index, int> uses = scalar_uses(plan_);
         for (check::Index i : plan_.inputs) {
@@ -103,39 +142,30 @@ private:
             if (input.type == check::InputType::scalar && input.hold == 0 && uses[i] == 1) continue;
             if (input.type == check::InputType::f32 && plan::left_to_kernels(plan_, i)) {
                 if (plan::shares_direction(plan_, i))
-                    names_.direction_local[i] = measure_.claim(input.name + "_direction");
+                    names_.direction_local[i] = local(measure_, input.name + "_direction");
                 continue;
             }
-            const bool is_atom = &measure_ == &atoms_ && input.type == check::InputType::boolean;
-            names_.input_local[i] = measure_.claim(input.name + (is_atom ? "_sample" : ""));
-            names_.input_buffer[i] = measure_.claim(input.name + "_values");
+            names_.input_local[i] = local(measure_, input.name + "_sample");
+            names_.input_buffer[i] = local(measure_, input.name + "_values");
             if (input.hold > 0) names_.hold_member[i] = member(members_, input.name + "_held");
         }
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
             if (!predicate.name.empty()) names_.predicate_member[p] = member(members_, predicate.name);
-            if (predicate.threshold.adaptation) {
-                names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
-                names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
-            }
-            const std::string name = predicate.name.empty()
-                                         ? identifier(predicate.text + predicate.threshold.text, "comparison")
-                                         : predicate.name;
-            names_.predicate_atom[p] = atoms_.claim(name);
-            if (predicate.name.empty()) names_.predicate_local[p] = measure_.claim(name + "_delta");
+            if (!predicate.threshold.adaptation) continue;
+            names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
+            names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
         }
         for (check::Index d : plan_.distances)
-            names_.distance_local[d] = measure_.claim(identifier(model_.distances[d].text, "distance"));
-        for (const plan::Stream& stream : plan_.streams)
-            if (stream.op == plan::StreamOp::flag)
-                names_.flag_atom[stream.index] = atoms_.claim(model_.inputs[stream.index].name);
+            names_.distance_local[d] = local(measure_, identifier(model_.distances[d].text, "distance"));
     }
 
     void name_streams() {
         for (plan::Slot slot = 0; slot < plan_.streams.size(); ++slot) {
             const plan::Stream& stream = plan_.streams[slot];
+            if (is_atom(stream.op)) continue;
             const std::string name = stream_name(stream);
-            names_.stream_local[slot] = judge_.claim(name);
+            names_.stream_local[slot] = local(judge_, name);
             if (plan::cost_of(stream, plan_.values).state_bytes > 0)
                 names_.stream_member[slot] = member(members_, name);
         }
@@ -143,10 +173,10 @@ private:
 
     std::string stream_name(const plan::Stream& stream) const {
         if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
-        if (stream.op == plan::StreamOp::predicate) return names_.predicate_atom.at(stream.index);
+        if (stream.op == plan::StreamOp::predicate) return predicate_name(model_.predicates[stream.index]);
         const std::string suffix = suffix_of(stream);
         if (suffix.empty()) return "value";
-        return without_trailing_underscore(stream_name(signal_of(stream))) + suffix;
+        return stream_name(signal_of(stream)) + suffix;
     }
 
     /// The last operand; of a window that is widened from a shorter one, what both watch.
@@ -177,7 +207,7 @@ private:
             const plan::Monitor& monitor = plan_.monitors[m];
             if (!monitor.sliding) wanted.emplace(monitor.reading, monitor.name);
             if (plan_.values == check::Values::boolean) {
-                if (!monitor.sliding) names_.open_local[m] = judge_.claim(monitor.name + "_open");
+                if (!monitor.sliding) names_.open_local[m] = local(judge_, monitor.name + "_open");
             } else if (plan_.has_sliding && !monitor.sliding) {
                 names_.verdict_member[m] = member(members_, monitor.name + "_verdict");
             }
@@ -185,7 +215,7 @@ private:
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;
-            names_.reading_local[r] = judge_.claim(name);
+            names_.reading_local[r] = local(judge_, name + "_reading");
             if (plan::cost_of(plan_.readings[r], plan_.values).state_bytes > 0) name_registers(r, name);
         }
     }
@@ -215,14 +245,14 @@ private:
         if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
             names_.reading_member[r] =
                 member(members_, name + (reading.kind == plan::Reading::Kind::response ? "_settled" : ""));
-            if (reading.kind == plan::Reading::Kind::response) names_.recent_local[r] = judge_.claim(name + "_now");
+            if (reading.kind == plan::Reading::Kind::response) names_.recent_local[r] = local(judge_, name + "_recent");
             if (reading.fold.left != plan::kNone) names_.guard_member[r] = member(members_, name + "_guard");
             if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
             const bool has_table = reading.kind == plan::Reading::Kind::machine ||
                                    (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);
             if (has_table)
-                names_.table_locals[r] = {judge_.claim(name + "_guards"), judge_.claim(name + "_weak"),
-                                          judge_.claim(name + "_strong")};
+                names_.table_locals[r] = {local(judge_, name + "_guards"), local(judge_, name + "_weak"),
+                                          local(judge_, name + "_strong")};
             return;
         }
         std::vector<std::string>& registers = names_.register_member[r];
@@ -237,7 +267,7 @@ private:
                 continue;
             }
             registers.push_back(member(members_, state));
-            names_.register_next[r].push_back(judge_.claim(state));
+            names_.register_next[r].push_back(local(judge_, state));
         }
     }
 
@@ -247,13 +277,12 @@ private:
         for (const plan::Pending::Part& part : pending.parts) {
             const std::string words = identifier(graph_.text(part.node), "");
             const bool few = !words.empty() && words.size() <= kLongestPartName;
-            names.parts.push_back(judge_.claim(few ? words + "_last" : name + "_last"));
+            names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
             names.leaves.push_back(part.leaf == plan::kNone
                                        ? ""
                                        : member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
         }
-        names.count = judge_.claim(name + "_count");
-        names.position = judge_.claim("position");
+        names.count = local(judge_, name + "_count");
         if (pending.is_fold) names_.guard_member[r] = member(members_, name + "_guard");
     }
 
@@ -288,23 +317,27 @@ private:
     const ir::Graph& graph_;
     std::vector<const plan::Monitor*> monitor_of_ = first_monitors();  ///< per reading
     Names names_;
-    Scope measure_scope_{{"in", "now", "missing", "point", "Value", "Atoms"}};
-    Scope atoms_scope_{{"Value", "Key", "Reading"}};
-    Scope judge_{{"in", "now", "missing", "point", "min", "max", "exists", "negate", "Value", "Key", "Reading", "kTrue",
-                  "kFalse", "guards", "weak", "strong", "measure", "judge", "advance"}};
+    bool boolean_;
+    Scope judge_;
+    Scope measure_scope_;
     Scope& measure_;  ///< a Boolean monitor is one function: all its locals differ
-    Scope& atoms_;
+    Scope atoms_;
     Scope members_;
     Scope constants_;
 };
 
 }  // namespace
 
-std::string Scope::claim(const std::string& wanted) {
-    std::string name = wanted;
-    const std::string stem = without_trailing_underscore(wanted);
-    for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}", stem, i);
+std::string Scope::claim(const std::string& wanted, const std::string& mark) {
+    std::string name = wanted + mark;
+    for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}{}", wanted, i, mark);
     return name;
+}
+
+std::string Scope::number(const std::string& wanted) {
+    int i = 1;
+    while (!taken_.insert(fmt::format("{}_{}", wanted, i)).second) ++i;
+    return fmt::format("{}_{}", wanted, i);
 }
 
 std::string identifier(std::string_view text, const std::string& otherwise) {
@@ -314,7 +347,7 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
         while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
             ++end;
         if (end > i) {
-            append_word(name, word_for_operator(without_trailing_underscore(std::string(text.substr(i, end - i)))));
+            append_word(name, word_for_operator(text.substr(i, end - i)));
         } else {
             end = i + 1;
             append_word(name, word_for(text[i]));

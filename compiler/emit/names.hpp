@@ -1,6 +1,13 @@
 // The names of generated code: all of them are made here.
 // Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from the spec, are legal
-// C++, differ from each other within their scope, and are the same on every run.
+// C++, differ from each other within their scope, and are the same on every run. None is a name that the class has of
+// itself, or that its code reads. For that there is one rule:
+// - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the namespace targets, where
+//   nothing else is declared; in names of the spec every underscore stands between two other characters;
+// - members that are named after the spec end in an underscore; locals are a name or words of a formula with an
+//   underscore and more behind it; functions are distance_P, threshold_P and the like, which no local is called;
+// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What has one is of no such
+//   form: missing_steps(), uint32_t, macros.)
 #pragma once
 
 #include <map>
@@ -16,8 +23,10 @@ namespace etlc::emit {
 class Scope {
 public:
     explicit Scope(std::set<std::string> taken = {}) : taken_(std::move(taken)) {}
-    /// `wanted`, or wanted_2, wanted_3, ... where it is taken.
-    std::string claim(const std::string& wanted);
+    /// `wanted` and `mark`; where that is taken, wanted_2 and mark, wanted_3 and mark, ...
+    std::string claim(const std::string& wanted, const std::string& mark = "");
+    /// wanted_1, or wanted_2, wanted_3, ... where it is taken.
+    std::string number(const std::string& wanted);
 
 private:
     std::set<std::string> taken_;
@@ -35,8 +44,8 @@ struct Names {
     std::map<check::Index, std::string> input_buffer;         ///< in measure(): widened elements, or a flag as a word
     std::map<check::Index, std::string> distance_local;       ///< in measure(): what the kernel gave
     std::map<check::Index, std::string> predicate_local;      ///< in measure(): delta of a predicate without telemetry
-    std::map<check::Index, std::string> predicate_atom;       ///< field of Atoms
-    std::map<check::Index, std::string> flag_atom;            ///< field of Atoms
+    std::map<check::Index, std::string> predicate_atom;       ///< field of Atoms; of a Boolean class, a local
+    std::map<check::Index, std::string> flag_atom;            ///< likewise
     std::map<check::Index, std::string> predicate_member;     ///< telemetry, of named predicates
     std::map<check::Index, std::string> threshold_member;     ///< of adaptive predicates: the threshold as it is now
     std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
@@ -56,14 +65,12 @@ struct Names {
     struct PendingNames {
         std::vector<std::string> parts;   ///< locals: readings at the last positions
         std::vector<std::string> leaves;  ///< members: the last values; empty where the part is no leaf
-        std::string count, position;      ///< locals
+        std::string count;                ///< local
     };
     std::map<std::uint32_t, PendingNames> pending;
     std::map<std::size_t, std::string> verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
     std::map<std::size_t, std::string> open_local;      ///< per prefix monitor of a Boolean class: can still change
     std::map<check::Index, std::string> search_member;  ///< per distance whose stored set is searched
-    std::string rows_member;                            ///< the stored target sets
-    std::string verdicts_member;                        ///< of a Boolean class: the last answers
     std::map<check::Index, std::string> target_array;   ///< per distance: its rows
     std::map<check::Index, std::string> narrow_array;   ///< per distance: its rows in float16 or int8
     std::map<check::Index, std::string> sums_array;     ///< per distance measured in integers: the sums of its rows

@@ -46,7 +46,7 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string end = fold.interval.bounded() ? fmt::format("{}", fold.interval.high) : "etlmon::kWithoutEnd";
     print_wrapped(
         out,
-        fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, step_, {}, {}, {}, {});",
+        fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, position, {}, {}, {}, {});",
                     reading_declaration(context, r), max ? "Seeking" : "Guarding", context.names.reading_member.at(r),
                     context.names.guard_member.at(r), left, names.parts[fold.right], names.count, pending.horizon,
                     fold.interval.low, end, max ? context.high(fold.unseen) : context.low(fold.unseen)));
@@ -57,19 +57,19 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     const Names::PendingNames& names = context.names.pending.at(r);
     const Names::TableLocals& locals = context.names.table_locals.at(r);
     out.line("Reading {}[{}][{}];", locals.guards, pending.horizon + 1, pending.guards.size());
-    out.open(fmt::format("for (uint32_t {0} = 0; {0} < {1}; ++{0}) {{", names.position, names.count));
+    out.open(fmt::format("for (uint32_t i = 0; i < {0}; ++i) {{", names.count));
     for (std::size_t g = 0; g < pending.guards.size(); ++g) {
         std::vector<std::string> literals;
         for (std::uint32_t part : pending.guards[g])
-            literals.push_back(fmt::format("{}[{}]", names.parts[part], names.position));
-        print_wrapped(out, fmt::format("{}[{}][{}] = {};", locals.guards, names.position, g,
+            literals.push_back(names.parts[part] + "[i]");
+        print_wrapped(out, fmt::format("{}[i][{}] = {};", locals.guards, g,
                                        literals.empty() ? fmt::format("etlmon::settled({})", context.spelling.yes)
                                                         : call("min", literals)));
     }
     out.close();
     print_machine_keys(out, context, r, pending.machine);
     const std::string tables = "tables::" + table_name(context, r);
-    print_wrapped(out, fmt::format("{} = {}.read({}, {}, step_ >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
+    print_wrapped(out, fmt::format("{} = {}.read({}, {}, position >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
                                    reading_declaration(context, r), context.names.reading_member.at(r), locals.guards,
                                    names.count, pending.horizon, tables, tables, tables, locals.weak, locals.strong));
 }
@@ -80,7 +80,7 @@ void print_pending(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::PendingNames& names = context.names.pending.at(r);
     out.line("// evaluated anew at the last {} positions, whose windows reach past this step", pending.horizon + 1);
-    out.line("const uint32_t {0} = step_ < {1} ? step_ + 1 : {2};", names.count, pending.horizon, pending.horizon + 1);
+    out.line("const uint32_t {0} = position < {1} ? position + 1 : {2};", names.count, pending.horizon, pending.horizon + 1);
     for (std::size_t i = 0; i < pending.parts.size(); ++i) print_part(out, context, pending, names, i);
     pending.is_fold ? print_fold(out, context, r) : print_machine(out, context, r);
 }

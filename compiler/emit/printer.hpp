@@ -1,5 +1,6 @@
 // Text of a program, line by line, indented by blocks.
-// Takes: lines. Gives: the text. Keeps true: two spaces a level, no trailing blanks, lines end in \n.
+// Takes: lines. Gives: the text. Keeps true: two spaces a level, no trailing blanks, lines end in \n; text from outside
+// ends where its line does, whatever it is.
 #pragma once
 
 #include <fmt/format.h>
@@ -8,12 +9,14 @@
 #include <string_view>
 #include <utility>
 
+#include "source/escape.hpp"
+
 namespace etlc::emit {
 
 class Printer {
 public:
     void line(std::string_view text = {}) {
-        if (!text.empty()) text_.append(2 * depth_, ' ').append(text);
+        if (!text.empty()) text_.append(2 * depth_, ' ').append(source::code_line(text));
         text_.push_back('\n');
     }
     template <class... Args>

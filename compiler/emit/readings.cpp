@@ -42,7 +42,7 @@ std::string widened(const Context& context, bool takes_max, const std::string& v
 
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
     const std::string& kept = context.names.reading_member.at(r);
-    out.line("if (step_ == 0) {} = {};", kept, context.value(context.plan.readings[r].latch.operand));
+    out.line("if (position == 0) {} = {};", kept, context.value(context.plan.readings[r].latch.operand));
     out.line("{} = etlmon::settled({});", reading_declaration(context, r), kept);
 }
 
@@ -73,7 +73,7 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string unseen =
         binary ? widened(context, !takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
     std::string bound = widened(context, takes_max, fmt::format("{}.{}", best, end), unseen);
-    if (fold.interval.bounded()) bound = fmt::format("step_ < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
+    if (fold.interval.bounded()) bound = fmt::format("position < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
     const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
     print_parts(out, context, r, best, takes_max ? known : bound, takes_max ? bound : known);
 }
@@ -110,7 +110,7 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     std::string near = widened(context, !response.of_always, known, unseen_body);
     if (near != known && near != unseen_body) near = call(worst, {both[0], both[1], unseen_body});
     if (response.outer.bounded() && near != known)
-        near = fmt::format("step_ < {} ? {} : {}", response.outer.high, near, known);
+        near = fmt::format("position < {} ? {} : {}", response.outer.high, near, known);
     const std::string hope = widened(context, response.of_always, now + "." + far_end, unseen_answer);
     const std::string far = widened(context, !response.of_always, settled + "." + far_end, hope);
     print_parts(out, context, r, call(worst, {settled, now}), response.of_always ? near : far,
@@ -271,7 +271,7 @@ std::string owed_text(const Context& context, const std::vector<plan::NodeId>& o
 }  // namespace
 
 std::string table_name(const Context& context, std::uint32_t r) {
-    return context.names.reading_local.at(r) + "_table";
+    return context.names.reading_local.at(r);
 }
 
 void print_machine_keys(Printer& out, const Context& context, std::uint32_t r, const Machine& machine) {

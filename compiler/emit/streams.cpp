@@ -87,7 +87,7 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
         case StreamOp::constant:
         case StreamOp::predicate:
         case StreamOp::flag: return "";
-        case StreamOp::negation: return fmt::format("{}negate({});", local, at(0));
+        case StreamOp::negation: return fmt::format("{}etlmon::negate({});", local, at(0));
         case StreamOp::conjunction:
         case StreamOp::disjunction: return local + combination(context, stream.op, stream.operands) + ";";
         case StreamOp::within:
@@ -147,7 +147,9 @@ struct Statement {
 /// The statement with what it declares. In a Boolean monitor, what must remember is only kept up while some verdict
 /// depends on it, and what need not is found out when it is asked for.
 Statement whole_statement(const Context& context, Slot slot) {
-    const std::string& name = context.names.stream_local.at(slot);
+    const auto local = context.names.stream_local.find(slot);
+    if (local == context.names.stream_local.end()) return {};  // an atom or a constant
+    const std::string& name = local->second;
     const Stream& stream = context.plan.streams[slot];
     if (context.lazy(slot) && stream.op == StreamOp::within) return {lazy_within(context, stream, name), ""};
     if (context.lazy(slot)) return {statement(context, slot, "const auto " + name + " = "), ""};

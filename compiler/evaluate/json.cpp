@@ -2,18 +2,20 @@
 #include <fmt/format.h>
 
 #include "evaluate/evaluate.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::evaluate {
 
 namespace {
 
-/// An object, a member a line; names of specs and messages of ours need no escapes but these.
+/// An object, a member a line.
 class Object {
 public:
     explicit Object(std::size_t indent) : indent_(indent) {}
 
     Object& raw(const std::string& key, const std::string& value) {
-        text_ += fmt::format("{}\n{:{}}\"{}\": {}", text_.empty() ? "" : ",", "", indent_ + 2, key, value);
+        text_ += fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2, source::json_string(key),
+                             value);
         return *this;
     }
     Object& number(const std::string& key, const std::optional<double>& value) {
@@ -33,15 +35,6 @@ private:
     std::size_t indent_;
     std::string text_;
 };
-
-std::string quoted(const std::string& text) {
-    std::string result = "\"";
-    for (const char c : text) {
-        if (c == '"' || c == '\\') result += '\\';
-        result += c;
-    }
-    return result + '"';
-}
 
 std::string blind(bool claim, const Counts& counts, std::size_t indent) {
     const Rates rates = rates_of_constant(claim, counts.positives(), counts.total());
@@ -88,7 +81,7 @@ std::string monitor(const MonitorScore& m, const std::optional<double>& step_sec
     Object object(indent);
     if (!m.lacking.empty()) {
         std::string names;
-        for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + quoted(name);
+        for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + source::json_string(name);
         return object.raw("evaluable", "false").raw("without_truth", "[" + names + "]").text();
     }
     object.raw("evaluable", "true");

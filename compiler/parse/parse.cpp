@@ -9,7 +9,7 @@
 #include "parse/slices.hpp"
 #include "parse/syntax_error.hpp"
 #include "parse/tokens.hpp"
-#include "parse/utf8.hpp"
+#include "source/utf8.hpp"
 
 namespace etlc::parse {
 
@@ -56,7 +56,7 @@ private:
             sink_.report(Code::unexpected_character, span_at(nul), "a NUL byte; is this a text file?");
             return false;
         }
-        if (const std::size_t invalid = first_invalid_utf8(text); invalid < text.size())
+        if (const std::size_t invalid = source::first_invalid_utf8(text); invalid < text.size())
             sink_.report(Code::invalid_utf8, span_at(invalid),
                          fmt::format("the byte 0x{:02X} is not UTF-8; save the file as UTF-8",
                                      static_cast<unsigned char>(text[invalid])));
@@ -91,7 +91,7 @@ private:
             // A string of bytes that are not UTF-8 has been told of with the file's.
             if (tokens_[i]->getType() == Grammar::STRING) {
                 const std::string_view content = file_.text(span_of(*tokens_[i]));
-                if (first_invalid_utf8(content) < content.size()) throw Unexplained{};
+                if (source::first_invalid_utf8(content) < content.size()) throw Unexplained{};
             }
             if (!is_mistake(*tokens_[i])) continue;
             std::optional<Diagnostic> explained = explain_mistake(*tokens_[i], file_);

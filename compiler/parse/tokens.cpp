@@ -9,7 +9,7 @@
 
 #include "EtlLexer.h"
 #include "parse/byte_stream.hpp"
-#include "parse/utf8.hpp"
+#include "source/utf8.hpp"
 
 namespace etlc::parse {
 
@@ -79,7 +79,7 @@ diag::Diagnostic diagnostic(diag::Code code, Span span, std::string message) {
 }
 
 std::optional<diag::Diagnostic> explain_character(Span span, const source::File& file) {
-    const std::size_t length = utf8_length(file.text().substr(span.begin));
+    const std::size_t length = source::utf8_length(file.text().substr(span.begin));
     if (length == 0) return std::nullopt;
     span.end = span.begin + static_cast<std::uint32_t>(length);
     const std::string character(file.text(span));
@@ -96,7 +96,7 @@ std::optional<diag::Diagnostic> explain_character(Span span, const source::File&
 
 Tokens tokens_of(const source::File& file) {
     ByteStream bytes(file.text());
-    if (file.text().substr(0, kByteOrderMark.size()) == kByteOrderMark) bytes.seek(kByteOrderMark.size());
+    if (file.text().substr(0, source::kByteOrderMark.size()) == source::kByteOrderMark) bytes.seek(source::kByteOrderMark.size());
     EtlLexer lexer(&bytes);
     lexer.removeErrorListeners();  // every byte begins some token: there is nothing to listen to
     Tokens tokens;

@@ -202,6 +202,17 @@ TEST(Names, OrdinaryNamesPass) {
     EXPECT_FALSE(why_forbidden("times_two", true));
 }
 
+TEST(Names, UnderscoresStandBetweenOthers) {
+    for (const char* name : {"_x", "x_", "a__b", "_X", "step_", "_"}) EXPECT_TRUE(why_forbidden(name, false)) << name;
+    EXPECT_EQ(allowed_name("finished_", "input", false), "finished");
+    EXPECT_EQ(allowed_name("_a__b_", "input", false), "a_b");
+}
+
+TEST(Names, CapitalsAreLeftToMacros) {
+    for (const char* name : {"NAN", "SPI1", "A_B", "FLT_MAX", "PRIu8"}) EXPECT_TRUE(why_forbidden(name, false)) << name;
+    EXPECT_EQ(allowed_name("IMU", "input", false), "imu");
+}
+
 TEST(Names, AreDeclaredInAnyOrder) {
     const Checked checked(
         "spec t; monitor m = F l; let l = p; predicate p = min l2(z, goal) <= 1; target goal = [[1, 2]]; input z : "
