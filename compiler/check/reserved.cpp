@@ -27,7 +27,17 @@ constexpr std::array kKeywords = std::to_array<std::string_view>({
 
 /// What fields of the generated structs are made of.
 constexpr std::array kGenerated = std::to_array<std::string_view>({
-    "etlmon", "int16_t", "int32_t", "int64_t", "int8_t", "size_t", "std", "uint16_t", "uint32_t", "uint64_t", "uint8_t",
+    "etlmon",
+    "int16_t",
+    "int32_t",
+    "int64_t",
+    "int8_t",
+    "size_t",
+    "std",
+    "uint16_t",
+    "uint32_t",
+    "uint64_t",
+    "uint8_t",
 });
 
 /// Macros of compilers and of the C and POSIX headers that are not in capitals.
@@ -77,8 +87,7 @@ bool is_lower(char c) {
 
 /// NULL, FLT_MAX, SPI1, but not G1: a firmware's headers have thousands of them, which no list knows.
 bool in_capitals(std::string_view name) {
-    return std::count_if(name.begin(), name.end(), is_upper) > 1 &&
-           std::none_of(name.begin(), name.end(), is_lower);
+    return std::count_if(name.begin(), name.end(), is_upper) > 1 && std::none_of(name.begin(), name.end(), is_lower);
 }
 
 /// PRId32 of <inttypes.h>, M_PIf of <math.h>: not in capitals alone.
@@ -112,8 +121,7 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
         return "has an underscore that is not between two other characters; those are for C++ and the generated code";
     if (in_capitals(name)) return "is in capitals alone, as macros of C are";
     if (contains(kMacros, name) || macro_family(name)) return "is a macro of common C headers or compilers";
-    if (is_namespace && contains(kLibrary, name))
-        return "is a name of the C library, so that no namespace can bear it";
+    if (is_namespace && contains(kLibrary, name)) return "is a name of the C library, so that no namespace can bear it";
     return std::nullopt;
 }
 

@@ -10,8 +10,8 @@
 
 namespace etlc::check {
 
-/// Why no declaration may bear `name`: "is a C++ keyword". `is_namespace` for a namespace at global scope, the spec's own
-/// name, which stands beside the functions of the C library.
+/// Why no declaration may bear `name`: "is a C++ keyword". `is_namespace` for a namespace at global scope, the spec's
+/// own name, which stands beside the functions of the C library.
 std::optional<std::string_view> why_forbidden(std::string_view name, bool is_namespace);
 
 /// A name like `name` that may be declared: `int` becomes `int_input`, `a__b` becomes `a_b`. `kind` is a word of the

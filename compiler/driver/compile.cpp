@@ -35,8 +35,7 @@ namespace {
 
 std::optional<std::string> text_of(const Compiled& compiled, const Request& request) {
     if (request.emit == "graph") return source::visible_lines(ir::print(*compiled.program));
-    if (request.emit == "plan")
-        return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
+    if (request.emit == "plan") return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
             return backend.emit(compiled.plan, compiled.program->graph,

@@ -117,11 +117,12 @@ std::vector<Member> own_members(const Context& context) {
     for (const auto& [m, name] : context.names.verdict_member)
         result.push_back({"etlmon::Verdict", name, "the last one, for finish()", name + " = etlmon::Verdict();", ""});
     if (context.boolean())
-        result.push_back({"Verdicts", "answers", "the last ones; final ones stay",
-                          "answers = Verdicts();", ""});
-    if (plan.counts_steps) result.push_back({"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
+        result.push_back({"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
+    if (plan.counts_steps)
+        result.push_back({"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
     if (plan.has_sliding) result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
-    result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates", "incomplete = 0;", ""});
+    result.push_back(
+        {"uint32_t", "incomplete", "steps on which something was unknown; saturates", "incomplete = 0;", ""});
     return result;
 }
 
@@ -306,8 +307,7 @@ std::vector<Member> members(const Context& context) {
     // Words before bytes: no padding but at the end.
     std::stable_partition(all.begin(), all.end(),
                           [&](const Member& member) { return !context.boolean() || !is_bytes(member); });
-    if (context.stores_targets())
-        all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
+    if (context.stores_targets()) all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
     return all;
 }
 

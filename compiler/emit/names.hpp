@@ -6,8 +6,8 @@
 //   nothing else is declared; in names of the spec every underscore stands between two other characters;
 // - members that are named after the spec end in an underscore; locals are a name or words of a formula with an
 //   underscore and more behind it; functions are distance_P, threshold_P and the like, which no local is called;
-// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What has one is of no such
-//   form: missing_steps(), uint32_t, macros.)
+// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What has one is of no
+//   such form: missing_steps(), uint32_t, macros.)
 #pragma once
 
 #include <map>

@@ -60,8 +60,7 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     out.open(fmt::format("for (uint32_t i = 0; i < {0}; ++i) {{", names.count));
     for (std::size_t g = 0; g < pending.guards.size(); ++g) {
         std::vector<std::string> literals;
-        for (std::uint32_t part : pending.guards[g])
-            literals.push_back(names.parts[part] + "[i]");
+        for (std::uint32_t part : pending.guards[g]) literals.push_back(names.parts[part] + "[i]");
         print_wrapped(out, fmt::format("{}[i][{}] = {};", locals.guards, g,
                                        literals.empty() ? fmt::format("etlmon::settled({})", context.spelling.yes)
                                                         : call("min", literals)));
@@ -80,7 +79,8 @@ void print_pending(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::PendingNames& names = context.names.pending.at(r);
     out.line("// evaluated anew at the last {} positions, whose windows reach past this step", pending.horizon + 1);
-    out.line("const uint32_t {0} = position < {1} ? position + 1 : {2};", names.count, pending.horizon, pending.horizon + 1);
+    out.line("const uint32_t {0} = position < {1} ? position + 1 : {2};", names.count, pending.horizon,
+             pending.horizon + 1);
     for (std::size_t i = 0; i < pending.parts.size(); ++i) print_part(out, context, pending, names, i);
     pending.is_fold ? print_fold(out, context, r) : print_machine(out, context, r);
 }

@@ -73,7 +73,8 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string unseen =
         binary ? widened(context, !takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
     std::string bound = widened(context, takes_max, fmt::format("{}.{}", best, end), unseen);
-    if (fold.interval.bounded()) bound = fmt::format("position < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
+    if (fold.interval.bounded())
+        bound = fmt::format("position < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
     const std::string known = fmt::format("{}.{}", best, takes_max ? "low" : "high");
     print_parts(out, context, r, best, takes_max ? known : bound, takes_max ? bound : known);
 }

@@ -14,8 +14,8 @@ public:
     explicit Object(std::size_t indent) : indent_(indent) {}
 
     Object& raw(const std::string& key, const std::string& value) {
-        text_ += fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2, source::json_string(key),
-                             value);
+        text_ +=
+            fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2, source::json_string(key), value);
         return *this;
     }
     Object& number(const std::string& key, const std::optional<double>& value) {

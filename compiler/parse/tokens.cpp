@@ -96,7 +96,8 @@ std::optional<diag::Diagnostic> explain_character(Span span, const source::File&
 
 Tokens tokens_of(const source::File& file) {
     ByteStream bytes(file.text());
-    if (file.text().substr(0, source::kByteOrderMark.size()) == source::kByteOrderMark) bytes.seek(source::kByteOrderMark.size());
+    if (file.text().substr(0, source::kByteOrderMark.size()) == source::kByteOrderMark)
+        bytes.seek(source::kByteOrderMark.size());
     EtlLexer lexer(&bytes);
     lexer.removeErrorListeners();  // every byte begins some token: there is nothing to listen to
     Tokens tokens;

@@ -1,6 +1,6 @@
-// Text from outside - names of files, words of the spec, of data and of thresholds - made fit for what it is printed to.
-// Takes: any bytes. Gives: text that stays one piece where it stands, and shows a reader what it is.
-// Keeps true: what is printed of an outside text goes through one of these; none of them changes plain words.
+// Text from outside - names of files, words of the spec, of data and of thresholds - made fit for what it is printed
+// to. Takes: any bytes. Gives: text that stays one piece where it stands, and shows a reader what it is. Keeps true:
+// what is printed of an outside text goes through one of these; none of them changes plain words.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@ std::string visible(std::string_view text);
 /// The same for reports of many lines, which keep their line ends.
 std::string visible_lines(std::string_view text);
 
-/// For a line of generated code that ends in an outside text, as a comment: visible, and the next line is not part of it.
+/// For a line of generated code that ends in an outside text, as a comment: visible, and the next line is not part of
+/// it.
 std::string code_line(std::string_view text);
 
 /// For JSON: in double quotes; bytes that are not UTF-8 become U+FFFD.
