@@ -1,4 +1,4 @@
-// Made by etlc 0.1.0 from dubins.etl: change that, and run etlc again.
+// Made by etlc 0.2.0 from dubins.etl: change that, and run etlc again.
 //
 //   monitor       about       state B  targets B  operations  distance elements
 //   reach         the prefix       16       1024           7                256
@@ -26,11 +26,12 @@
 #include "etlmon/version.hpp"
 #include "etlmon/views.hpp"
 
-#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 1
-#error "made by etlc 0.1: run etlc again, or use the etlmon 0.1 that it was made for"
+#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
+#error "made by etlc 0.2: run etlc again, or use the etlmon 0.2 that it was made for"
 #endif
 
 namespace dubins {
+inline namespace ETLMON_BUILD {  // units compiled with other flags have a class of their own
 
 /// What the monitors see at one step. Inputs{} lacks everything.
 struct Inputs {
@@ -172,7 +173,7 @@ class Monitor {
     at_a_ = etlmon::kUnmeasured;
     at_b_ = etlmon::kUnmeasured;
     near_c_ = etlmon::kUnmeasured;
-    incomplete = 0;
+    missing_steps_ = 0;
   }
 
   /// One call, one time step.
@@ -191,7 +192,7 @@ class Monitor {
   uint32_t nearest_near_c() const noexcept { return near_c_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
-  uint32_t missing_steps() const noexcept { return incomplete; }
+  uint32_t missing_steps() const noexcept { return missing_steps_; }
 
  private:
   using Value = etlmon::Value;
@@ -204,9 +205,9 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    etlmon::Value at_a;
-    etlmon::Value at_b;
-    etlmon::Value near_c;
+    Value at_a;
+    Value at_b;
+    Value near_c;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.
@@ -233,43 +234,43 @@ class Monitor {
         etlmon::key_of(0.732f)});
     missing |= etlmon::is_nan(near_c_.delta);
 
-    if (missing && incomplete != 0xffffffffu) ++incomplete;
+    if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;
     return now;
   }
 
   /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
   /// bound that no continuation leaves.
   Verdicts judge(const Atoms& now) noexcept {
-    using etlmon::max;
-    using etlmon::min;
+    using etlmon::max_of;
+    using etlmon::min_of;
 
-    const Value not_near_c = etlmon::negate(now.near_c);
+    const Value not_near_c = negate(now.near_c);
 
     // dubins.etl:25: F at_a
-    reach_ = max(reach_, now.at_a);
-    const Reading reach_reading = {reach_, reach_.low, max(reach_.high, etlmon::key_of(0.243f))};
+    reach_ = max_of(reach_, now.at_a);
+    const Reading reach = {reach_, reach_.low, max_of(reach_.high, etlmon::key_of(0.243f))};
 
     // dubins.etl:26: G !near_c
-    avoid_ = min(avoid_, not_near_c);
-    const Reading avoid_reading = {avoid_, min(avoid_.low, etlmon::key_of(-0.732f)), avoid_.high};
+    avoid_ = min_of(avoid_, not_near_c);
+    const Reading avoid = {avoid_, min_of(avoid_.low, etlmon::key_of(-0.732f)), avoid_.high};
 
     // dubins.etl:27: F at_a && G !near_c
-    const Reading reach_avoid_reading = min(reach_reading, avoid_reading);
+    const Reading reach_avoid = min_of(reach, avoid);
 
     // dubins.etl:28: F (at_a && F at_b)
-    sequential_owing_1_ = max(sequential_owing_1_, now.at_a);
-    sequential_met_ = max(sequential_met_, min(sequential_owing_1_, now.at_b));
-    const Reading sequential_reading = {
+    sequential_owing_1_ = max_of(sequential_owing_1_, now.at_a);
+    sequential_met_ = max_of(sequential_met_, min_of(sequential_owing_1_, now.at_b));
+    const Reading sequential = {
       sequential_met_,
       sequential_met_.low,
-      max(etlmon::key_of(0.223f), sequential_met_.high)
+      max_of(etlmon::key_of(0.223f), sequential_met_.high)
     };
 
     Verdicts verdicts;
-    verdicts.reach = etlmon::prefix_verdict(reach_reading);
-    verdicts.avoid = etlmon::prefix_verdict(avoid_reading);
-    verdicts.reach_avoid = etlmon::prefix_verdict(reach_avoid_reading);
-    verdicts.sequential = etlmon::prefix_verdict(sequential_reading);
+    verdicts.reach = etlmon::prefix_verdict(reach);
+    verdicts.avoid = etlmon::prefix_verdict(avoid);
+    verdicts.reach_avoid = etlmon::prefix_verdict(reach_avoid);
+    verdicts.sequential = etlmon::prefix_verdict(sequential);
     return verdicts;
   }
 
@@ -281,8 +282,9 @@ class Monitor {
   etlmon::Measured at_a_;                // telemetry
   etlmon::Measured at_b_;                // telemetry
   etlmon::Measured near_c_;              // telemetry
-  uint32_t incomplete;                   // steps on which something was unknown; saturates
+  uint32_t missing_steps_;               // saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
+}  // namespace ETLMON_BUILD
 }  // namespace dubins

@@ -1,4 +1,4 @@
-// Made by etlc 0.1.0 from example.etl: change that, and run etlc again.
+// Made by etlc 0.2.0 from example.etl: change that, and run etlc again.
 //
 //   monitor       about       state B  targets B  operations  distance elements
 //   stays         the prefix       16         16           7                  4
@@ -21,11 +21,12 @@
 #include "etlmon/version.hpp"
 #include "etlmon/views.hpp"
 
-#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 1
-#error "made by etlc 0.1: run etlc again, or use the etlmon 0.1 that it was made for"
+#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
+#error "made by etlc 0.2: run etlc again, or use the etlmon 0.2 that it was made for"
 #endif
 
 namespace example {
+inline namespace ETLMON_BUILD {  // units compiled with other flags have a class of their own
 
 /// What the monitors see at one step. Inputs{} lacks everything.
 struct Inputs {
@@ -58,7 +59,7 @@ class Monitor {
   void reset() noexcept {
     stays_ = etlmon::kTrue;
     near_goal_ = etlmon::kUnmeasured;
-    incomplete = 0;
+    missing_steps_ = 0;
   }
 
   /// One call, one time step.
@@ -71,7 +72,7 @@ class Monitor {
   uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
-  uint32_t missing_steps() const noexcept { return incomplete; }
+  uint32_t missing_steps() const noexcept { return missing_steps_; }
 
  private:
   using Value = etlmon::Value;
@@ -84,7 +85,7 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    etlmon::Value near_goal;
+    Value near_goal;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.
@@ -98,30 +99,31 @@ class Monitor {
         etlmon::key_of(0.409f)});
     missing |= etlmon::is_nan(near_goal_.delta);
 
-    if (missing && incomplete != 0xffffffffu) ++incomplete;
+    if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;
     return now;
   }
 
   /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
   /// bound that no continuation leaves.
   Verdicts judge(const Atoms& now) noexcept {
-    using etlmon::max;
-    using etlmon::min;
+    using etlmon::max_of;
+    using etlmon::min_of;
 
     // example.etl:10: G near_goal
-    stays_ = min(stays_, now.near_goal);
-    const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
+    stays_ = min_of(stays_, now.near_goal);
+    const Reading stays = {stays_, etlmon::kBottom, stays_.high};
 
     Verdicts verdicts;
-    verdicts.stays = etlmon::prefix_verdict(stays_reading);
+    verdicts.stays = etlmon::prefix_verdict(stays);
     return verdicts;
   }
 
  private:
   etlmon::Register stays_;      // G near_goal
   etlmon::Measured near_goal_;  // telemetry
-  uint32_t incomplete;          // steps on which something was unknown; saturates
+  uint32_t missing_steps_;      // saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
+}  // namespace ETLMON_BUILD
 }  // namespace example

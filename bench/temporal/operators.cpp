@@ -13,7 +13,7 @@ namespace bench {
 namespace {
 
 using etlmon::Key;
-using etlmon::max;
+using etlmon::max_of;
 using etlmon::Span;
 using etlmon::Value;
 
@@ -44,7 +44,7 @@ struct Recurrence {
     using Element = V;
     V acc;
     void reset() { acc = etlmon::Lattice<V>::bottom(); }
-    V push(V v) { return acc = max(acc, v); }
+    V push(V v) { return acc = max_of(acc, v); }
 };
 
 /// Sliding maximum by a queue of falling candidates: each value is stored once, but one step may drop all of them.

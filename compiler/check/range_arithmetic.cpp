@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "etlmon/distances.hpp"
+
 namespace etlc::check {
 
 namespace {
@@ -128,9 +130,8 @@ Range max(const std::vector<Range>& ranges) {
 }
 
 Range range_of(Metric metric) {
-    constexpr float kPi = 3.14159265358979F;  // the float32 nearest to pi lies above it
-    if (metric == Metric::cosine) return {0.0F, 2.0F};
-    if (metric == Metric::angular) return {0.0F, kPi};
+    if (metric == Metric::cosine) return {0.0F, etlmon::Cosine::kHighest};
+    if (metric == Metric::angular) return {0.0F, etlmon::Angular::kHighest};
     return {0.0F, kInfinity};
 }
 

@@ -71,7 +71,8 @@ std::string float_literal(float x);
 void print_wrapped(Printer& out, const std::string& text);
 /// Declarations with their comments in one column.
 void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations);
-/// "max(a, b, c)"; of one argument, that argument. Where some are lazy, "max(max(a, b), c)".
+/// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
+/// "max_of(max_of(a, b), c)".
 std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy = false);
 
 // The parts of the header, in order.

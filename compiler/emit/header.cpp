@@ -328,11 +328,13 @@ std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options
     print_summary(out, context);
     print_includes(out, context, options.version, options.standalone);
     out.line("namespace {} {{", context.name_space);
+    out.line("inline namespace ETLMON_BUILD {  // units compiled with other flags have a class of their own");
     out.line();
     print_inputs_and_verdicts(out, context);
     print_constants(out, context);
     print_tables(out, context);
     print_class(out, context);
+    out.line("}  // namespace ETLMON_BUILD");
     out.line("}}  // namespace {}", context.name_space);
     return options.standalone ? standalone(out.take()) : out.take();
 }

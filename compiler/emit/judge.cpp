@@ -78,8 +78,8 @@ void print_advance(Printer& out, const Context& context) {
     out.line("/// still change first depends on it; min and max ask from left to right and stop where one decides.");
     out.open(fmt::format("{}Verdicts advance({}const Inputs& in) noexcept {{", context.step_qualifier(),
                          plan.inputs.empty() ? "[[maybe_unused]] " : ""));
-    out.line("using etlmon::max;");
-    out.line("using etlmon::min;");
+    out.line("using etlmon::max_of;");
+    out.line("using etlmon::min_of;");
     out.line("bool missing = false;");
     print_atoms_on_demand(out, context);
     out.gap();
@@ -106,8 +106,8 @@ void print_judge(Printer& out, const Context& context) {
     out.line("/// bound that no continuation leaves.");
     out.open(fmt::format("{}Verdicts judge({}const Atoms& now) noexcept {{", context.step_qualifier(),
                          reads_atoms ? "" : "[[maybe_unused]] "));
-    out.line("using etlmon::max;");
-    out.line("using etlmon::min;");
+    out.line("using etlmon::max_of;");
+    out.line("using etlmon::min_of;");
     out.gap();
     print_streams(out, context);
     print_readings(out, context);

@@ -63,9 +63,10 @@ std::string local(Scope& scope, const std::string& name) {
     return name.find('_') == std::string::npos ? scope.number(name) : scope.claim(name);
 }
 
-/// The functions of the class that are named after predicates.
-std::set<std::string> accessors(const check::Model& model, const plan::Plan& plan) {
-    std::set<std::string> names;
+/// The functions that have an underscore in their names: the runtime's, and those of the class that are named after
+/// predicates.
+std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
+    std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
         for (const char* prefix :
              {"distance_", "nearest_", "threshold_", "initial_threshold_", "set_threshold_", "observe_"})
@@ -103,8 +104,8 @@ public:
           model_(*plan.model),
           graph_(graph),
           boolean_(plan.values == check::Values::boolean),
-          judge_(accessors(model_, plan)),
-          measure_scope_(accessors(model_, plan)),
+          judge_(functions(model_, plan)),
+          measure_scope_(functions(model_, plan)),
           measure_(boolean_ ? judge_ : measure_scope_) {}
 
     Names name_all() {

@@ -63,7 +63,7 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
         for (std::uint32_t part : pending.guards[g]) literals.push_back(names.parts[part] + "[i]");
         print_wrapped(out, fmt::format("{}[i][{}] = {};", locals.guards, g,
                                        literals.empty() ? fmt::format("etlmon::settled({})", context.spelling.yes)
-                                                        : call("min", literals)));
+                                                        : call("min_of", literals)));
     }
     out.close();
     print_machine_keys(out, context, r, pending.machine);

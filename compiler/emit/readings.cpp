@@ -35,7 +35,7 @@ std::string widened(const Context& context, bool takes_max, const std::string& v
     const Spelling& spelt = context.spelling;
     if (key == (takes_max ? spelt.top : spelt.bottom)) return key;
     if (key == (takes_max ? spelt.bottom : spelt.top)) return value;
-    return fmt::format("{}({}, {})", takes_max ? "max" : "min", value, key);
+    return fmt::format("{}({}, {})", takes_max ? "max_of" : "min_of", value, key);
 }
 
 // ---- latches and folds
@@ -50,8 +50,8 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const Fold& fold = context.plan.readings[r].fold;
     const std::string& best = context.names.reading_member.at(r);
     const bool takes_max = ir::takes_max(fold.op);
-    const char* widen = takes_max ? "max" : "min";
-    const char* narrow = takes_max ? "min" : "max";
+    const char* widen = takes_max ? "max_of" : "min_of";
+    const char* narrow = takes_max ? "min_of" : "max_of";
     const char* end = takes_max ? "high" : "low";
     const bool binary = fold.left != kNone;
     const std::string guard = binary ? context.names.guard_member.at(r) : "";
@@ -88,7 +88,7 @@ std::string conditional(const std::string& condition, const std::string& stateme
 void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Response& response = context.plan.readings[r].response;
     const std::string& settled = context.names.reading_member.at(r);
-    const char* worst = response.of_always ? "min" : "max";
+    const char* worst = response.of_always ? "min_of" : "max_of";
     const char* far_end = response.of_always ? "high" : "low";
 
     print_wrapped(
@@ -127,9 +127,9 @@ std::string term_text(const Context& context, std::uint32_t r, const plan::Term&
         sources.push_back(source.updated && !in_place ? context.names.register_next.at(r)[source.state]
                                                       : context.names.register_member.at(r)[source.state]);
     std::vector<std::string> factors;
-    if (!sources.empty()) factors.push_back(call("max", sources));
+    if (!sources.empty()) factors.push_back(call("max_of", sources));
     for (Slot slot : context.by_work(term.literals)) factors.push_back(context.value(slot));
-    return factors.empty() ? context.spelling.yes : call("min", factors, context.boolean());
+    return factors.empty() ? context.spelling.yes : call("min_of", factors, context.boolean());
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
@@ -141,7 +141,7 @@ void print_registers(Printer& out, const Context& context, std::uint32_t r) {
         for (const plan::Term& term : update.terms) terms.push_back(term_text(context, r, term, program.in_place));
         const std::string target = program.in_place ? registers[update.state] : "const Value " + next[update.state];
         print_wrapped(out, fmt::format("{} = {};", target,
-                                       terms.empty() ? context.spelling.no : call("max", terms, context.boolean())));
+                                       terms.empty() ? context.spelling.no : call("max_of", terms, context.boolean())));
     }
     if (program.in_place) return;
     for (const plan::Update& update : program.updates)
@@ -168,11 +168,12 @@ std::string best_of(const Context& context,
         if (holds_true)
             terms.push_back(key.empty() ? spelt.top : key);
         else
-            terms.push_back(key.empty() ? call("max", same) : fmt::format("min({}, {})", call("max", same), key));
+            terms.push_back(key.empty() ? call("max_of", same)
+                                        : fmt::format("min_of({}, {})", call("max_of", same), key));
     }
     if (terms.empty()) return spelt.bottom;
     const bool top = std::find(terms.begin(), terms.end(), spelt.top) != terms.end();
-    return top ? spelt.top : call("max", terms);
+    return top ? spelt.top : call("max_of", terms);
 }
 
 void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
@@ -192,7 +193,7 @@ void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
         rho.push_back(owed.always_true ? context.spelling.yes : registers[q]);
         lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == context.spelling.top ? "" : weak);
     }
-    print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max", rho), best_of(context, lower),
+    print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max_of", rho), best_of(context, lower),
                 best_of(context, upper));
 }
 
@@ -218,7 +219,7 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     for (const auto& literals : machine.guards) {
         std::vector<std::string> values;
         for (Slot slot : context.by_work(literals)) values.push_back(context.value(slot));
-        guards.push_back(values.empty() ? context.spelling.yes : call("min", values, context.boolean()));
+        guards.push_back(values.empty() ? context.spelling.yes : call("min_of", values, context.boolean()));
     }
     print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
     print_machine_keys(out, context, r, machine);
@@ -297,7 +298,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
     std::vector<std::string> parts;
     for (std::uint32_t operand : reading.operands) parts.push_back(context.names.reading_local.at(operand));
     print_wrapped(out, fmt::format("{} = {};", reading_declaration(context, r),
-                                   call(reading.kind == Reading::Kind::conjunction ? "min" : "max", parts)));
+                                   call(reading.kind == Reading::Kind::conjunction ? "min_of" : "max_of", parts)));
 }
 
 void print_tables(Printer& out, const Context& context) {

@@ -53,7 +53,7 @@ std::string combination(const Context& context, StreamOp op, const std::vector<S
         operands.push_back(context.value(slot));
         lazy = lazy || context.lazy(slot);
     }
-    return call(op == StreamOp::conjunction ? "min" : "max", operands, lazy);
+    return call(op == StreamOp::conjunction ? "min_of" : "max_of", operands, lazy);
 }
 
 /// v = max(g, min(v, f)) or the dual; in a Boolean monitor the cheaper side is asked first.
@@ -61,9 +61,10 @@ std::string since(const Context& context, const Stream& stream, const std::strin
     const bool max = is_max(stream.op);
     const std::string none = max ? context.spelling.no : context.spelling.yes;
     const std::string other = max ? context.spelling.yes : context.spelling.no;
-    const char* outer = max ? "max" : "min";
+    const char* outer = max ? "max_of" : "min_of";
     const std::string right = guarded(context, stream, 1, none);
-    const std::string left = fmt::format("{}({}, {})", max ? "min" : "max", kept, guarded(context, stream, 0, other));
+    const std::string left =
+        fmt::format("{}({}, {})", max ? "min_of" : "max_of", kept, guarded(context, stream, 0, other));
     const bool left_first = context.work(stream.operands[0]) < context.work(stream.operands[1]);
     return left_first ? fmt::format("{}({}, {})", outer, left, right) : fmt::format("{}({}, {})", outer, right, left);
 }
@@ -105,7 +106,8 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
                                guarded(context, stream, 0, context.literal(stream.value)));
         case StreamOp::running_max:
         case StreamOp::running_min:
-            return fmt::format("{0} = {1}({0}, {2});", kept(), max ? "max" : "min", guarded(context, stream, 0, none));
+            return fmt::format("{0} = {1}({0}, {2});", kept(), max ? "max_of" : "min_of",
+                               guarded(context, stream, 0, none));
         case StreamOp::since:
         case StreamOp::trigger: return fmt::format("{} = {};", kept(), since(context, stream, kept()));
         case StreamOp::widening_max:

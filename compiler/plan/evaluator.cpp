@@ -187,12 +187,12 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
         case StreamOp::negation: return negate(at(0));
         case StreamOp::conjunction: {
             Value value = kTrue;
-            for (Slot slot : stream.operands) value = min(value, streams_[slot]);
+            for (Slot slot : stream.operands) value = min_of(value, streams_[slot]);
             return value;
         }
         case StreamOp::disjunction: {
             Value value = kFalse;
-            for (Slot slot : stream.operands) value = max(value, streams_[slot]);
+            for (Slot slot : stream.operands) value = max_of(value, streams_[slot]);
             return value;
         }
         case StreamOp::within:
@@ -201,18 +201,22 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
         case StreamOp::shift:
             return etlmon::delay_push(state.values.data(), state.cursor, stream.length,
                                       operand(stream, 0, stream.value));
-        case StreamOp::running_max: return state.values[0] = max(state.values[0], operand(stream, 0, kFalse));
-        case StreamOp::running_min: return state.values[0] = min(state.values[0], operand(stream, 0, kTrue));
+        case StreamOp::running_max: return state.values[0] = max_of(state.values[0], operand(stream, 0, kFalse));
+        case StreamOp::running_min: return state.values[0] = min_of(state.values[0], operand(stream, 0, kTrue));
         case StreamOp::since:
-            return state.values[0] = max(operand(stream, 1, kFalse), min(state.values[0], operand(stream, 0, kTrue)));
+            return state.values[0] =
+                       max_of(operand(stream, 1, kFalse), min_of(state.values[0], operand(stream, 0, kTrue)));
         case StreamOp::trigger:
-            return state.values[0] = min(operand(stream, 1, kTrue), max(state.values[0], operand(stream, 0, kFalse)));
+            return state.values[0] =
+                       min_of(operand(stream, 1, kTrue), max_of(state.values[0], operand(stream, 0, kFalse)));
         case StreamOp::widening_max:
-            return max(etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
-                       at(0));
+            return max_of(
+                etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
+                at(0));
         case StreamOp::widening_min:
-            return min(etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
-                       at(0));
+            return min_of(
+                etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
+                at(0));
         default: return advance_window(stream, state);
     }
 }
@@ -285,35 +289,35 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
     etlmon::Reading result = readings_[reading.operands[0]];
     for (std::uint32_t operand : reading.operands) {
         const etlmon::Reading& other = readings_[operand];
-        result = reading.kind == Reading::Kind::conjunction ? min(result, other) : max(result, other);
+        result = reading.kind == Reading::Kind::conjunction ? min_of(result, other) : max_of(result, other);
     }
     return result;
 }
 
 /// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left side before now.
 etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
-    const bool max_of = ir::takes_max(fold.op);
+    const bool takes_max = ir::takes_max(fold.op);
     const bool open = fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
     const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
     Value& best = state.registers[0];
     Value& guard = state.registers[1];
     const Value right = streams_[fold.right];
-    if (open) best = max_of ? max(best, min(guard, right)) : min(best, max(guard, right));
-    if (fold.left != kNone) guard = max_of ? min(guard, streams_[fold.left]) : max(guard, streams_[fold.left]);
+    if (open) best = takes_max ? max_of(best, min_of(guard, right)) : min_of(best, max_of(guard, right));
+    if (fold.left != kNone) guard = takes_max ? min_of(guard, streams_[fold.left]) : max_of(guard, streams_[fold.left]);
     etlmon::Reading reading = etlmon::settled(best);
     if (!reaches_past) return reading;
     const Value unseen = streams_[fold.unseen];
-    if (max_of)
-        reading.upper = etlmon::max(reading.upper, etlmon::min(guard.high, unseen.high));
+    if (takes_max)
+        reading.upper = etlmon::max_of(reading.upper, etlmon::min_of(guard.high, unseen.high));
     else
-        reading.lower = etlmon::min(reading.lower, etlmon::max(guard.low, unseen.low));
+        reading.lower = etlmon::min_of(reading.lower, etlmon::max_of(guard.low, unseen.low));
     return reading;
 }
 
 /// registers[0]: settled positions. Below, `worst` is the min of an always.
 etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
     const bool always = response.of_always;
-    const auto worst = [&](Value a, Value b) { return always ? min(a, b) : max(a, b); };
+    const auto worst = [&](Value a, Value b) { return always ? min_of(a, b) : max_of(a, b); };
     const Value hopeless = always ? kFalse : kTrue;
     Value& settled = state.registers[0];
     if (steps_ >= response.inner.high) settled = worst(settled, streams_[response.passed]);
@@ -325,11 +329,11 @@ etlmon::Reading Evaluator::advance_response(const Response& response, ReadingSta
     const Value body = streams_[response.unseen_body];
     const bool reaches_past = !response.outer.bounded() || steps_ < response.outer.high;
     if (always) {
-        reading.upper = etlmon::min(settled.high, etlmon::max(now.high, answer.high));
-        if (reaches_past) reading.lower = etlmon::min(reading.lower, body.low);
+        reading.upper = etlmon::min_of(settled.high, etlmon::max_of(now.high, answer.high));
+        if (reaches_past) reading.lower = etlmon::min_of(reading.lower, body.low);
     } else {
-        reading.lower = etlmon::max(settled.low, etlmon::min(now.low, answer.low));
-        if (reaches_past) reading.upper = etlmon::max(reading.upper, body.high);
+        reading.lower = etlmon::max_of(settled.low, etlmon::min_of(now.low, answer.low));
+        if (reaches_past) reading.upper = etlmon::max_of(reading.upper, body.high);
     }
     return reading;
 }
@@ -340,7 +344,7 @@ etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState&
     const Table& table = state.table;
     for (std::size_t g = 0; g < machine.guards.size(); ++g) {
         state.guards[g] = kTrue;
-        for (Slot slot : machine.guards[g]) state.guards[g] = etlmon::min(state.guards[g], streams_[slot]);
+        for (Slot slot : machine.guards[g]) state.guards[g] = etlmon::min_of(state.guards[g], streams_[slot]);
     }
     std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1, low);
     std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);

@@ -85,7 +85,7 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
     for (std::uint32_t p = 0; p < count; ++p)
         for (std::size_t g = 0; g < width; ++g)
             for (std::uint32_t part : pending_.guards[g])
-                guards[p * width + g] = min(guards[p * width + g], parts_[part][p]);
+                guards[p * width + g] = min_of(guards[p * width + g], parts_[part][p]);
     std::vector<Key> weak{etlmon::kTop};
     std::vector<Key> strong{etlmon::kTop};
     for (Slot slot : table_.weak) weak.push_back(streams[slot].low);

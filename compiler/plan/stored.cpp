@@ -65,8 +65,8 @@ bool searches(const Plan& plan, Index d) {
     if (distance.aggregation != check::Aggregation::min || stored_set(plan, d) == nullptr) return false;
     const std::uint32_t rows = plan.model->targets[distance.target].rows;
     switch (metric_id(distance)) {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-    case etlmon::MetricId::id:                                   \
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case etlmon::MetricId::id:                        \
         return etlmon::searches<etlmon::Type>(rows);
 #include "etlmon/distances.def"
 #undef DISTANCE

@@ -81,7 +81,7 @@ Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node
         const Stream& stream = streams_[slot];
         lag = std::max(lag, stream.lag);
         if (stream.op == StreamOp::constant)
-            folded = conjunction ? min(folded, stream.value) : max(folded, stream.value);
+            folded = conjunction ? min_of(folded, stream.value) : max_of(folded, stream.value);
         else
             kept.push_back(slot);
     }

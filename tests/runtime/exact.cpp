@@ -71,10 +71,9 @@ std::string report(Real got, Interval want) {
 
 }  // namespace
 
-Judge::Judge(const Case& c, etlmon::Denormals denormals) : metric_(c.metric), denormals_(denormals) {
-    const auto is_zero = [&](float x) {
-        return denormals == etlmon::Denormals::flushed ? std::fabs(x) < FLT_MIN : x == 0;
-    };
+Judge::Judge(const Case& c, bool flushes_denormals)
+    : metric_(c.metric), denormals_(flushes_denormals ? etlmon::Denormals::flushed : etlmon::Denormals::kept) {
+    const auto is_zero = [&](float x) { return flushes_denormals ? std::fabs(x) < FLT_MIN : x == 0; };
     unknown_ = etlmon::distance(c.metric).zero_is_unknown && std::all_of(c.z.begin(), c.z.end(), is_zero);
     const Vector z = vector(c.z.data(), c.dimension);
     const Matrix w = weights_of(c);
@@ -84,7 +83,7 @@ Judge::Judge(const Case& c, etlmon::Denormals denormals) : metric_(c.metric), de
         const Vector size = (z - g).cwiseAbs();
         const Real magnitude = c.metric == MetricId::mahalanobis ? size.dot(w.cwiseAbs() * size) : 0;
         const Real bound = etlmon::rounding_bound(c.metric, c.dimension, static_cast<double>(d),
-                                                  static_cast<double>(magnitude), denormals);
+                                                  static_cast<double>(magnitude), denormals_);
         low_.push_back(std::max<Real>(0, d - bound));
         exact_.push_back(d);
         high_.push_back(d + bound);
@@ -99,8 +98,7 @@ std::string Judge::mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::
     }
     if (std::isnan(delta)) return "NaN";
     if (nearest >= exact_.size()) return "nearest row " + std::to_string(nearest);
-    const auto range = etlmon::distance(metric_);
-    if (delta < range.low || delta > range.high) return "out of range: " + std::to_string(delta);
+    if (delta < 0 || delta > etlmon::distance(metric_).highest) return "out of range: " + std::to_string(delta);
 
     Interval want{aggregated(low_, aggregate), aggregated(high_, aggregate)};
     if (aggregate.id == AggregationId::mean) {

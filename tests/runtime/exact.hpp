@@ -1,7 +1,8 @@
 // Distances straight from their definitions, in Real with Eigen: the judge of the kernels.
 // Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the exact distance and the
 // bound on the kernel's error; the verdict on what a kernel computed. Keeps true: compiled without -ffast-math,
-// whatever the kernels under test are compiled with; shares no arithmetic with them.
+// whatever the kernels under test are compiled with; shares no arithmetic with them. No function takes a type of the
+// runtime: under other flags that is another type.
 #pragma once
 
 #include <cfloat>
@@ -34,7 +35,7 @@ struct Aggregate {
 /// The exact distances of a case, computed once for all aggregations.
 class Judge {
 public:
-    Judge(const Case& c, etlmon::Denormals denormals);
+    Judge(const Case& c, bool flushes_denormals);
     /// Empty where `delta` (given as bits, so that no flag can touch it) and `nearest` are within the bounds; else what
     /// is wrong.
     std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::uint32_t nearest) const;

@@ -7,7 +7,7 @@
 #include "etlmon/views.hpp"
 #include "etlmon/widen.hpp"
 
-#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 1
+#if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
 #error "this test was written for another version"
 #endif
 

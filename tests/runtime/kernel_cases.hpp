@@ -15,9 +15,9 @@
 namespace kernel_cases {
 
 #if defined(__FAST_MATH__)
-inline constexpr etlmon::Denormals kDenormals = etlmon::Denormals::flushed;
+inline constexpr bool kFlushesDenormals = true;
 #else
-inline constexpr etlmon::Denormals kDenormals = etlmon::Denormals::kept;
+inline constexpr bool kFlushesDenormals = false;
 #endif
 
 inline const std::vector<std::uint32_t> kDimensions{1, 2, 3, 7, 32, 33, 384, 1000};

@@ -131,7 +131,7 @@ void expect_metric(Storage storage, MetricId metric) {
         for (const std::uint32_t rows : kRows) {
             for (const Kind kind : kinds_of(metric, rows, dimension)) {
                 const Narrow narrow = make_narrow(storage, metric, rows, dimension, kind);
-                const exact::Judge judge(narrow.wide, kDenormals);
+                const exact::Judge judge(narrow.wide, kFlushesDenormals);
                 for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(metric, rows, dimension)))
                     expect_aggregate<G>(narrow, judge, aggregate, name(kind));
                 if (testing::Test::HasFatalFailure()) return;

@@ -59,8 +59,8 @@ std::vector<RowVersion<G>> row_versions_of(etlmon::AggregationId aggregation) {
 template <class G>
 std::vector<RowVersion<G>> row_versions(etlmon::MetricId metric, etlmon::AggregationId aggregation) {
     switch (metric) {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-    case etlmon::MetricId::id:                                   \
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case etlmon::MetricId::id:                        \
         return row_versions_of<etlmon::Type, G>(aggregation);
 #include "etlmon/distances.def"
 #undef DISTANCE

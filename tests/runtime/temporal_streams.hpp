@@ -1,6 +1,7 @@
 // What the temporal tests share: value types, random streams, and the operators written as loops over a stream.
 // Takes: a stream of right and left operands and a range of positions. Gives: the operator's value, by its definition.
-// Keeps true: nothing here calls the monoids or the windows under test; loops compare through min and max of V alone.
+// Keeps true: nothing here calls the monoids or the windows under test; loops compare through min_of and max_of of V
+// alone.
 #pragma once
 
 #include <cstdint>
@@ -17,10 +18,10 @@ namespace temporal {
 struct Bits {
     uint32_t word;
 };
-constexpr Bits min(Bits a, Bits b) noexcept {
+constexpr Bits min_of(Bits a, Bits b) noexcept {
     return {a.word & b.word};
 }
-constexpr Bits max(Bits a, Bits b) noexcept {
+constexpr Bits max_of(Bits a, Bits b) noexcept {
     return {a.word | b.word};
 }
 
@@ -36,8 +37,8 @@ namespace temporal {
 
 using etlmon::Key;
 using etlmon::Lattice;
-using etlmon::max;
-using etlmon::min;
+using etlmon::max_of;
+using etlmon::min_of;
 using etlmon::Span;
 using etlmon::Truth;
 using etlmon::Value;
@@ -140,7 +141,7 @@ struct GreatestCase {
     static V result(V element) { return element; }
     static V defined(const Streams<V>& s, size_t first, size_t last) {
         V value = Lattice<V>::bottom();
-        for (size_t j = first; j <= last; ++j) value = max(value, s.g[j]);
+        for (size_t j = first; j <= last; ++j) value = max_of(value, s.g[j]);
         return value;
     }
 };
@@ -154,7 +155,7 @@ struct LeastCase {
     static V result(V element) { return element; }
     static V defined(const Streams<V>& s, size_t first, size_t last) {
         V value = Lattice<V>::top();
-        for (size_t j = first; j <= last; ++j) value = min(value, s.g[j]);
+        for (size_t j = first; j <= last; ++j) value = min_of(value, s.g[j]);
         return value;
     }
 };
@@ -177,8 +178,8 @@ struct SinceCase : BinaryCase<V> {
         V value = Lattice<V>::bottom();
         V held = Lattice<V>::top();  // min of f over (j, last]
         for (size_t j = last + 1; j-- > first;) {
-            value = max(value, min(s.g[j], held));
-            held = min(held, s.f[j]);
+            value = max_of(value, min_of(s.g[j], held));
+            held = min_of(held, s.f[j]);
         }
         return value;
     }
@@ -192,8 +193,8 @@ struct TriggerCase : BinaryCase<V> {
         V value = Lattice<V>::top();
         V released = Lattice<V>::bottom();  // max of f over (j, last]
         for (size_t j = last + 1; j-- > first;) {
-            value = min(value, max(s.g[j], released));
-            released = max(released, s.f[j]);
+            value = min_of(value, max_of(s.g[j], released));
+            released = max_of(released, s.f[j]);
         }
         return value;
     }
@@ -207,8 +208,8 @@ struct UntilCase : BinaryCase<V> {
         V value = Lattice<V>::bottom();
         V held = Lattice<V>::top();  // min of f over [first, j)
         for (size_t j = first; j <= last; ++j) {
-            value = max(value, min(s.g[j], held));
-            held = min(held, s.f[j]);
+            value = max_of(value, min_of(s.g[j], held));
+            held = min_of(held, s.f[j]);
         }
         return value;
     }
@@ -222,8 +223,8 @@ struct ReleaseCase : BinaryCase<V> {
         V value = Lattice<V>::top();
         V released = Lattice<V>::bottom();  // max of f over [first, j)
         for (size_t j = first; j <= last; ++j) {
-            value = min(value, max(s.g[j], released));
-            released = max(released, s.f[j]);
+            value = min_of(value, max_of(s.g[j], released));
+            released = max_of(released, s.f[j]);
         }
         return value;
     }

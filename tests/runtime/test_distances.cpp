@@ -17,7 +17,7 @@ TEST_P(Distances, WithinTheirBounds) {
             if (heavy && rows > 5) continue;
             for (const Kind kind : heavy ? std::vector<Kind>{Kind::ordinary, Kind::touching} : kKinds) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 1);
-                const exact::Judge judge(c, kDenormals);
+                const exact::Judge judge(c, kFlushesDenormals);
                 for (const exact::Aggregate a : heavy ? std::vector<exact::Aggregate>{{}} : aggregates(rows)) {
                     const etlmon::Measured m = run(c, a);
                     ASSERT_EQ(judge.mismatch(a, bits(m.delta), m.nearest), "") << describe(c, a, name(kind));
@@ -47,7 +47,7 @@ TEST_P(Distances, ZeroVectors) {
     exact::Case c = make(GetParam(), 4, 6, Kind::ordinary, 4);
     c.z.assign(6, 0.0F);
     c.z[3] = -0.0F;
-    const exact::Judge judge(c, kDenormals);
+    const exact::Judge judge(c, kFlushesDenormals);
     for (const exact::Aggregate a : aggregates(c.rows)) {
         const etlmon::Measured m = run(c, a);
         EXPECT_EQ(judge.mismatch(a, bits(m.delta), m.nearest), "") << describe(c, a, "zero");

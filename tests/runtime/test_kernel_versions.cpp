@@ -58,7 +58,7 @@ TEST_P(KernelVersions, EveryAggregationAndSize) {
         for (const std::uint32_t rows : kRows) {
             for (const Kind kind : kinds_of(GetParam(), rows, dimension)) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 21);
-                const exact::Judge judge(c, kDenormals);
+                const exact::Judge judge(c, kFlushesDenormals);
                 std::vector<float> prepared = c.targets;
                 etlmon::prepare(c.metric, prepared.data(), rows, dimension);
                 for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(GetParam(), rows, dimension)))
@@ -79,7 +79,7 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
     static float rows[K * D];
     for (const Kind kind : kKinds) {
         const exact::Case c = make(metric, K, D, kind, 22);
-        const exact::Judge judge(c, kDenormals);
+        const exact::Judge judge(c, kFlushesDenormals);
         std::copy(c.targets.begin(), c.targets.end(), rows);
         etlmon::prepare(metric, rows, K, D);
         const Columns<K, D> columns = columns_of<K, D>(rows);
@@ -117,7 +117,7 @@ TEST(LargeSetVersions, AgreeInOneStreamAndInFour) {
     static_assert(etlmon::detail::order(kRowsOfStream, kDimension) == etlmon::detail::Order::four_chunks ||
                   !etlmon::detail::kHasPacks);
     const exact::Case c = make(MetricId::l2, kRowsOfStream, kDimension, Kind::near_target, 23);
-    const exact::Judge judge(c, kDenormals);
+    const exact::Judge judge(c, kFlushesDenormals);
     expect_row_versions(c, judge, c.targets.data(), {}, "large");
 }
 

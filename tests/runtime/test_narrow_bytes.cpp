@@ -11,9 +11,9 @@ TEST(Bytes, WidenWhateverTheirNumber) {
     expect_widened(ScaledRows{narrow.bytes.data(), narrow.scale}, 70);
 }
 
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-    TEST(Bytes, SameAsWidened_##id) {                            \
-        expect_metric<ScaledRows>(Storage::i8, MetricId::id);    \
+#define DISTANCE(id, Type, prepared, zero_is_unknown)         \
+    TEST(Bytes, SameAsWidened_##id) {                         \
+        expect_metric<ScaledRows>(Storage::i8, MetricId::id); \
     }
 #include "etlmon/distances.def"
 #undef DISTANCE

@@ -34,7 +34,7 @@ TEST(Halves, WidenWhateverTheirNumber) {
     expect_widened(narrow.halves.data(), 70);
 }
 
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown)         \
+#define DISTANCE(id, Type, prepared, zero_is_unknown)                    \
     TEST(Halves, SameAsWidened_##id) {                                   \
         expect_metric<const std::uint16_t*>(Storage::f16, MetricId::id); \
     }

@@ -84,10 +84,10 @@ namespace narrow {
 struct Byte {
     uint8_t bits;
 };
-constexpr Byte min(Byte a, Byte b) noexcept {
+constexpr Byte min_of(Byte a, Byte b) noexcept {
     return {static_cast<uint8_t>(a.bits & b.bits)};
 }
-constexpr Byte max(Byte a, Byte b) noexcept {
+constexpr Byte max_of(Byte a, Byte b) noexcept {
     return {static_cast<uint8_t>(a.bits | b.bits)};
 }
 

@@ -18,8 +18,8 @@ Key bounded_response(const Streams<Key>& s, size_t w, size_t i) {
     Key rho = etlmon::kTop;
     for (size_t k = 0; k <= i; ++k) {
         Key response = s.f[k];
-        for (size_t j = k; j <= std::min(k + w, i); ++j) response = etlmon::max(response, s.g[j]);
-        rho = etlmon::min(rho, response);
+        for (size_t j = k; j <= std::min(k + w, i); ++j) response = etlmon::max_of(response, s.g[j]);
+        rho = etlmon::min_of(rho, response);
     }
     return rho;
 }
@@ -36,12 +36,12 @@ void expect_bounded_response() {
     Key unbounded = etlmon::kTop;
     const Streams<Key> s = random_streams<Key>(6 * W + 40, W);
     for (size_t i = 0; i < s.g.size(); ++i) {
-        settled = etlmon::min(settled, etlmon::max(not_p.push(s.f[i]), answered.push(s.g[i])));
-        const Key open = pending.push({etlmon::max(s.f[i], s.g[i]), s.g[i]}).value;
-        unbounded = etlmon::max(etlmon::min(unbounded, s.f[i]), s.g[i]);
+        settled = etlmon::min_of(settled, etlmon::max_of(not_p.push(s.f[i]), answered.push(s.g[i])));
+        const Key open = pending.push({etlmon::max_of(s.f[i], s.g[i]), s.g[i]}).value;
+        unbounded = etlmon::max_of(etlmon::min_of(unbounded, s.f[i]), s.g[i]);
         const Key rho = bounded_response(s, W, i);
-        ASSERT_EQ(etlmon::min(settled, open), rho) << W << ' ' << i;
-        ASSERT_EQ(etlmon::min(settled, unbounded), rho) << W << ' ' << i;
+        ASSERT_EQ(etlmon::min_of(settled, open), rho) << W << ' ' << i;
+        ASSERT_EQ(etlmon::min_of(settled, unbounded), rho) << W << ' ' << i;
     }
 }
 
@@ -58,8 +58,8 @@ Key since_in(const Streams<Key>& s, size_t a, size_t b, size_t k) {
     Key rho = etlmon::kBottom;
     for (size_t j = k < b ? 0 : k - b; j + a <= k; ++j) {
         Key value = s.g[j];
-        for (size_t m = j + 1; m <= k; ++m) value = etlmon::min(value, s.f[m]);
-        rho = etlmon::max(rho, value);
+        for (size_t m = j + 1; m <= k; ++m) value = etlmon::min_of(value, s.f[m]);
+        rho = etlmon::max_of(rho, value);
     }
     return rho;
 }
@@ -75,7 +75,7 @@ void expect_since_with_offset() {
     const Streams<Key> s = random_streams<Key>(5 * B + 20, 100 * A + B);
     for (size_t k = 0; k < s.g.size(); ++k) {
         const Key earlier = offset.push(since.push({s.g[k], s.f[k]}).value);
-        ASSERT_EQ(etlmon::min(earlier, held.push(s.f[k])), since_in(s, A, B, k)) << A << ' ' << B << ' ' << k;
+        ASSERT_EQ(etlmon::min_of(earlier, held.push(s.f[k])), since_in(s, A, B, k)) << A << ' ' << B << ' ' << k;
     }
 }
 
@@ -91,8 +91,8 @@ Key until_in(const Streams<Key>& s, size_t a, size_t b, size_t k, size_t last) {
     Key rho = etlmon::kBottom;
     for (size_t j = k + a; j <= std::min(k + b, last); ++j) {
         Key value = s.g[j];
-        for (size_t m = k; m < j; ++m) value = etlmon::min(value, s.f[m]);
-        rho = etlmon::max(rho, value);
+        for (size_t m = k; m < j; ++m) value = etlmon::min_of(value, s.f[m]);
+        rho = etlmon::max_of(rho, value);
     }
     return rho;
 }
@@ -113,7 +113,7 @@ void expect_until_with_its_end() {
         const Key from_a = until.push(element).value;            // over [i - B + A, i]
         const Key lead = held.push(before.push(element.guard));  // min of f over [i - B, i - B + A)
         if (i < B) continue;
-        ASSERT_EQ(etlmon::min(lead, from_a), until_in(s, A, B, i - B, length - 1)) << A << ' ' << B << ' ' << i;
+        ASSERT_EQ(etlmon::min_of(lead, from_a), until_in(s, A, B, i - B, length - 1)) << A << ' ' << B << ' ' << i;
     }
 }
 

@@ -29,8 +29,8 @@ TEST(TemporalTruth, IsThreeValuedLogic) {
     for (const Truth a : kAll) {
         EXPECT_EQ(rank(etlmon::negate(a)), 2 - rank(a));
         for (const Truth b : kAll) {
-            EXPECT_EQ(rank(min(a, b)), std::min(rank(a), rank(b)));
-            EXPECT_EQ(rank(max(a, b)), std::max(rank(a), rank(b)));
+            EXPECT_EQ(rank(min_of(a, b)), std::min(rank(a), rank(b)));
+            EXPECT_EQ(rank(max_of(a, b)), std::max(rank(a), rank(b)));
         }
     }
 }
@@ -87,13 +87,14 @@ TEST(TemporalTruth, LazyValuesAreAskedWhereTheyDecide) {
                 };
                 const etlmon::Lazy a([&]() noexcept { return find(0, first); });
                 const etlmon::Lazy b([&]() noexcept { return find(1, second); });
-                const auto combined = both ? Truth(min(a, b)) : Truth(max(a, b));
-                EXPECT_TRUE(same(combined, both ? min(first, second) : max(first, second)));
+                const auto combined = both ? Truth(min_of(a, b)) : Truth(max_of(a, b));
+                EXPECT_TRUE(same(combined, both ? min_of(first, second) : max_of(first, second)));
                 const bool decided = both ? rank(first) == 0 : rank(first) == 2;
                 EXPECT_EQ(asked[0], 1);
                 EXPECT_EQ(asked[1], decided ? 0 : 1);
-                const Truth nested = max(min(a, negate(b)), min(negate(a), b));
-                EXPECT_TRUE(same(nested, max(min(first, etlmon::negate(second)), min(etlmon::negate(first), second))));
+                const Truth nested = max_of(min_of(a, negate(b)), min_of(negate(a), b));
+                EXPECT_TRUE(
+                    same(nested, max_of(min_of(first, etlmon::negate(second)), min_of(etlmon::negate(first), second))));
                 EXPECT_EQ(asked[0], 1);
                 EXPECT_LE(asked[1], 1);
             }

@@ -86,10 +86,10 @@ TEST(TemporalValue, MinAndMaxPickTheSmallerAndTheGreaterFloat) {
             const float b = etlmon::float_of_bits(floats[j]);
             const uint32_t low = floats[i < j ? i : j];
             const uint32_t high = floats[i < j ? j : i];
-            ASSERT_EQ(etlmon::bits_of(etlmon::min(a, b)), low);
-            ASSERT_EQ(etlmon::bits_of(etlmon::max(a, b)), high);
-            ASSERT_EQ(etlmon::min(etlmon::key_of(a), etlmon::key_of(b)), key_of_bits(low));
-            ASSERT_EQ(etlmon::max(etlmon::key_of(a), etlmon::key_of(b)), key_of_bits(high));
+            ASSERT_EQ(etlmon::bits_of(etlmon::min_of(a, b)), low);
+            ASSERT_EQ(etlmon::bits_of(etlmon::max_of(a, b)), high);
+            ASSERT_EQ(etlmon::min_of(etlmon::key_of(a), etlmon::key_of(b)), key_of_bits(low));
+            ASSERT_EQ(etlmon::max_of(etlmon::key_of(a), etlmon::key_of(b)), key_of_bits(high));
         }
     }
 }
@@ -99,15 +99,15 @@ TEST(TemporalValue, PairsCombineEndByEnd) {
     for (int round = 0; round < 10000; ++round) {
         const Value a = temporal::random_value<Value>(random);
         const Value b = temporal::random_value<Value>(random);
-        const Value least = min(a, b);
-        const Value greatest = max(a, b);
-        ASSERT_EQ(least.low, etlmon::min(a.low, b.low));
-        ASSERT_EQ(least.high, etlmon::min(a.high, b.high));
-        ASSERT_EQ(greatest.low, etlmon::max(a.low, b.low));
-        ASSERT_EQ(greatest.high, etlmon::max(a.high, b.high));
+        const Value least = min_of(a, b);
+        const Value greatest = max_of(a, b);
+        ASSERT_EQ(least.low, etlmon::min_of(a.low, b.low));
+        ASSERT_EQ(least.high, etlmon::min_of(a.high, b.high));
+        ASSERT_EQ(greatest.low, etlmon::max_of(a.low, b.low));
+        ASSERT_EQ(greatest.high, etlmon::max_of(a.high, b.high));
         ASSERT_LE(least.low, least.high);
         ASSERT_LE(greatest.low, greatest.high);
-        ASSERT_TRUE(temporal::same(negate(min(a, b)), max(negate(a), negate(b))));
+        ASSERT_TRUE(temporal::same(negate(min_of(a, b)), max_of(negate(a), negate(b))));
         ASSERT_TRUE(temporal::same(negate(negate(a)), a));
     }
 }
@@ -142,7 +142,7 @@ TEST(TemporalValue, Registers) {
     for (const Value value : {etlmon::kTrue, etlmon::kFalse, Value{-3, 7}}) {
         a = value;
         b = a;
-        c = min(etlmon::kTrue, b, a, value);
+        c = min_of(etlmon::kTrue, b, a, value);
         EXPECT_TRUE(temporal::same(c, value) && temporal::same(b, value));
         EXPECT_TRUE(temporal::same(etlmon::settled(c).rho, value));
     }
@@ -152,7 +152,7 @@ static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) == 8, "two ke
 static_assert(std::is_trivially_copyable_v<etlmon::Register> && sizeof(etlmon::Register) == 8, "a value");
 static_assert(std::is_trivially_copyable_v<Verdict> && std::is_standard_layout_v<Verdict>, "a record");
 static_assert(sizeof(Verdict) == 16 && alignof(Verdict) == 4, "three floats and a status");
-static_assert(max(etlmon::kFalse, etlmon::kTrue).low == etlmon::kTop, "usable in constants");
+static_assert(max_of(etlmon::kFalse, etlmon::kTrue).low == etlmon::kTop, "usable in constants");
 
 bool is_nan(float x) {
     return (etlmon::bits_of(x) & 0x7fffffffu) > 0x7f800000u;

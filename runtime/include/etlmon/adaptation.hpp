@@ -10,6 +10,7 @@
 #include "etlmon/truth.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 struct Adaptation {
   float lo;  ///< the threshold stays within [lo, hi]
@@ -36,4 +37,5 @@ ETLMON_INLINE float restored(const float& epsilon, float otherwise, const Adapta
   return static_cast<float>(static_cast<int32_t>(epsilon / by.grid)) * by.grid;
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

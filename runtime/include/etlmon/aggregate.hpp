@@ -8,6 +8,7 @@
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// What a predicate's distance was: telemetry, and where its robustness comes from.
 struct Measured {
@@ -100,4 +101,5 @@ struct Kth {
   uint32_t count = 0;
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

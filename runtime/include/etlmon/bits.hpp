@@ -11,6 +11,8 @@
 #include <stddef.h>
 #include <stdint.h>
 
+#include "etlmon/build.hpp"
+
 #if !defined(__GNUC__)  // where there are no builtins; in C++, math.h takes longer to read than the rest of a monitor
 #include <math.h>
 #include <string.h>
@@ -32,6 +34,7 @@
 #endif
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// What a sample that is not there looks like: a quiet NaN.
 #if defined(__has_builtin)
@@ -41,10 +44,13 @@ namespace etlmon {
 #endif
 #if defined(ETLMON_HAS_BIT_CAST)
 constexpr float kMissing = __builtin_bit_cast(float, 0x7fc00000u);
+constexpr float kInfinite = __builtin_bit_cast(float, 0x7f800000u);
 #elif defined(__GNUC__)
 constexpr float kMissing = __builtin_nanf("");
+constexpr float kInfinite = __builtin_inff();
 #else
 constexpr float kMissing = NAN;
+constexpr float kInfinite = INFINITY;
 #endif
 
 namespace detail {
@@ -158,10 +164,17 @@ ETLMON_INLINE void part(float& x, float& y) noexcept {
 #endif
 #endif
 
-/// sqrt of a float that is not negative. By the instruction on x86, where a compiler would add a call of the library's
-/// for the sake of errno, and with -ffast-math an approximation.
+/// sqrt of a float that is not negative, rounded once. By the instruction on x86, where a compiler would add a call of
+/// the library's for the sake of errno, and with -ffast-math an approximation; clang does under any name but this.
 ETLMON_INLINE float square_root(float x) noexcept {
-#if defined(ETLMON_HAS_SQRTSS)
+#if defined(__clang__) && defined(__SSE__) && defined(__FAST_MATH__)
+#if defined(__AVX__)
+  __asm__("vsqrtss %0, %0, %0" : "+x"(x));
+#else
+  __asm__("sqrtss %0, %0" : "+x"(x));
+#endif
+  return x;
+#elif defined(ETLMON_HAS_SQRTSS)
   using Four = float __attribute__((vector_size(16)));
   return __builtin_ia32_sqrtss(Four{x})[0];
 #elif defined(__GNUC__)
@@ -190,4 +203,5 @@ ETLMON_INLINE bool is_finite(const float& x) noexcept {
   return (detail::observe(x) << 1) < (detail::kInfinityBits << 1);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

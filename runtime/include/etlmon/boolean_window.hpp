@@ -10,6 +10,7 @@
 #include "etlmon/window.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// Steps since something last happened, at most N: then it is out of the window.
@@ -145,4 +146,5 @@ constexpr uint32_t delay_bytes<Truth>(uint32_t n) noexcept {
   return 4 + 4 * ((n + 15) / 16);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -10,6 +10,7 @@
 #include "etlmon/enclosed.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Whether a set is measured so. Few or short rows do not pay for rounding z; very long ones would leave z few bits.
 constexpr bool in_integers(uint32_t K, uint32_t D) noexcept { return K >= 8 && D > 64 && D <= 16384; }
@@ -210,4 +211,5 @@ ETLMON_INLINE Enclosed measure_bytes(const float* z, float scale, float moved) n
 #endif
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

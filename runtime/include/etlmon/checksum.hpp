@@ -7,6 +7,7 @@
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 constexpr uint64_t kXxhPrime1 = 0x9E3779B185EBCA87u;
@@ -79,4 +80,5 @@ class Checksum {
   uint64_t length_ = 0;
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -9,6 +9,7 @@
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// One step of a delay by n >= 1 over caller-owned storage of n values, all set to the fill at first; cursor starts at
 /// 0.
@@ -51,4 +52,5 @@ constexpr uint32_t delay_bytes(uint32_t n) noexcept {
   return storage_bytes(n * static_cast<uint32_t>(sizeof(V)));
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -9,6 +9,7 @@
 #include "etlmon/truth.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// What `find()` gives, found out on the first call. Lives in one step and is not copied.
 template <class Find>
@@ -54,7 +55,7 @@ struct Both {
   operator Truth() const noexcept {
     const Truth known = first;
     if (!known.high) return kNo;
-    return min(known, static_cast<Truth>(second));
+    return min_of(known, static_cast<Truth>(second));
   }
 };
 
@@ -65,7 +66,7 @@ struct Either {
   operator Truth() const noexcept {
     const Truth known = first;
     if (known.low) return kYes;
-    return max(known, static_cast<Truth>(second));
+    return max_of(known, static_cast<Truth>(second));
   }
 };
 
@@ -111,11 +112,11 @@ struct Where<true> {
 
 /// `a`, then `b` unless a decides; the same for more.
 template <class A, class B, typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Both<A, B> min(A&& a, B&& b) noexcept {
+ETLMON_INLINE detail::Both<A, B> min_of(A&& a, B&& b) noexcept {
   return {a, b};
 }
 template <class A, class B, typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
-ETLMON_INLINE detail::Either<A, B> max(A&& a, B&& b) noexcept {
+ETLMON_INLINE detail::Either<A, B> max_of(A&& a, B&& b) noexcept {
   return {a, b};
 }
 template <class A, typename detail::Where<detail::IsLazy<A>::value>::Type = 0>
@@ -123,4 +124,5 @@ ETLMON_INLINE detail::Opposite<A> negate(A&& a) noexcept {
   return {a};
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -8,6 +8,7 @@
 #include "etlmon/versions.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 #if defined(ETLMON_DISPATCH)
@@ -133,4 +134,5 @@ ETLMON_INLINE Measured best(const float* z, ScaledRows targets, const float* wei
 }
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

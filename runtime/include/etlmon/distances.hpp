@@ -6,12 +6,13 @@
 // error_bounds.hpp. Each struct has
 //   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered as the distance is
 //   Point       what is computed once from z           finish(value)  the distance
-//   k...        what it reads, where it is sound
+//   k...        what it reads, where it is sound, how great it can be: its range is [0, kHighest]
 #pragma once
 
 #include "etlmon/pack.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 namespace detail {
 
@@ -44,6 +45,7 @@ struct Additive {
   static constexpr bool kTold = false;       ///< of the length of z, in the place of weights
   static constexpr bool kRescales = false;   ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
   static constexpr bool kSum = true;         ///< a row's value is its sum
+  static constexpr float kHighest = kInfinite;
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
   ETLMON_INLINE static float finish(float value) noexcept { return value; }
 };
@@ -94,23 +96,25 @@ struct Mahalanobis : L2 {
 };
 
 /// 1 - cos(z, g) for a target of length 1, as |u - g|^2 / 2 with u = z / |z|: exact to rounding for nearly parallel
-/// vectors, where 1 - u.g would cancel. [0, 2].
+/// vectors, where 1 - u.g would cancel.
 struct Cosine : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
   static constexpr bool kSum = false;
+  static constexpr float kHighest = 2.0f;
   ETLMON_INLINE static float row(const detail::Sum<float>& s) noexcept {
     const float half = 0.5f * s.sum;
-    return half < 2.0f ? half : 2.0f;
+    return half < kHighest ? half : kHighest;
   }
 };
 
 /// The angle between z and a target of length 1, in radians, as 2 atan(|u - g| / |u + g|), u = z / |z| (Kahan, "How
-/// futile are mindless assessments of roundoff", 2006, section 12): no cancellation near 0 nor near pi. [0, pi].
+/// futile are mindless assessments of roundoff", 2006, section 12): no cancellation near 0 nor near pi.
 struct Angular : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
   static constexpr bool kSum = false;
+  static constexpr float kHighest = 3.14159274f;  // the float32 nearest to pi lies above it
   template <class V>
   using Partial = detail::TwoSums<V>;
   /// tan^2 of half the angle. Below 2^-60, |u + g|^2 is 0 but for rounding, and the angle pi.
@@ -119,11 +123,23 @@ struct Angular : detail::Additive {
     return p.apart / (p.along > kLeast ? p.along : kLeast);
   }
   ETLMON_INLINE static float finish(float value) noexcept {
-    return 2.0f * detail::arc_tangent(detail::square_root(value));
+    const float angle = 2.0f * detail::arc_tangent(detail::square_root(value));
+    return angle < kHighest ? angle : kHighest;
   }
 };
 
 namespace detail {
+/// A mean of distances, or an end of an interval around one, that rounding may have carried beyond the greatest
+/// distance. A monitor's bounds are made from the range that the distance has; nothing may leave it.
+template <class Metric>
+ETLMON_INLINE float capped(float distance) noexcept {
+  if constexpr (Metric::kHighest <= FLT_MAX) {
+    return distance < Metric::kHighest ? distance : Metric::kHighest;
+  } else {
+    return distance;
+  }
+}
+
 /// The same distance where 1 / |z| has been found already.
 template <class Metric>
 struct Told : Metric {
@@ -131,4 +147,5 @@ struct Told : Metric {
 };
 }  // namespace detail
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -7,14 +7,13 @@
 
 #include <math.h>
 
-#include <limits>
-
 #include "etlmon/kernel.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 enum class MetricId : uint8_t {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) id,
+#define DISTANCE(id, Type, prepared, zero_is_unknown) id,
 #include "etlmon/distances.def"
 #undef DISTANCE
 };
@@ -27,16 +26,13 @@ enum class Prepared : uint8_t { as_given, unit_rows };
 struct Distance {
   const char* name;   ///< the struct that computes it, `L2` for etlmon::L2
   const char* word;   ///< its id
-  float low, high;    ///< its range
+  float highest;      ///< its range is [0, highest]
   Prepared prepared;  ///< what prepare() makes of targets
   bool zero_is_unknown;
 };
 
-inline constexpr float kInfinite = std::numeric_limits<float>::infinity();
-
 inline constexpr Distance kDistances[] = {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-  {#Type, #id, low, high, Prepared::prepared, zero_is_unknown},
+#define DISTANCE(id, Type, prepared, zero_is_unknown) {#Type, #id, Type::kHighest, Prepared::prepared, zero_is_unknown},
 #include "etlmon/distances.def"
 #undef DISTANCE
 };
@@ -96,8 +92,8 @@ template <class G>
 Measured measure_as(MetricId metric, AggregationId aggregation, uint32_t n, const float* z, G targets, uint32_t K,
                     uint32_t D, const float* weights, float* scratch) noexcept {
   switch (metric) {
-#define DISTANCE(id, Type, low, high, prepared, zero_is_unknown) \
-  case MetricId::id:                                             \
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+  case MetricId::id:                                  \
     return measure_as<Type>(aggregation, n, z, targets, K, D, weights, scratch);
 #include "etlmon/distances.def"
 #undef DISTANCE
@@ -114,4 +110,5 @@ inline Measured measure(MetricId metric, AggregationId aggregation, uint32_t n, 
   return detail::measure_as(metric, aggregation, n, z, targets, K, D, weights, scratch);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -9,6 +9,7 @@
 #include "etlmon/dynamic.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// enclose() of enclosed.hpp; not for mahalanobis, of which nothing is known.
 inline Enclosed enclose(MetricId metric, AggregationId aggregation, const Measured& narrow, float moved, uint32_t K,
@@ -87,4 +88,5 @@ inline Enclosed measure_bytes(MetricId metric, AggregationId aggregation, uint32
   return {};
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

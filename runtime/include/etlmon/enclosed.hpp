@@ -2,14 +2,16 @@
 // A distance known within bounds: what measuring a narrow copy of the targets says about the targets themselves.
 // Takes: the distance from z to rows in float16 or int8, and how far the narrowing moved a row. Gives: an interval in
 // which the distance to the float32 rows lies, in real arithmetic and as any build computes it; whether a comparison
-// can be told from it. Keeps true: an interval is never too small, whatever -ffast-math does; where it leaves a
-// comparison open, or the distance is not finite, doubtful() says so, and the float32 rows have to be measured.
+// can be told from it. Keeps true: an interval is never too small, whatever -ffast-math does, and never leaves the
+// distance's range, of which a monitor's bounds are made; where it leaves a comparison open, or the distance is not
+// finite, doubtful() says so, and the float32 rows have to be measured.
 #pragma once
 
 #include "etlmon/kernel.hpp"
 #include "etlmon/predicate.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Numbers that a comparison may turn on: all of [low, high]. A threshold is one of a single number.
 struct Cut {
@@ -135,7 +137,7 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
       detail::rounded((changed + error.at(distance, root) + error.at(distance + changed, root_there)) * kSlack);
   result.low = detail::rounded(narrow.delta - off);
   if (!(key_of(result.low) > 0)) result.low = 0.0f;
-  result.high = detail::rounded(narrow.delta + off);
+  result.high = detail::capped<Metric>(detail::rounded(narrow.delta + off));
   return result;
 }
 
@@ -151,4 +153,5 @@ ETLMON_INLINE Value at_least(const Enclosed& delta, const float& epsilon, Value 
   return between(detail::rounded(delta.low - epsilon), detail::rounded(delta.high - epsilon));
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

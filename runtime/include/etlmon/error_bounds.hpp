@@ -12,6 +12,7 @@
 #include "etlmon/dynamic.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Whether denormal numbers may have been flushed to zero, as -ffast-math arranges on some hosts at start-up.
 enum class Denormals : uint8_t { kept, flushed };
@@ -60,4 +61,5 @@ inline double mean_bound(uint32_t K, double exact, Denormals denormals = Denorma
          k * (denormals == Denormals::flushed ? static_cast<double>(FLT_MIN) : kLeastDenormal);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

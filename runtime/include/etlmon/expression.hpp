@@ -3,14 +3,14 @@
 // Takes: floats, any of them NaN (unknown) or infinite. Gives: + - * / abs sqrt min max as IEEE 754 says, in the order
 // written. Keeps true: no fusing, no reassociation, no assumption that a value is finite, whatever the flags: every
 // result passes through rounded(), which the optimiser cannot see into. So inf - inf and 0 / 0 are NaN, 1 / 0 is inf,
-// under -ffast-math too, and `etlc run` and generated code agree bit for bit; only sqrt may differ in the last place
-// under clang's -ffast-math. With -ffast-math at link time denormals are flushed to zero: that, and nothing else, still
-// changes results.
+// under -ffast-math too, and `etlc run` and generated code agree bit for bit. With -ffast-math at link time denormals
+// are flushed to zero: that, and nothing else, still changes results.
 #pragma once
 
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 ETLMON_INLINE float add(float a, float b) noexcept { return detail::rounded(detail::rounded(a) + detail::rounded(b)); }
 ETLMON_INLINE float subtract(float a, float b) noexcept {
@@ -52,4 +52,5 @@ ETLMON_INLINE float greater(const float& a, const float& b) noexcept {
   return detail::from_bits(detail::ordered(x) < detail::ordered(y) ? y : x);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

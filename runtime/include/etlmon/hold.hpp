@@ -9,6 +9,7 @@
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// D elements of T (float, or uint32_t for a flag), held for at most N steps in a row.
 template <class T, uint32_t D, uint32_t N>
@@ -40,4 +41,5 @@ class Hold {
   uint32_t age_;  ///< missing samples in a row since the held one; N: nothing to hold any more
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -12,6 +12,7 @@
 #include "etlmon/views.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// Weights as the kernels take them: none, D (MahalanobisDiagonal) or D x D symmetric positive definite (Mahalanobis).
@@ -122,4 +123,5 @@ ETLMON_INLINE Measured measure(const float* z, const float (&targets)[K * D],
   return detail::best<Metric, Aggregation, detail::Fixed<K, D>, false>(z, &targets[0], weights, {}, {});
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -8,6 +8,7 @@
 #include "etlmon/pack.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 constexpr uint32_t kLanes = 16;        ///< floats of the widest vector
@@ -135,4 +136,5 @@ struct RowSize : Sizes {
 };
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

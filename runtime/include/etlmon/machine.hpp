@@ -10,6 +10,7 @@
 #include "etlmon/reading.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 struct Transition {
   uint16_t source;
@@ -30,7 +31,8 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
   uint32_t at = 0;
   for (uint32_t target = 0; target < states; ++target) {
     V best = Lattice<V>::bottom();
-    for (; at < ends[target]; ++at) best = max(best, min(now[transitions[at].source], guards[transitions[at].guard]));
+    for (; at < ends[target]; ++at)
+      best = max_of(best, min_of(now[transitions[at].source], guards[transitions[at].guard]));
     next[target] = best;
   }
 }
@@ -43,10 +45,10 @@ auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* we
   Result reading = Lattice<Result>::bottom();
   for (uint32_t q = 0; q < states; ++q) {
     const Result at = reading_of(now[q]);
-    reading.upper = max(reading.upper, min(at.upper, strong[owed[q].strong]));
+    reading.upper = max_of(reading.upper, min_of(at.upper, strong[owed[q].strong]));
     if (owed[q].weak == kStrongly) continue;
-    reading.rho = max(reading.rho, at.rho);
-    reading.lower = max(reading.lower, min(at.lower, weak[owed[q].weak]));
+    reading.rho = max_of(reading.rho, at.rho);
+    reading.lower = max_of(reading.lower, min_of(at.lower, weak[owed[q].weak]));
   }
   return reading;
 }
@@ -76,4 +78,5 @@ class Machine {
   V registers_[2][States];
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -16,6 +16,7 @@
 #include "etlmon/targets.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// `Targets`: that of the generated header.
 template <class Targets>
@@ -73,4 +74,5 @@ class MappedTargets {
   int error_ = 0;
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

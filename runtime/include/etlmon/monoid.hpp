@@ -14,6 +14,7 @@
 #include "etlmon/value.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Greatest value of the segment: O over the last N, F over the next N.
 template <class V>
@@ -22,7 +23,7 @@ struct Greatest {
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
-  static constexpr Element combine(Element older, Element newer) noexcept { return max(older, newer); }
+  static constexpr Element combine(Element older, Element newer) noexcept { return max_of(older, newer); }
 };
 
 /// Least value of the segment: H over the last N, G over the next N.
@@ -32,7 +33,7 @@ struct Least {
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::top(); }
-  static constexpr Element combine(Element older, Element newer) noexcept { return min(older, newer); }
+  static constexpr Element combine(Element older, Element newer) noexcept { return min_of(older, newer); }
 };
 
 /// A binary operator over a segment of positions. One position: value is the right operand g, guard the left operand f.
@@ -50,7 +51,7 @@ struct Since {
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {max(min(older.value, newer.guard), newer.value), min(older.guard, newer.guard)};
+    return {max_of(min_of(older.value, newer.guard), newer.value), min_of(older.guard, newer.guard)};
   }
 };
 
@@ -62,7 +63,7 @@ struct Trigger {
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {min(max(older.value, newer.guard), newer.value), max(older.guard, newer.guard)};
+    return {min_of(max_of(older.value, newer.guard), newer.value), max_of(older.guard, newer.guard)};
   }
 };
 
@@ -74,7 +75,7 @@ struct Until {
   static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {max(older.value, min(older.guard, newer.value)), min(older.guard, newer.guard)};
+    return {max_of(older.value, min_of(older.guard, newer.value)), min_of(older.guard, newer.guard)};
   }
 };
 
@@ -86,7 +87,7 @@ struct Release {
   static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {min(older.value, max(older.guard, newer.value)), max(older.guard, newer.guard)};
+    return {min_of(older.value, max_of(older.guard, newer.value)), max_of(older.guard, newer.guard)};
   }
 };
 
@@ -102,4 +103,5 @@ constexpr Span<Value> pair_of(Span<Key> low, Span<Key> high) noexcept {
 constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
 constexpr bool same_ends(Span<Value> s) noexcept { return same_ends(s.value) && same_ends(s.guard); }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -11,7 +11,11 @@
 #define ETLMON_HAS_PACKS 1
 #endif
 
+// A vector of a type that may alias others, from any address.
+#define ETLMON_READ(Type, from) (*static_cast<const Type*>(static_cast<const void*>(from)))
+
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 #if defined(ETLMON_HAS_PACKS)
@@ -30,4 +34,5 @@ ETLMON_INLINE float magnitude(float x) noexcept {
 ETLMON_INLINE float larger(float a, float b) noexcept { return a > b ? a : b; }
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -12,6 +12,7 @@
 #include "etlmon/reading.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// The last N values of a stream.
 template <class V, uint32_t N>
@@ -51,11 +52,11 @@ struct As {
 struct Seeking {
   template <class V>
   static constexpr V gain(V a, V b) noexcept {
-    return max(a, b);
+    return max_of(a, b);
   }
   template <class V>
   static constexpr V keep(V a, V b) noexcept {
-    return min(a, b);
+    return min_of(a, b);
   }
   template <class V>
   static constexpr V nothing() noexcept {
@@ -76,11 +77,11 @@ struct Seeking {
 struct Guarding {
   template <class V>
   static constexpr V gain(V a, V b) noexcept {
-    return min(a, b);
+    return min_of(a, b);
   }
   template <class V>
   static constexpr V keep(V a, V b) noexcept {
-    return max(a, b);
+    return max_of(a, b);
   }
   template <class V>
   static constexpr V nothing() noexcept {
@@ -106,12 +107,12 @@ constexpr uint32_t window_end(uint32_t from, uint32_t high, uint32_t n) noexcept
 
 template <class R>
 void pending_and(const R* f, const R* g, R* out, uint32_t n) noexcept {
-  for (uint32_t p = 0; p < n; ++p) out[p] = min(f[p], g[p]);
+  for (uint32_t p = 0; p < n; ++p) out[p] = min_of(f[p], g[p]);
 }
 
 template <class R>
 void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
-  for (uint32_t p = 0; p < n; ++p) out[p] = max(f[p], g[p]);
+  for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
 }
 
 /// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F and G.
@@ -206,4 +207,5 @@ class PendingMachine {
   V registers_[States];
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -10,13 +10,16 @@
 #include "etlmon/views.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 namespace detail {
 /// The compiler sees that x is zero. A threshold of zero is common where the input is a robustness itself, and leaves
 /// nothing to subtract.
 ETLMON_INLINE bool surely_zero(const float& x) noexcept {
 #if defined(__GNUC__)
-  return __builtin_constant_p(x == 0.0f) && x == 0.0f;
+  uint32_t bits = 0;
+  copy_bytes(&bits, &x, sizeof bits);
+  return __builtin_constant_p(bits << 1) && bits << 1 == 0;
 #else
   (void)x;
   return false;
@@ -47,4 +50,5 @@ ETLMON_INLINE Value value_of(Flag flag) noexcept {
 /// Some sample behind the value was missing.
 constexpr bool unknown(Value value) noexcept { return value.low != value.high; }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -18,6 +18,7 @@
 #include "etlmon/distances.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 constexpr uint32_t kBlockRows = 64;  ///< rows that are remembered together
@@ -80,4 +81,5 @@ ETLMON_INLINE uint32_t room_beyond(uint32_t best) noexcept {
 }
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -8,6 +8,7 @@
 #include "etlmon/verdict.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// rho on the prefix so far, and what every continuation keeps it between. V: Value or Truth.
 template <class V>
@@ -19,13 +20,13 @@ struct BasicReading {
 using Reading = BasicReading<Value>;
 
 template <class V>
-constexpr BasicReading<V> min(BasicReading<V> a, BasicReading<V> b) noexcept {
-  return {min(a.rho, b.rho), min(a.lower, b.lower), min(a.upper, b.upper)};
+constexpr BasicReading<V> min_of(BasicReading<V> a, BasicReading<V> b) noexcept {
+  return {min_of(a.rho, b.rho), min_of(a.lower, b.lower), min_of(a.upper, b.upper)};
 }
 
 template <class V>
-constexpr BasicReading<V> max(BasicReading<V> a, BasicReading<V> b) noexcept {
-  return {max(a.rho, b.rho), max(a.lower, b.lower), max(a.upper, b.upper)};
+constexpr BasicReading<V> max_of(BasicReading<V> a, BasicReading<V> b) noexcept {
+  return {max_of(a.rho, b.rho), max_of(a.lower, b.lower), max_of(a.upper, b.upper)};
 }
 
 /// A reading that no continuation changes.
@@ -58,4 +59,5 @@ auto prefix_verdict(BasicReading<V> reading) noexcept {
   return prefix_verdict(reading.rho, reading.lower, reading.upper);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

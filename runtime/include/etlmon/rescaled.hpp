@@ -8,6 +8,7 @@
 #include "etlmon/versions.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
@@ -190,7 +191,7 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, cons
     }
   }
   if constexpr (Aggregation::kOfDistances) {
-    return packed(observe(aggregation.result(1)), nearest.row);
+    return packed(observe(capped<Metric>(aggregation.result(1))), nearest.row);
   } else {
     return packed(aggregation.result(nearest), nearest.row);
   }
@@ -224,4 +225,5 @@ bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexce
 }
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

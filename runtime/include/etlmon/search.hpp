@@ -10,6 +10,7 @@
 #include "etlmon/targets.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Whether a search knows this distance and saves work: else measure_stored.
 template <class Metric>
@@ -61,4 +62,5 @@ class Search {
   uint32_t measured_;
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

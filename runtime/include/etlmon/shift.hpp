@@ -8,6 +8,7 @@
 #include "etlmon/value.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 ETLMON_INLINE Key shifted(Key key, const float& shift) noexcept {
   if (key == kTop || key == kBottom) return key;
@@ -22,4 +23,5 @@ ETLMON_INLINE Reading shifted(Reading reading, const float& shift) noexcept {
   return {shifted(reading.rho, shift), shifted(reading.lower, shift), shifted(reading.upper, shift)};
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

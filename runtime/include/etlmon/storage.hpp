@@ -13,6 +13,7 @@
 #endif
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// The float32 bits of a float16. Subnormals are scaled by integer arithmetic: no float operation could flush them to
 /// zero.
@@ -105,4 +106,5 @@ ETLMON_INLINE float element(const Strided<G>& row, size_t i) noexcept {
 
 }  // namespace detail
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

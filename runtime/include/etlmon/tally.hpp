@@ -13,6 +13,7 @@
 #include "etlmon/views.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// K rows of D elements, one after the other, `stride` elements apart.
@@ -71,7 +72,7 @@ struct Tally {
   /// Bits of the aggregate: of a distance for the mean, else of a value.
   ETLMON_INLINE uint32_t result(uint32_t rows) const noexcept {
     if constexpr (Aggregation::kOfDistances) {
-      return observe(aggregation.result(rows));
+      return observe(capped<Metric>(aggregation.result(rows)));
     } else {
       return aggregation.result(nearest);
     }
@@ -135,4 +136,5 @@ ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, con
 }
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -9,6 +9,7 @@
 #include "etlmon/kernel.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// What is known of a file of targets.
 enum class TargetsState : uint8_t {
@@ -84,4 +85,5 @@ ETLMON_INLINE Measured measure_stored(const float* z, const float* rows, const f
   return detail::best<Metric, Aggregation, detail::Padded<K, D>, false>(z, rows, weights, {}, {});
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -9,6 +9,7 @@
 #include "etlmon/views.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 struct Truth {
   bool low : 1;   ///< surely true
@@ -20,8 +21,8 @@ constexpr Truth kYes{true, true};
 constexpr Truth kNo{false, false};
 constexpr Truth kPerhaps{false, true};  ///< a sample is missing
 
-constexpr Truth min(Truth a, Truth b) noexcept { return {a.low && b.low, a.high && b.high}; }
-constexpr Truth max(Truth a, Truth b) noexcept { return {a.low || b.low, a.high || b.high}; }
+constexpr Truth min_of(Truth a, Truth b) noexcept { return {a.low && b.low, a.high && b.high}; }
+constexpr Truth max_of(Truth a, Truth b) noexcept { return {a.low || b.low, a.high || b.high}; }
 constexpr Truth negate(Truth a) noexcept { return {!a.high, !a.low}; }
 
 template <>
@@ -56,4 +57,5 @@ ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon, Truth ran
   return is_nan(delta) ? range : truth_of(key_of(delta) > key_of(epsilon));
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -2,8 +2,8 @@
 // Robustness inside a monitor: ordered integer keys, in pairs.
 // Takes: float32 robustness. Gives: values that min and max combine exactly, infinities included, under any compiler
 // flags. Keeps true: key order is float order; -0 and +0 share a key; a NaN never becomes a key (predicates turn it
-// into a range). A value type V of the temporal operators is any type with min, max (here or found by argument) and a
-// Lattice<V>.
+// into a range). A value type V of the temporal operators is any type with min_of, max_of (here or found by
+// argument; min and max are macros of windows.h) and a Lattice<V>.
 #pragma once
 
 #include <stdint.h>
@@ -11,6 +11,7 @@
 #include "etlmon/bits.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// float32 robustness as an integer whose order is the order of the floats. Comparing integers keeps -ffast-math, which
 /// assumes that infinities do not occur, from changing a verdict.
@@ -31,17 +32,17 @@ ETLMON_INLINE float float_of(Key key) noexcept {
 constexpr Key kTop = 0x7f800000;      ///< +inf: true
 constexpr Key kBottom = -0x7f800000;  ///< -inf: false
 
-constexpr Key min(Key a, Key b) noexcept { return b < a ? b : a; }
-constexpr Key max(Key a, Key b) noexcept { return a < b ? b : a; }
+constexpr Key min_of(Key a, Key b) noexcept { return b < a ? b : a; }
+constexpr Key max_of(Key a, Key b) noexcept { return a < b ? b : a; }
 
 /// Of truth values: "and" and "or".
-constexpr bool min(bool a, bool b) noexcept { return a && b; }
-constexpr bool max(bool a, bool b) noexcept { return a || b; }
+constexpr bool min_of(bool a, bool b) noexcept { return a && b; }
+constexpr bool max_of(bool a, bool b) noexcept { return a || b; }
 
 /// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the flags. Of two zeros,
 /// a.
-ETLMON_INLINE float min(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
-ETLMON_INLINE float max(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
+ETLMON_INLINE float min_of(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
+ETLMON_INLINE float max_of(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
 
 /// What is known of a robustness: low == high where every sample it depends on was there, else the ends of its range.
 /// The min-max algebra works on both ends alike, since formulas are in negation normal form (only predicates negate).
@@ -53,8 +54,8 @@ struct Value {
 constexpr Value kTrue{kTop, kTop};
 constexpr Value kFalse{kBottom, kBottom};
 
-constexpr Value min(Value a, Value b) noexcept { return {min(a.low, b.low), min(a.high, b.high)}; }
-constexpr Value max(Value a, Value b) noexcept { return {max(a.low, b.low), max(a.high, b.high)}; }
+constexpr Value min_of(Value a, Value b) noexcept { return {min_of(a.low, b.low), min_of(a.high, b.high)}; }
+constexpr Value max_of(Value a, Value b) noexcept { return {max_of(a.low, b.low), max_of(a.high, b.high)}; }
 constexpr Value negate(Value a) noexcept { return {-a.high, -a.low}; }
 
 /// A value that a monitor keeps from step to step. Its ends are of two types: of one, g++ makes a vector of what two
@@ -86,16 +87,16 @@ ETLMON_INLINE Value between(const float& low, const float& high) noexcept { retu
 
 /// Of more than two: values and registers, or all of another type.
 template <class A, class B, class C, class... More>
-constexpr auto min(A a, B b, C c, More... more) noexcept {
-  return min(min(a, b), c, more...);
+constexpr auto min_of(A a, B b, C c, More... more) noexcept {
+  return min_of(min_of(a, b), c, more...);
 }
 template <class A, class B, class C, class... More>
-constexpr auto max(A a, B b, C c, More... more) noexcept {
-  return max(max(a, b), c, more...);
+constexpr auto max_of(A a, B b, C c, More... more) noexcept {
+  return max_of(max_of(a, b), c, more...);
 }
 
 /// The least and the greatest element of a value type: bottom is false, top is true; End is the type of its two ends,
-/// low and high. A mode (truth.hpp, say) is a type with min and max found by argument-dependent lookup and a
+/// low and high. A mode (truth.hpp, say) is a type with min_of and max_of found by argument-dependent lookup and a
 /// specialisation of this.
 template <class V>
 struct Lattice;
@@ -120,4 +121,5 @@ struct Lattice<Value> {
   static constexpr Value top() noexcept { return kTrue; }
 };
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -11,6 +11,7 @@
 #include "etlmon/value.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// What can be asked about one monitor after one step; Self has `status`, of the bits below. Undecided: every question
 /// but decided() is moot.
@@ -77,4 +78,5 @@ inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noe
 
 inline BooleanVerdict sliding_verdict(Truth holds) noexcept { return prefix_verdict(holds, true, true); }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

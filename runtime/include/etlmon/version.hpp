@@ -10,4 +10,4 @@
 #pragma once
 
 #define ETLMON_VERSION_MAJOR 0
-#define ETLMON_VERSION_MINOR 1
+#define ETLMON_VERSION_MINOR 2

@@ -13,7 +13,10 @@
 #include "etlmon/tally.hpp"
 
 #if defined(ETLMON_HAS_PACKS) && defined(__x86_64__)
-#if defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512BW__) && defined(__AVX512DQ__)
+// All that a version's functions are made for (ETLMON_TARGET below): what is compiled for less cannot have them
+// inlined.
+#if defined(__AVX2__) && defined(__FMA__) && defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512BW__) && \
+    defined(__AVX512DQ__)
 #define ETLMON_X86_64 4
 #elif defined(__AVX2__) && defined(__FMA__) && defined(__F16C__)
 #define ETLMON_X86_64 3
@@ -26,6 +29,7 @@
 #endif
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 #define ETLMON_WIDE ETLMON_TARGET ETLMON_INLINE
@@ -109,4 +113,5 @@ namespace baseline {
 #undef ETLMON_WIDE
 
 }  // namespace detail
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

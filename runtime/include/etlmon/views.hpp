@@ -9,6 +9,7 @@
 #include "etlmon/pack.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 namespace detail {
 
@@ -174,4 +175,5 @@ ETLMON_INLINE float accept(const float& x, const float& low, const float& high) 
   return detail::from_bits(inside ? detail::observe(x) : detail::kMissingBits);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -7,6 +7,7 @@
 #include "etlmon/dispatch.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 namespace detail {
 
 /// Few elements do without vectors of 64 bytes.
@@ -41,4 +42,5 @@ ETLMON_INLINE void widen_i8(const int8_t* from, float scale, float* to, uint32_t
   detail::widen(detail::ScaledRows{from, scale}, to, n);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -18,6 +18,7 @@
 #include "etlmon/monoid.hpp"
 
 namespace etlmon {
+inline namespace ETLMON_BUILD {
 
 /// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
 constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{1}) + 2; }
@@ -222,4 +223,5 @@ constexpr uint32_t window_bytes(uint32_t n) noexcept {
   return WindowBytes<Monoid>::of(n);
 }
 
+}  // namespace ETLMON_BUILD
 }  // namespace etlmon

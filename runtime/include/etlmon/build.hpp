@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: MIT
+// What a translation unit's flags make of inline code, as a name.
+// Takes: the compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the runtime and of every
+// generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. A program keeps one copy of an inline function of a name,
+// the first that it is linked from. Without this a unit could die of the instructions that another one was built for,
+// or answer with the bits of its -ffast-math. Keeps true: functions of one name may stand for each other, in bits and
+// in instructions; what the flags leave no macro for is in docs/runtime.md, "Flags, and who shares code".
+#pragma once
+
+#include "etlmon/version.hpp"
+
+#if !(__cplusplus >= 201703L || (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L))
+#error "etlmon needs C++17: compile with -std=c++17 or later"
+#endif
+
+// 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them in one digit.
+#define ETLMON_IS(macro) ETLMON_IS_VALUE(macro)
+#define ETLMON_IS_VALUE(value) ETLMON_IS_PAIR(ETLMON_IS_##value)
+#define ETLMON_IS_1 0, 1
+#define ETLMON_IS_1000000 0, 1
+#define ETLMON_IS_PAIR(pair) ETLMON_IS_SECOND(pair, 0, 0)
+#define ETLMON_IS_SECOND(first, second, ...) second
+#define ETLMON_DIGIT(a, b, c, d) ETLMON_DIGIT_OF(ETLMON_IS(a), ETLMON_IS(b), ETLMON_IS(c), ETLMON_IS(d))
+#define ETLMON_DIGIT_OF(a, b, c, d) ETLMON_DIGIT_FROM(a, b, c, d)
+#define ETLMON_DIGIT_FROM(a, b, c, d) ETLMON_DIGIT_##a##b##c##d
+#define ETLMON_DIGIT_0000 0
+#define ETLMON_DIGIT_0001 1
+#define ETLMON_DIGIT_0010 2
+#define ETLMON_DIGIT_0011 3
+#define ETLMON_DIGIT_0100 4
+#define ETLMON_DIGIT_0101 5
+#define ETLMON_DIGIT_0110 6
+#define ETLMON_DIGIT_0111 7
+#define ETLMON_DIGIT_1000 8
+#define ETLMON_DIGIT_1001 9
+#define ETLMON_DIGIT_1010 a
+#define ETLMON_DIGIT_1011 b
+#define ETLMON_DIGIT_1100 c
+#define ETLMON_DIGIT_1101 d
+#define ETLMON_DIGIT_1110 e
+#define ETLMON_DIGIT_1111 f
+#define ETLMON_JOIN(a, b, c, d, e, f) ETLMON_JOIN_TOKENS(a, b, c, d, e, f)
+#define ETLMON_JOIN_TOKENS(a, b, c, d, e, f) a##b##c##d##e##f
+
+// ---- What instructions the unit may use: a level of x86-64 by its name, anything else in digits.
+#if defined(__x86_64__) || defined(__i386__)
+#define ETLMON_BUILD_DIGITS                                                     \
+  ETLMON_JOIN(ETLMON_DIGIT(__SSE3__, __SSSE3__, __SSE4_1__, __SSE4_2__),        \
+              ETLMON_DIGIT(__POPCNT__, __AVX__, __AVX2__, __FMA__),             \
+              ETLMON_DIGIT(__F16C__, __BMI__, __BMI2__, __LZCNT__),             \
+              ETLMON_DIGIT(__MOVBE__, __AVX512F__, __AVX512CD__, __AVX512VL__), \
+              ETLMON_DIGIT(__AVX512BW__, __AVX512DQ__, __SSE__, __SSE2_MATH__), ETLMON_BUILD_MORE)
+#define ETLMON_BUILD_MORE                                                                          \
+  ETLMON_JOIN(ETLMON_DIGIT(__AVX512IFMA__, __AVX512VBMI__, __AVX512VBMI2__, __AVX512VNNI__),       \
+              ETLMON_DIGIT(__AVX512BITALG__, __AVX512VPOPCNTDQ__, __AVX512FP16__, __AVX512BF16__), \
+              ETLMON_DIGIT(__AVX512ER__, __AVX10_1__, __AVX10_2__, __APX_F__),                     \
+              ETLMON_DIGIT(__AVXVNNI__, __AVXVNNIINT8__, __AVXVNNIINT16__, __AVXIFMA__),           \
+              ETLMON_DIGIT(__GFNI__, __SSE4A__, __FMA4__, __XOP__), ETLMON_DIGIT(__TBM__, 0, 0, 0))
+#define ETLMON_BUILD_BITS ETLMON_JOIN(0x, ETLMON_BUILD_DIGITS, , , , )
+#if ETLMON_BUILD_BITS == 0x00003000000
+#define ETLMON_BUILD_MACHINE _x86v1
+#elif ETLMON_BUILD_BITS == 0xf8003000000
+#define ETLMON_BUILD_MACHINE _x86v2
+#elif ETLMON_BUILD_BITS == 0xfff83000000
+#define ETLMON_BUILD_MACHINE _x86v3
+#elif ETLMON_BUILD_BITS == 0xfffff000000
+#define ETLMON_BUILD_MACHINE _x86v4
+#else
+#define ETLMON_BUILD_MACHINE ETLMON_JOIN(_x86_, ETLMON_BUILD_DIGITS, , , , )
+#endif
+#elif defined(__aarch64__) || defined(__arm__)
+#if defined(__ARM_FP)
+#define ETLMON_BUILD_FLOATS __ARM_FP
+#else
+#define ETLMON_BUILD_FLOATS 0
+#endif
+#if defined(__ARM_FEATURE_MVE)
+#define ETLMON_BUILD_VECTORS __ARM_FEATURE_MVE
+#else
+#define ETLMON_BUILD_VECTORS ETLMON_DIGIT(__ARM_FEATURE_SVE, __ARM_FEATURE_SVE2, 0, __ARM_NEON)
+#endif
+#define ETLMON_BUILD_DIGITS                                                                                            \
+  ETLMON_JOIN(                                                                                                         \
+      ETLMON_BUILD_VECTORS, ETLMON_DIGIT(__ARM_FEATURE_FMA, __ARM_FEATURE_DSP, __ARM_FEATURE_IDIV, __ARM_FEATURE_CLZ), \
+      ETLMON_DIGIT(__thumb__, __thumb2__, __ARM_FEATURE_UNALIGNED, __ARM_FP16_FORMAT_IEEE),                            \
+      ETLMON_DIGIT(__ARM_FEATURE_FP16_SCALAR_ARITHMETIC, __ARM_FEATURE_FP16_VECTOR_ARITHMETIC, __ARM_FEATURE_FP16_FML, \
+                   __ARM_FEATURE_BF16_VECTOR_ARITHMETIC),                                                              \
+      ETLMON_DIGIT(__ARM_FEATURE_DOTPROD, __ARM_FEATURE_MATMUL_INT8, __ARM_FEATURE_COMPLEX, __ARM_FEATURE_JCVT),       \
+      ETLMON_DIGIT(__ARM_FEATURE_ATOMICS, __ARM_FEATURE_QRDMX, __ARM_FEATURE_FRINT, __ARM_FEATURE_MOPS))
+#define ETLMON_BUILD_MACHINE ETLMON_JOIN(_arm, __ARM_ARCH, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
+#elif defined(__riscv)
+#if defined(__riscv_flen)
+#define ETLMON_BUILD_FLOATS __riscv_flen
+#else
+#define ETLMON_BUILD_FLOATS 0
+#endif
+#define ETLMON_BUILD_DIGITS                                                               \
+  ETLMON_JOIN(ETLMON_DIGIT(__riscv_mul, __riscv_div, __riscv_atomic, __riscv_compressed), \
+              ETLMON_DIGIT(__riscv_fdiv, __riscv_fsqrt, __riscv_vector, __riscv_zba),     \
+              ETLMON_DIGIT(__riscv_zbb, __riscv_zbs, __riscv_zbc, __riscv_zicond),        \
+              ETLMON_DIGIT(__riscv_zfh, __riscv_zfa, __riscv_zcb, __riscv_zcmp), , )
+#define ETLMON_BUILD_MACHINE ETLMON_JOIN(_riscv, __riscv_xlen, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
+#else
+#define ETLMON_BUILD_MACHINE
+#endif
+
+// ---- Who compiles, and at which speed.
+#if defined(__clang__)
+#define ETLMON_BUILD_COMPILER ETLMON_JOIN(_clang, __clang_major__, , , , )
+#elif defined(__GNUC__)
+#define ETLMON_BUILD_COMPILER ETLMON_JOIN(_gcc, __GNUC__, , , , )
+#else
+#define ETLMON_BUILD_COMPILER
+#endif
+#if defined(__OPTIMIZE_SIZE__)
+#define ETLMON_BUILD_SPEED _Os
+#elif defined(__GNUC__) && !defined(__OPTIMIZE__)
+#define ETLMON_BUILD_SPEED _O0
+#else
+#define ETLMON_BUILD_SPEED
+#endif
+
+// ---- What may be assumed of floats; which versions of a kernel there are.
+#define ETLMON_BUILD_ASSUMED                                                                                \
+  ETLMON_JOIN(ETLMON_DIGIT(__FAST_MATH__, __FINITE_MATH_ONLY__, __ASSOCIATIVE_MATH__, __RECIPROCAL_MATH__), \
+              ETLMON_DIGIT(__NO_SIGNED_ZEROS__, 0, 0, 0), , , , )
+#if ETLMON_JOIN(0x, ETLMON_BUILD_ASSUMED, , , , )
+#define ETLMON_BUILD_MATH ETLMON_JOIN(_fast, ETLMON_BUILD_ASSUMED, , , , )
+#else
+#define ETLMON_BUILD_MATH
+#endif
+#if defined(ETLMON_NO_PACKS)
+#define ETLMON_BUILD_KERNELS _no_packs
+#elif defined(ETLMON_NO_DISPATCH) || !__STDC_HOSTED__
+#define ETLMON_BUILD_KERNELS _no_dispatch
+#else
+#define ETLMON_BUILD_KERNELS
+#endif
+
+#define ETLMON_BUILD                                                                                    \
+  ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ), ETLMON_BUILD_COMPILER, \
+              ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, ETLMON_BUILD_KERNELS)
