@@ -16,10 +16,10 @@ constexpr std::size_t kMaxListed = 10;
 }  // namespace
 
 std::string in_quotes(std::string_view text) {
-    if (text.size() <= kMaxQuoted) return "'" + source::visible(text) + "'";
+    if (text.size() <= kMaxQuoted) return fmt::format("'{}'", source::visible(text));
     std::size_t cut = kMaxQuoted;
     while (cut > kMaxQuoted - 4 && (static_cast<unsigned char>(text[cut]) & 0xC0U) == 0x80U) --cut;
-    return "'" + source::visible(text.substr(0, cut)) + "...'";
+    return fmt::format("'{}...'", source::visible(text.substr(0, cut)));
 }
 
 std::string listed(const std::vector<std::string>& names) {
