@@ -3,13 +3,12 @@
 // streams have limits, and while it is killed; two run at the same time. Exit status 1 where a run
 // does other than it must (see Judge).
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <chrono>
-#include <cstdlib>
+#include <cstdio>
 #include <random>
-
-#include <unistd.h>
 
 #include "judge.hpp"
 #include "scene.hpp"
@@ -29,7 +28,7 @@ struct Extent {
     int pairs;     ///< of calls at the same time
 };
 constexpr Extent kShort{5, 24, 6, 10, 20};
-constexpr Extent kLong{40, 400, 60, 300, 300};
+constexpr Extent kLong{20, 150, 20, 100, 150};
 
 struct Disturbance {
     const char* call;
@@ -82,6 +81,8 @@ public:
             limit_files(command);
             limit_memory(command);
             kill_at_random(command);
+            fmt::print("{}: {} runs so far, {} findings\n", command.name, judge_.runs(), judge_.findings().size());
+            std::fflush(stdout);
         }
         run_at_the_same_time();
     }
