@@ -45,7 +45,8 @@ public:
             inside = middle_left_out(phrase.opening, most - (around - phrase.opening.size()));
         } else {
             const std::size_t gaps = phrase.separator.size() * std::min<std::size_t>(phrase.operands.size() - 1, 2);
-            const std::size_t least = around + gaps + kLeftOut.size() * std::min<std::size_t>(phrase.operands.size(), 3);
+            const std::size_t least =
+                around + gaps + kLeftOut.size() * std::min<std::size_t>(phrase.operands.size(), 3);
             if (most < least) return std::string(kLeftOut);
             inside = phrase.opening + chain(phrase, most - around) + phrase.closing;
         }

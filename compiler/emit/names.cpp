@@ -342,6 +342,7 @@ std::string Scope::number(const std::string& wanted) {
 }
 
 std::string identifier(std::string_view text, const std::string& otherwise) {
+    if (text.find("...") != std::string_view::npos) return otherwise;  // parts of the formula were left out
     std::string name;
     for (std::size_t i = 0; i < text.size();) {
         std::size_t end = i;

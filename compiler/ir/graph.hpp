@@ -58,10 +58,10 @@ struct Node {
     Index index = 0;       ///< predicate: of the model's predicates; flag: of its inputs
     Interval interval{};   ///< of temporal operators
     std::vector<NodeId> operands;
-    bool has_future = false;    ///< a future operator in it, itself included
+    bool has_future = false;      ///< a future operator in it, itself included
     bool unbounded_past = false;  ///< a past operator without an upper bound in it, itself included
-    std::uint32_t horizon = 0;  ///< steps of future it needs; kUnbounded without end
-    Span span{};                ///< where the spec first says it; not part of its identity
+    std::uint32_t horizon = 0;    ///< steps of future it needs; kUnbounded without end
+    Span span{};                  ///< where the spec first says it; not part of its identity
 
     bool same_as(const Node& other) const;
 };

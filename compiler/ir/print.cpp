@@ -10,8 +10,8 @@ namespace {
 
 std::string interval_text(Interval interval) {
     if (interval == Interval{}) return "";
-    if (!interval.bounded()) return fmt::format("[{}, inf]", interval.low);
-    return fmt::format("[{}, {}]", interval.low, interval.high);
+    const std::string high = interval.bounded() ? std::to_string(interval.high) : "inf";
+    return '[' + std::to_string(interval.low) + ", " + high + ']';
 }
 
 /// "F[0, 3]", "X", "Y": the operator as the language writes it.
@@ -30,7 +30,7 @@ std::string atom_text(const Graph& graph, const Node& node) {
     const check::Predicate& predicate = model.predicates[node.index];
     if (!predicate.name.empty()) return (node.negated ? "!" : "") + predicate.name;
     const std::string words = predicate.text + predicate.threshold.text;
-    return node.negated ? fmt::format("!({})", words) : fmt::format("({})", words);
+    return (node.negated ? "!(" : "(") + words + ')';
 }
 
 /// Trigger, for which the language has no letter, brings its own brackets.
@@ -47,11 +47,11 @@ check::Phrase phrase(const Graph& graph, NodeId id) {
         case Arity::atom: result.opening = atom_text(graph, node); break;
         case Arity::unary: result.opening = operator_text(node) + ' '; break;
         case Arity::binary:
-        case Arity::many: result.separator = fmt::format(" {} ", operator_text(node)); break;
+        case Arity::many: result.separator = ' ' + operator_text(node) + ' '; break;
     }
     if (node.op == Op::trigger) {
         result.opening = "!(!";
-        result.separator = fmt::format(" S{} !", interval_text(node.interval));
+        result.separator = " S" + interval_text(node.interval) + " !";
         result.closing = ")";
     }
     return result;

@@ -259,7 +259,7 @@ private:
         spend(obligations.size());
         const auto [entry, added] = states_.emplace(obligations, static_cast<std::uint32_t>(automaton_.states.size()));
         if (added) {
-            spend(kWorkPerObligation * obligations.size());
+            spend(kWorkPerState + kWorkPerObligation * obligations.size());
             automaton_.states.push_back(obligations);
         }
         reached_.states = automaton_.states.size();
@@ -282,8 +282,9 @@ private:
     static constexpr std::uint64_t kEffortPerClause = 16;
     static constexpr std::uint64_t kEffortPerTransition = 256;
     // Work in steps of a loop over a set: what takes longer, and what those that use the automaton do with it.
-    static constexpr std::uint64_t kWorkPerClause = 16;
-    static constexpr std::uint64_t kWorkPerNode = 64;
+    static constexpr std::uint64_t kWorkPerClause = 32;
+    static constexpr std::uint64_t kWorkPerNode = 256;
+    static constexpr std::uint64_t kWorkPerState = 256;
     static constexpr std::uint64_t kWorkPerObligation = 32;
 
     ir::Graph& graph_;

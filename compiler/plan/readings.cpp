@@ -16,7 +16,7 @@ namespace {
 /// the default limits, some tenths of a second. A count and not a time, so that a spec has one answer everywhere.
 constexpr std::uint64_t kWorkPerTransition = 8192;
 /// No machine takes more than its share, so that there is some for others.
-constexpr std::uint64_t kShares = 4;
+constexpr std::uint64_t kShares = 2;
 constexpr std::uint64_t kSmallShares = 16;
 
 /// Machines up to this size are preferred to anything else.
@@ -281,8 +281,7 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
         return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
     };
     const std::size_t failures = oversize_.size();
-    if (auto small = machine(id, small_machine_limits(limits_)))
-        return add(as_reading(std::move(*small)));
+    if (auto small = machine(id, small_machine_limits(limits_))) return add(as_reading(std::move(*small)));
     std::optional<Reading> best = pending(node, id);
     if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_))) best.reset();
     oversize_.resize(failures);

@@ -83,8 +83,8 @@ std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
 
 void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, const ir::Graph& graph,
                  const Limits& limits, check::Values values, diag::Sink& sink) {
-    const std::string_view why = part.reached.out_of_work ? "that takes more work to build than the limits allow"
-                                                          : "larger than the limits";
+    const std::string_view why =
+        part.reached.out_of_work ? "that takes more work to build than the limits allow" : "larger than the limits";
     auto& error = sink.report(
         diag::Code::formula_too_large, graph[part.node].span,
         fmt::format("monitor '{}' needs a state machine {} for '{}': building it stopped at {} states and {} "

@@ -10,7 +10,7 @@ here=$(cd "$(dirname "$0")" && pwd)
 for target in "$@"; do
   echo "$target: $seconds s"
   mkdir -p "tests/fuzz/found/$target"
-  "tests/fuzz/$target" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -print_funcs=0 \
+  "tests/fuzz/$target" -max_total_time="$seconds" -timeout=60 -rss_limit_mb=2048 -print_final_stats=1 -verbosity=0 -print_funcs=0 \
     -artifact_prefix="tests/fuzz/$target-" "tests/fuzz/found/$target" "$here/corpus/$target"
 done
 echo "no findings"

@@ -1,6 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the data targets under corpus/, from the files of tests/unit/data and from here."""
+"""Writes the seeds of the data targets and of fuzz_compile under corpus/, from the files of tests/unit/data and from
+here."""
 import pathlib
+import random
 import struct
 import zipfile
 
@@ -69,3 +71,22 @@ for name, text in {
     "escapes.json": '{"format": 1, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "etlc": ""}',
 }.items():
     seed("fuzz_thresholds", name, text.encode())
+
+# Of fuzz_compile: specs that are long as trees or large as state machines, and bytes that decide on deep ones.
+HEAD = "spec s;\ninput x : f32 in [-1, 1];\npredicate p = x > 0;\npredicate q = x < 0.5;\n"
+for name, text in {
+    "shared_since.etl": "let a0 = p;\n" + "".join(f"let a{i + 1} = a{i} S !a{i};\n" for i in range(40))
+    + "sliding monitor m = a40;\n",
+    "iff_chain.etl": "monitor m = " + " <-> ".join(f"x > {i}" for i in range(100)) + ";\n",
+    "nested_refusals.etl": "let a0 = p;\n" + "".join(f"let a{i + 1} = F a{i} && !(G a{i});\n" for i in range(40))
+    + "monitor m = a40;\n",
+    "windows.etl": "monitor m = G F[100, 1000] (p U q);\n",
+    "long_windows.etl": "monitor m = G F[1000, 100000] (p U q);\n",
+    "longest_windows.etl": "monitor m = F G[1073741823, 2147483646] ((F p) U (G q));\n",
+    "releases.etl": "monitor m = " + "(p R (q R " * 60 + "x > 0.25" + "))" * 60 + ";\n",
+    "many.etl": "".join(f"monitor m{i} = G F[{i}, {i + 100}] (p U q);\n" for i in range(200)),
+}.items():
+    seed("fuzz_compile", name, (HEAD + text).encode())
+CHOICES = random.Random(15)
+for n in range(12):
+    seed("fuzz_compile", f"deep_{n}", CHOICES.randbytes(40 << (n // 2)))

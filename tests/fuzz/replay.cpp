@@ -1,5 +1,8 @@
 // Runs a fuzz target on files, for compilers without libFuzzer.
-// Takes: files and folders. Gives: exit status 0 where every file went through the target; a finding stops the program.
+// Takes: files and folders. Gives: exit status 0 where every file went through the target; a finding stops the program,
+// and so does an input that takes longer than kMostSeconds of the processor.
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -9,6 +12,26 @@
 #include <vector>
 
 #include "fuzz_target.hpp"
+
+namespace {
+
+#if defined(__SANITIZE_ADDRESS__) || defined(_GLIBCXX_DEBUG)
+constexpr rlim_t kMostSeconds = 60;
+#else
+constexpr rlim_t kMostSeconds = 15;
+#endif
+
+/// From here on; the signal SIGXCPU ends the program.
+void limit_time() {
+    rusage used{};
+    getrusage(RUSAGE_SELF, &used);
+    rlimit limit{};
+    getrlimit(RLIMIT_CPU, &limit);
+    limit.rlim_cur = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + kMostSeconds;
+    setrlimit(RLIMIT_CPU, &limit);
+}
+
+}  // namespace
 
 int main(int argc, char** argv) {
     namespace fs = std::filesystem;
@@ -29,6 +52,7 @@ int main(int argc, char** argv) {
             return 1;
         }
         const std::string bytes((std::istreambuf_iterator<char>(file)), {});
+        limit_time();
         LLVMFuzzerTestOneInput(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
     }
     std::printf("%zu files\n", files.size());

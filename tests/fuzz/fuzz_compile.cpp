@@ -1,0 +1,42 @@
+// Specs of at most 10 KB through all stages and back ends: an answer comes soon, and no text is out of proportion.
+// Bytes that begin with "spec" are the spec; others decide on a deep random one. How long an input may take is up to
+// libFuzzer's -timeout, and to replay.cpp.
+#include "deep_spec.hpp"
+#include "diag/render.hpp"
+#include "driver/compile.hpp"
+#include "fuzz_target.hpp"
+
+namespace {
+
+using namespace etlc;
+
+/// Many times what any answer needs: a text that grows with the tree of a formula is far larger.
+constexpr std::size_t kMostText = 8'000'000;
+constexpr std::size_t kMostMessage = 20'000;
+
+void require_proportion(const source::File& file, const diag::Sink& sink) {
+    for (const diag::Diagnostic& d : sink.sorted())
+        fuzz::require(d.message.size() < kMostMessage, "a message has a sensible length");
+    fuzz::require(diag::render_text(file, sink).size() < kMostText, "so have all of them");
+    fuzz::require(diag::render_json(file, sink).size() < kMostText, "and as JSON");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    std::string_view text = fuzz::text(bytes, size).substr(0, fuzz::kMostSpecBytes);
+    const bool is_text = text.starts_with("spec");
+    if (is_text && text.find("load") != std::string_view::npos) return 0;  // no files but those of the test
+    const source::File file("a.etl", is_text ? std::string(text) : fuzz::deep_spec(bytes, size));
+    for (const auto& [stage, summary] : driver::emittable()) {
+        driver::Request request;
+        request.emit = stage;
+        request.values = stage == "dot" ? check::Values::boolean : check::Values::robustness;
+        diag::Sink sink;
+        const auto output = driver::emit(file, request, sink);
+        fuzz::require(output.has_value() != sink.has_errors(), "there is an output or an error");
+        fuzz::require(!output || output->text.size() < kMostText, "an output has a sensible length");
+        require_proportion(file, sink);
+    }
+    return 0;
+}
