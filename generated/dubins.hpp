@@ -173,7 +173,7 @@ class Monitor {
     at_a_ = etlmon::kUnmeasured;
     at_b_ = etlmon::kUnmeasured;
     near_c_ = etlmon::kUnmeasured;
-    missing_steps_ = 0;
+    incomplete = 0;
   }
 
   /// One call, one time step.
@@ -192,7 +192,7 @@ class Monitor {
   uint32_t nearest_near_c() const noexcept { return near_c_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
-  uint32_t missing_steps() const noexcept { return missing_steps_; }
+  uint32_t missing_steps() const noexcept { return incomplete; }
 
  private:
   using Value = etlmon::Value;
@@ -205,9 +205,9 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    Value at_a;
-    Value at_b;
-    Value near_c;
+    etlmon::Value at_a;
+    etlmon::Value at_b;
+    etlmon::Value near_c;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.
@@ -234,7 +234,7 @@ class Monitor {
         etlmon::key_of(0.732f)});
     missing |= etlmon::is_nan(near_c_.delta);
 
-    if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;
+    if (missing && incomplete != 0xffffffffu) ++incomplete;
     return now;
   }
 
@@ -244,33 +244,33 @@ class Monitor {
     using etlmon::max_of;
     using etlmon::min_of;
 
-    const Value not_near_c = negate(now.near_c);
+    const Value not_near_c = etlmon::negate(now.near_c);
 
     // dubins.etl:25: F at_a
     reach_ = max_of(reach_, now.at_a);
-    const Reading reach = {reach_, reach_.low, max_of(reach_.high, etlmon::key_of(0.243f))};
+    const Reading reach_reading = {reach_, reach_.low, max_of(reach_.high, etlmon::key_of(0.243f))};
 
     // dubins.etl:26: G !near_c
     avoid_ = min_of(avoid_, not_near_c);
-    const Reading avoid = {avoid_, min_of(avoid_.low, etlmon::key_of(-0.732f)), avoid_.high};
+    const Reading avoid_reading = {avoid_, min_of(avoid_.low, etlmon::key_of(-0.732f)), avoid_.high};
 
     // dubins.etl:27: F at_a && G !near_c
-    const Reading reach_avoid = min_of(reach, avoid);
+    const Reading reach_avoid_reading = min_of(reach_reading, avoid_reading);
 
     // dubins.etl:28: F (at_a && F at_b)
     sequential_owing_1_ = max_of(sequential_owing_1_, now.at_a);
     sequential_met_ = max_of(sequential_met_, min_of(sequential_owing_1_, now.at_b));
-    const Reading sequential = {
+    const Reading sequential_reading = {
       sequential_met_,
       sequential_met_.low,
       max_of(etlmon::key_of(0.223f), sequential_met_.high)
     };
 
     Verdicts verdicts;
-    verdicts.reach = etlmon::prefix_verdict(reach);
-    verdicts.avoid = etlmon::prefix_verdict(avoid);
-    verdicts.reach_avoid = etlmon::prefix_verdict(reach_avoid);
-    verdicts.sequential = etlmon::prefix_verdict(sequential);
+    verdicts.reach = etlmon::prefix_verdict(reach_reading);
+    verdicts.avoid = etlmon::prefix_verdict(avoid_reading);
+    verdicts.reach_avoid = etlmon::prefix_verdict(reach_avoid_reading);
+    verdicts.sequential = etlmon::prefix_verdict(sequential_reading);
     return verdicts;
   }
 
@@ -282,7 +282,7 @@ class Monitor {
   etlmon::Measured at_a_;                // telemetry
   etlmon::Measured at_b_;                // telemetry
   etlmon::Measured near_c_;              // telemetry
-  uint32_t missing_steps_;               // saturates
+  uint32_t incomplete;                   // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

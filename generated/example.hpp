@@ -59,7 +59,7 @@ class Monitor {
   void reset() noexcept {
     stays_ = etlmon::kTrue;
     near_goal_ = etlmon::kUnmeasured;
-    missing_steps_ = 0;
+    incomplete = 0;
   }
 
   /// One call, one time step.
@@ -72,7 +72,7 @@ class Monitor {
   uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
 
   /// Steps on which some predicate or bool input was unknown; saturates.
-  uint32_t missing_steps() const noexcept { return missing_steps_; }
+  uint32_t missing_steps() const noexcept { return incomplete; }
 
  private:
   using Value = etlmon::Value;
@@ -85,7 +85,7 @@ class Monitor {
 
   /// What this step says about each predicate.
   struct Atoms {
-    Value near_goal;
+    etlmon::Value near_goal;
   };
 
   /// The robustness of every predicate at this step; counts the step if something was missing.
@@ -99,7 +99,7 @@ class Monitor {
         etlmon::key_of(0.409f)});
     missing |= etlmon::is_nan(near_goal_.delta);
 
-    if (missing && missing_steps_ != 0xffffffffu) ++missing_steps_;
+    if (missing && incomplete != 0xffffffffu) ++incomplete;
     return now;
   }
 
@@ -111,17 +111,17 @@ class Monitor {
 
     // example.etl:10: G near_goal
     stays_ = min_of(stays_, now.near_goal);
-    const Reading stays = {stays_, etlmon::kBottom, stays_.high};
+    const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
 
     Verdicts verdicts;
-    verdicts.stays = etlmon::prefix_verdict(stays);
+    verdicts.stays = etlmon::prefix_verdict(stays_reading);
     return verdicts;
   }
 
  private:
   etlmon::Register stays_;      // G near_goal
   etlmon::Measured near_goal_;  // telemetry
-  uint32_t missing_steps_;      // saturates
+  uint32_t incomplete;          // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
