@@ -53,9 +53,11 @@ thresholds() {  # METHOD ETLC SPEC TRUTH
     python3 - "$@" <<'END'
 import json, os, sys
 method, etlc, spec, truth = [os.fsencode(a).decode("utf-8", "replace") for a in sys.argv[1:5]]
-entry = {"method": method, "alpha": 0.5, "epsilon": 1, "n": 3, "k": 2, "scores": [0.5, 1, 1.5], "predicate": "x < ",
+entry = {"method": method, "alpha": 0.5, "epsilon": 1, "n": 3, "k": 2, "scores": [0.5, 0.99999997, 1.5], "predicate": "x < ",
          "truth": truth, "targets": {}}
-print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monitors": {}, "episodes": [], "etlc": etlc}))
+episodes = ["%016x" % i for i in range(3)]
+print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monitors": {}, "episodes": episodes,
+                  "etlc": etlc}))
 END
 }
 

@@ -40,7 +40,7 @@ bool show_refused(const char* what, const std::array<Tally::Cell, kDepths>& row,
     return good;
 }
 
-int report(const Tally& tally) {
+int report(const Effort& effort, const Tally& tally) {
     for (const Finding& finding : tally.findings) show(finding);
     bool good = show_refused("prefix, windows to 40", tally.long_windows, kMayBeRefused);
     good &= show_refused("the same, mostly future", tally.mostly_future, kMayBeRefused);
@@ -78,5 +78,5 @@ int main(int argc, char** argv) {
     try_pairs(effort, tally);
     try_plans(effort, tally);
     try_compiled(effort, tally);
-    return report(tally);
+    return report(effort, tally);
 }
