@@ -223,6 +223,13 @@ done
 "$1" "${flags[@]}" -fsyntax-only -I. -I "$runtime" spaces_boolean.cpp
 "${@: -1}" "${flags[@]}" -fsyntax-only -I. -I "$runtime" spaces_robustness.cpp
 
+for name in class linux printf a::class std etlmon::x a::std NULL _a a_ a__b a:: ::a a::::b 1a; do
+    status=0
+    "$etlc" small.etl --namespace "$name" -o refused.hpp 2>words.txt || status=$?
+    [ $status = 2 ] && [ ! -e refused.hpp ] || { echo "FAILED: --namespace $name is not refused"; exit 1; }
+done
+"$etlc" small.etl --namespace acme::printf -o nested.hpp  # not at global scope
+
 # ---- as lets, which the code does not mention
 
 awk '{ print "zz" NR }' names.txt >others.txt
