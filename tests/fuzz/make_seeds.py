@@ -80,11 +80,7 @@ for name, text in {
     "iff_chain.etl": "monitor m = " + " <-> ".join(f"x > {i}" for i in range(100)) + ";\n",
     "nested_refusals.etl": "let a0 = p;\n" + "".join(f"let a{i + 1} = F a{i} && !(G a{i});\n" for i in range(40))
     + "monitor m = a40;\n",
-    "windows.etl": "monitor m = G F[100, 1000] (p U q);\n",
     "long_windows.etl": "monitor m = G F[1000, 100000] (p U q);\n",
-    "longest_windows.etl": "monitor m = F G[1073741823, 2147483646] ((F p) U (G q));\n",
-    "releases.etl": "monitor m = " + "(p R (q R " * 60 + "x > 0.25" + "))" * 60 + ";\n",
-    "many.etl": "".join(f"monitor m{i} = G F[{i}, {i + 100}] (p U q);\n" for i in range(200)),
 }.items():
     seed("fuzz_compile", name, (HEAD + text).encode())
 CHOICES = random.Random(15)

@@ -64,7 +64,7 @@ for depth in 20 24 200; do
   { echo "let c0 = x > 0;"; times $depth "let c@j = F c@i && !(G c@i);"; echo "monitor m = c$depth;"; } |
     answers 1 nested_$depth
 done
-echo "monitor m = G F[100,1000] (p0 U p1);" | answers 1 windows
+echo "monitor m = G F[100,1000] (p0 U p1);" | answers 0 windows
 echo "monitor m = G F[1000,100000] (p0 U p1);" | answers 1 long_windows
 echo "monitor m = F G[1073741823,2147483646] ((F p0) U (G p1));" | answers 1 longest_windows
 { echo "monitor m = "; times 40 "F G "; echo "p0;"; } | answers 1 alternating
