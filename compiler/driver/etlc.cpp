@@ -185,8 +185,8 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
-    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
-                                    source::visible_lines(mistake), app.get_name()));
+    driver::print_error(
+        fmt::format("etlc: {}\nRun {} --help for more information.\n", source::visible_lines(mistake), app.get_name()));
     return driver::kWrongCall;
 }
 

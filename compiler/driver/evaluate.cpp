@@ -60,8 +60,7 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     const bool prints = evaluation.json != kStandardOutput && evaluation.csv != kStandardOutput;
     return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(*result))) &&
            (evaluation.csv.empty() || files.add(evaluation.csv, evaluate::csv(*result))) &&
-           (!prints || files.add(std::string(kStandardOutput),
-                                 source::visible_lines(evaluate::table(*result)))) &&
+           (!prints || files.add(std::string(kStandardOutput), source::visible_lines(evaluate::table(*result)))) &&
            files.commit();
 }
 
