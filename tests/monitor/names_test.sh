@@ -35,19 +35,16 @@ monitor again = G[1, 5] X (O[0, 2] O aim W (F low U F[1, 3] on));
 monitor flags = G[1, 25] (on -> X (near U[0, 12] (low && F[0, 15] !on)));
 sliding monitor soon = F[0, 3] (y * y > 1 S[1, 4] min l2([x, y], goal) < 1);
 END
-cat >thresholds.json <<'END'
-{"format": 1, "spec": "base", "predicates": {"low": {"method": "adaptive", "alpha": 0.25, "epsilon": 1, "n": 3, "k": 3,
- "scores": [0.5, 0.75, 1], "predicate": "x <= ", "truth": "y < 1", "targets": {}}}, "monitors": {}, "episodes": [],
- "etlc": "0.1.0"}
-END
 echo "truth low = y < 1;" >>base.txt
+{ echo "spec base;"; cat base.txt; } >base.etl
+for x in 0.5 0.75 1; do printf 'x,y\n%s,0\n' $x >demonstration_$x.csv; done
+"$etlc" calibrate base.etl --data demonstration_*.csv -o thresholds.json >report.txt 2>&1 || { cat report.txt >&2; exit 1; }
 header() {
     "$etlc" "$1" --thresholds thresholds.json "${limits[@]}" -o "$2" "${@:3}" 2>words.txt || { head -20 words.txt >&2; exit 1; }
 }
 
 # ---- the identifiers
 
-{ echo "spec base;"; cat base.txt; } >base.etl
 header base.etl robustness.hpp
 header base.etl boolean.hpp --values boolean
 header base.etl stored.hpp --values boolean --inline-targets 0

@@ -36,15 +36,15 @@ table_until 3500 G (p U[2, 6] (q && F[0, 8] p))
 pending 3500 G (p -> F[0, 30] (q && F[0, 25] p))
 pending_until 3500 G[0, 39] (p U[4, 30] (q && G[2, 9] p))
 pending_machine 3500 G (p -> F[0, 60] (q U[2, inf] p)) || G (q -> F[3, 70] (p R q))
-F_100000 3500 F[0, 100000] p
-s_F_100000 200020 F[0, 100000] p
-G_F_100000 200020 G F[0, 100000] p
-U_10000 3500 p U[0, 10000] q
-s_U_10000 100020 p U[0, 10000] q
-G_U_10000 100020 G (p U[0, 10000] q)
+f_100000 3500 F[0, 100000] p
+s_f_100000 200020 F[0, 100000] p
+always_f_100000 200020 G F[0, 100000] p
+u_10000 3500 p U[0, 10000] q
+s_u_10000 100020 p U[0, 10000] q
+always_u_10000 100020 G (p U[0, 10000] q)
 nested_1000 3500 G[0, 1000] (p -> F[0, 100] q)
 s_nested_1000 3500 G[0, 1000] (p -> F[0, 100] q)
-G_nested_1000 3500 G G[0, 1000] (p -> F[0, 100] q)
+always_nested_1000 3500 G G[0, 1000] (p -> F[0, 100] q)
 END
 
 runs=
@@ -61,7 +61,10 @@ printf '#include "worst_step.hpp"\nint main() {\n%s}\n' "$runs" >>main.cpp
 "$cxx" -std=c++17 -O2 -fstack-usage -I. -I"$here/driver" -I"$here/../../runtime/include" main.cpp -o main
 valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main >states 2>valgrind.log || { cat valgrind.log; exit 1; }
 
-sed -nE 's/.*with Monitor = ([A-Za-z0-9_]+)::Monitor.*\t([0-9]+)\t.*/\1 \2/p; s/.* ([A-Za-z0-9_]+)::Monitor::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p' ./*.su >frames
+# The class lies in an inline namespace that is named after the flags.
+class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::Monitor'
+sed -nE "s/.*with Monitor = $class.*\t([0-9]+)\t.*/\1 \2/p; s/.* $class::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p" \
+    ./*.su >frames
 awk -v frame="$frame" '
 NR == FNR { stated[$1] = $7; next }
 { taken[$1] += $2 }
