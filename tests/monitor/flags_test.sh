@@ -1,0 +1,148 @@
+#!/usr/bin/env bash
+# flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags compiles. Objects of two sets share no inline function
+# of ours, unless the flags leave the code as it is; then it is the same to the byte. A unit answers the same bits alone and linked with another, in
+# either order, also where that one is made for a CPU that this machine is not.
+set -euo pipefail
+etlc=$1 gxx=$2 clangxx=$3
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+runtime=$here/../../runtime/include
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+# Every family of kernels: rows in lanes and in columns, int8 that is widened and int8 in integers,
+# float32 where those leave a comparison open; and state of every kind: a window, a machine, a past operator.
+awk 'BEGIN {
+  srand(3)
+  print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];\ninput on : bool;"
+  printf "target a = ["
+  for (k = 0; k < 9; ++k) { printf "%s[", k ? ", " : ""; for (i = 0; i < 70; ++i) printf "%s%.4f", i ? ", " : "", 2 * rand() - 1; printf "]" }
+  printf "];\ntarget b = ["
+  for (k = 0; k < 6; ++k) { printf "%s[", k ? ", " : ""; for (i = 0; i < 5; ++i) printf "%s%.4f", i ? ", " : "", 2 * rand() - 1; printf "]" }
+  print "];"
+  print "predicate near = mean angular(z, a) <= 1.57;\npredicate far = kth(3) l1(y, b) >= 2.5;"
+  print "predicate bent = max mahalanobis([2, 1, 1, 0.5, 3])(y, b) < 2.2;"
+  print "predicate root = sqrt(x) + x / 3 <= 3.3;"
+  print "monitor safe = G (near -> F[0, 3] (bent || root));\nmonitor late = F (far && G[0, 2] bent) || on U root;"
+  print "sliding monitor held = G[0, 4] (root S near) && O[1, 3] far;"
+}' >flags.etl
+"$etlc" flags.etl --targets-as i8 -o flags.hpp
+grep -q measure_bytes flags.hpp && grep -q measure_scaled flags.hpp || fail "no int8, or none that is widened"
+
+cat >unit.cpp <<'END'
+#include <initializer_list>
+
+#include "flags.hpp"
+
+extern "C" unsigned ANSWERS(unsigned* to);
+unsigned ANSWERS(unsigned* to) {
+  flags::Monitor monitor;
+  unsigned state = 5, n = 0;
+  for (int step = 0; step < 25; ++step) {
+    float z[70];
+    uint16_t y[5];
+    for (float& element : z) element = static_cast<float>(static_cast<int>((state = state * 1664525u + 1013904223u) >> 16) - 32768) / 30000.0f;
+    for (uint16_t& element : y) element = static_cast<uint16_t>(0x3800u + ((state = state * 1664525u + 1013904223u) >> 22));
+    flags::Inputs in;
+    if (step % 7 != 6) in.z = z;
+    in.y = y;
+    in.x = static_cast<float>((state >> 8) % 90u) / 10.0f;
+    in.on = step % 3 == 0;
+    const auto verdicts = monitor.step(in);
+    for (const etlmon::Verdict& v : {verdicts.safe, verdicts.late, verdicts.held}) {
+      to[n++] = etlmon::bits_of(v.lower), to[n++] = etlmon::bits_of(v.robustness);
+      to[n++] = etlmon::bits_of(v.upper), to[n++] = v.status;
+    }
+  }
+  return n;
+}
+END
+cat >main.cpp <<'END'
+#include <cstdio>
+extern "C" unsigned ANSWERS(unsigned* to);
+int main() {
+  static unsigned bits[1000];
+  const unsigned n = ANSWERS(bits);
+  for (unsigned i = 0; i < n; ++i) std::printf("%08x%c", bits[i], i % 12 == 11 ? '\n' : ' ');
+}
+END
+
+# name, compiler, flags. What is named as_NAME leaves the code of NAME as it is. Without optimisation what has to be inlined is inlined too.
+sets() {
+  cat <<'END'
+base g++ -O2
+as_base g++ -O2 -std=gnu++17 -Wall
+tiny g++ -Os
+debug g++ -O0
+fast g++ -O2 -ffast-math
+finite g++ -O2 -ffinite-math-only
+tiny_fast g++ -Os -ffast-math
+plain g++ -O2 -DETLMON_NO_DISPATCH
+scalar g++ -O2 -DETLMON_NO_PACKS
+v2 g++ -O0 -march=x86-64-v2
+v3 g++ -O2 -march=x86-64-v3
+v4 g++ -O1 -march=x86-64-v4
+as_v4 g++ -O1 -march=skylake-avx512 -mtune=generic
+avx2 g++ -O0 -mavx2
+fma g++ -O0 -mfma
+avx2_fma g++ -O0 -mavx2 -mfma
+v3_no_fma g++ -O0 -march=x86-64-v3 -mno-fma
+v3_no_f16c g++ -O0 -march=x86-64-v3 -mno-f16c
+avx512 g++ -O0 -mavx512f -mavx512vl -mavx512bw -mavx512dq
+avx512f g++ -O0 -mavx512f
+v4_no_fma g++ -O0 -march=skylake-avx512 -mno-fma
+v4_no_f16c g++ -O0 -march=skylake-avx512 -mno-f16c
+v4_no_vl g++ -O0 -march=skylake-avx512 -mno-avx512vl
+vnni g++ -O0 -march=x86-64-v4 -mavx512vnni
+clang clang++ -O2
+clang_debug clang++ -O0
+clang_tiny clang++ -Os
+clang_fast clang++ -O2 -ffast-math
+clang_v3 clang++ -O0 -march=x86-64-v3
+clang_v4 clang++ -O0 -march=skylake-avx512
+clang_v4_no_fma clang++ -O0 -march=skylake-avx512 -mno-fma
+clang_avx512 clang++ -O0 -mavx512f -mavx512vl -mavx512bw -mavx512dq
+END
+}
+
+while read -r name cxx flags; do
+  [ "$cxx" = g++ ] && cxx=$gxx || cxx=$clangxx
+  # shellcheck disable=SC2086
+  "$cxx" -std=c++17 $flags -DANSWERS="answers_$name" -I "$runtime" -I . -c unit.cpp -o "$name.o" 2>errors ||
+    fail "$name: $cxx $flags does not compile: $(head -n 3 errors)"
+done < <(sets)
+
+# Code that the linker keeps one copy of, of a name.
+for object in *.o; do
+  nm --defined-only "$object" | awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'
+done | sort >weak.txt
+[ "$(wc -l <weak.txt)" -gt 100 ] || fail "no inline function is to be seen in the objects"
+awk '$2 !~ /^as_/ { if ($1 == last) { print $1 " of " before " and of " $2; bad = 1 } last = $1; before = $2 } END { exit bad }' weak.txt >shared.txt ||
+  fail "one name for the code of different flags: $(head -n 2 shared.txt | c++filt)"
+code() { objdump -d --no-show-raw-insn "$1.o" | sed "1,6d; s/answers_$1/answers/g; s/^.*Disassembly.*answers.*//"; }
+for same in as_*.o; do
+  same=${same%.o}
+  cmp <(code "$same") <(code "${same#as_}") || fail "$same and ${same#as_} have the names of one another, and other code"
+done
+
+# Units together. Where this machine cannot run one, it is still linked.
+run_with() {  # UNIT OBJECT...: what the unit answers in a program of these objects
+  local unit=$1
+  shift
+  "$gxx" "main_$unit.o" "$@" -o program
+  ./program
+}
+ran=0
+for unit in base tiny fast clang; do
+  "$gxx" -O0 -DANSWERS="answers_$unit" -c main.cpp -o "main_$unit.o"
+  run_with "$unit" "$unit.o" >"$unit.alone" 2>/dev/null || continue
+  [ "$(wc -l <"$unit.alone")" -eq 25 ] || fail "$unit does not answer"
+  for other in base tiny_fast v4 clang_v4; do
+    [ "$other" != "$unit" ] || continue
+    cmp "$unit.alone" <(run_with "$unit" "$unit.o" "$other.o") || fail "$unit answers otherwise before $other"
+    cmp "$unit.alone" <(run_with "$unit" "$other.o" "$unit.o") || fail "$unit answers otherwise after $other"
+    ran=$((ran + 1))
+  done
+done
+[ "$ran" -eq 15 ] || fail "only $ran pairs could be run"
