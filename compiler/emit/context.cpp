@@ -118,29 +118,37 @@ std::string Context::literal(plan::Value value) const {
     return fmt::format("Value{{{}, {}}}", literal(value.low), literal(value.high));
 }
 
-bool Context::lazy(plan::Slot slot) const {
-    if (!boolean()) return false;
-    const plan::Stream& stream = plan.streams[slot];
-    switch (stream.op) {
-        case StreamOp::predicate:
-        case StreamOp::flag: return true;
-        case StreamOp::negation:
-        case StreamOp::conjunction:
-        case StreamOp::disjunction:
-        case StreamOp::within:
-            return std::any_of(stream.operands.begin(), stream.operands.end(),
-                               [&](plan::Slot operand) { return lazy(operand); });
-        default: return false;
+std::vector<Demand> demands(const plan::Plan& plan) {
+    constexpr std::uint64_t kMuch = std::uint64_t{1} << 40U;  // of operands that share parts, counted in each
+    constexpr std::uint64_t kManyAsks = 16;
+    std::vector<int> users(plan.streams.size());
+    for (const plan::Stream& stream : plan.streams)
+        for (plan::Slot operand : stream.operands) ++users[operand];
+    std::vector<Demand> result(plan.streams.size());
+    if (plan.values != check::Values::boolean) return result;
+    for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot) {  // operands come first
+        const plan::Stream& stream = plan.streams[slot];
+        Demand& demand = result[slot];
+        switch (stream.op) {
+            case StreamOp::predicate: demand = {true, plan::measured_elements(*plan.model, stream.index)}; break;
+            case StreamOp::flag: demand.lazy = true; break;
+            case StreamOp::negation:
+            case StreamOp::conjunction:
+            case StreamOp::disjunction:
+            case StreamOp::within:
+                demand.asks = 0;
+                for (plan::Slot operand : stream.operands) {
+                    demand.asks += result[operand].keeps ? 1 : result[operand].asks;
+                    demand.lazy = demand.lazy || result[operand].lazy;
+                    demand.work = std::min(kMuch, demand.work + result[operand].work);
+                }
+                if (stream.op == StreamOp::within) demand.asks = 1;  // keeps its value anyway
+                demand.keeps = demand.lazy && users[slot] > 1 && demand.asks > kManyAsks;
+                break;
+            default: break;
+        }
     }
-}
-
-std::uint64_t Context::work(plan::Slot slot) const {
-    const plan::Stream& stream = plan.streams[slot];
-    if (!lazy(slot)) return 0;
-    if (stream.op == StreamOp::predicate) return plan::measured_elements(model, stream.index);
-    std::uint64_t sum = 0;
-    for (plan::Slot operand : stream.operands) sum += work(operand);
-    return sum;
+    return result;
 }
 
 std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {

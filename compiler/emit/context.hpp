@@ -26,6 +26,15 @@ inline Spelling truth_spelling() {
     return {"etlmon::kYes", "etlmon::kNo", "true", "false", "Value"};
 }
 
+/// What a Boolean monitor finds out of a stream when it is asked for.
+struct Demand {
+    bool lazy = false;       ///< an atom, or made of such
+    std::uint64_t work = 0;  ///< target elements that it may have to measure
+    std::uint64_t asks = 1;  ///< of atoms and kept values, at most
+    bool keeps = false;      ///< what it was found to be, since several ask: else asking doubles with each level
+};
+std::vector<Demand> demands(const plan::Plan& plan);
+
 struct Context {
     const plan::Plan& plan;
     const ir::Graph& graph;
@@ -36,6 +45,7 @@ struct Context {
     std::string targets_file;  ///< file name of the stored target sets, without folders
     Spelling spelling;
     plan::Dependents dependents;
+    std::vector<Demand> demand = demands(plan);  ///< per stream
 
     bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
@@ -48,9 +58,11 @@ struct Context {
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
-    bool lazy(plan::Slot slot) const;
+    bool lazy(plan::Slot slot) const { return demand[slot].lazy; }
+    /// A lazy combination that is found out once a step.
+    bool keeps(plan::Slot slot) const { return demand[slot].keeps; }
     /// Target elements that a lazy stream may have to measure.
-    std::uint64_t work(plan::Slot slot) const;
+    std::uint64_t work(plan::Slot slot) const { return demand[slot].work; }
     /// In a Boolean monitor, the cheapest to find out first; else as they are.
     std::vector<plan::Slot> by_work(std::vector<plan::Slot> slots) const;
     /// `now.at_a`, a local, a register or a constant: what stands for the stream in judge().

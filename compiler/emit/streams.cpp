@@ -76,6 +76,12 @@ std::string lazy_within(const Context& context, const Stream& stream, const std:
                        context.literal(stream.value));
 }
 
+/// The value of a statement, found out when it is first asked for.
+std::string lazy_value(std::string statement, const std::string& name) {
+    statement.pop_back();
+    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return Value({}); }});", name, statement);
+}
+
 /// What the stream's value is computed from; empty for atoms and constants, which need no statement.
 std::string statement(const Context& context, Slot slot, const std::string& local) {
     const Stream& stream = context.plan.streams[slot];
@@ -154,6 +160,7 @@ Statement whole_statement(const Context& context, Slot slot) {
     const std::string& name = local->second;
     const Stream& stream = context.plan.streams[slot];
     if (context.lazy(slot) && stream.op == StreamOp::within) return {lazy_within(context, stream, name), ""};
+    if (context.keeps(slot)) return {lazy_value(statement(context, slot, ""), name), ""};
     if (context.lazy(slot)) return {statement(context, slot, "const auto " + name + " = "), ""};
     const std::string condition = open_monitors(context, context.dependents.of_stream[slot]);
     const bool remembers = context.names.stream_member.count(slot) > 0;
