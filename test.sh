@@ -1,21 +1,24 @@
 #!/usr/bin/env bash
-# ./test.sh [PRESET...]: installs what is missing, then builds and tests each preset of CMakePresets.json named (default: all).
-# The last line counts the tests. With CI=true in the environment warnings are errors, and a missing tool is a failure.
+# ./test.sh [PRESET...]: installs what is missing, then builds and tests each preset of
+# CMakePresets.json named (default: all). The last line counts the tests. With CI=true in the
+# environment warnings are errors, and a missing tool is a failure.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-# The folders of tests/ that a preset builds and runs. The release build runs all, in one go, so that the longest begin first. The tests of the runtime and of generated code compile what
-# they test themselves, with g++ and clang++ and with sanitizers; so the other builds run those of etlc.
+# The folders of tests/ that a preset builds and runs. The release build runs all, in one go, so
+# that the longest begin first. The tests of the runtime and of generated code compile what they
+# test themselves, with g++ and clang++ and with sanitizers; so the other build runs those of etlc.
 declare -A folders=(
     [release]="."
-    [debug]="unit spec calibrate fuzz"
-    [clang]="unit spec"
-    [fuzz]="fuzz"
+    [sanitized]="unit spec calibrate fuzz"
 )
 presets=("$@")
-[ ${#presets[@]} -gt 0 ] || presets=(release debug clang fuzz)
+[ ${#presets[@]} -gt 0 ] || presets=(release sanitized)
 for preset in "${presets[@]}"; do
-    [ -n "${folders[$preset]:-}" ] || { echo "test.sh: there is no preset $preset, only: ${!folders[*]}" >&2; exit 2; }
+    if [ -z "${folders[$preset]:-}" ]; then
+        echo "test.sh: there is no preset $preset, only: ${!folders[*]}" >&2
+        exit 2
+    fi
 done
 
 cmake/install_packages.sh build test
@@ -28,10 +31,14 @@ failed=0
 # run_folder PRESET FOLDER: adds its tests to the counts.
 run_folder() {
     local log=build/$1/tests/$2/ctest.log total bad
-    ctest --test-dir "build/$1/tests/$2" --parallel "$(nproc)" --output-on-failure --no-tests=error --timeout 300 >"$log" 2>&1 || cat "$log"
-    read -r bad total < <(sed -nE 's/.*tests passed, ([0-9]+) tests failed out of ([0-9]+)/\1 \2/p' "$log") || { bad=1 total=1; }
+    ctest --test-dir "build/$1/tests/$2" --parallel "$(nproc)" --output-on-failure \
+        --no-tests=error --timeout 300 >"$log" 2>&1 || cat "$log"
+    read -r bad total < <(
+        sed -nE 's/.*tests passed, ([0-9]+) tests failed out of ([0-9]+)/\1 \2/p' "$log"
+    ) || { bad=1 total=1; }
     failed=$((failed + bad)) passed=$((passed + total - bad))
-    printf '%-8s %-8s %5d passed %5d failed  %4d s\n' "$1" "${2/#./all}" $((total - bad)) "$bad" $((SECONDS - start))
+    printf '%-9s %-9s %5d passed %5d failed  %4d s\n' \
+        "$1" "${2/#./all}" $((total - bad)) "$bad" $((SECONDS - start))
 }
 
 for preset in "${presets[@]}"; do
@@ -42,7 +49,7 @@ for preset in "${presets[@]}"; do
         [ "$folder" = . ] && targets+=(all) || targets+=("tests_$folder")
     done
     build "$preset" "${targets[@]}"
-    printf '%-8s %-8s %33d s\n' "$preset" built $((SECONDS - start))
+    printf '%-9s %-9s %33d s\n' "$preset" built $((SECONDS - start))
     for folder in ${folders[$preset]}; do
         start=$SECONDS
         run_folder "$preset" "$folder"

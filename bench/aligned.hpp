@@ -15,7 +15,9 @@ struct AlignedAllocator {
     AlignedAllocator() = default;
     template <class Other>
     AlignedAllocator(const AlignedAllocator<Other>&) {}
-    T* allocate(std::size_t n) { return static_cast<T*>(::operator new(n * sizeof(T), kAlignment)); }
+    T* allocate(std::size_t n) {
+        return static_cast<T*>(::operator new(n * sizeof(T), kAlignment));
+    }
     void deallocate(T* p, std::size_t) { ::operator delete(p, kAlignment); }
     template <class Other>
     bool operator==(const AlignedAllocator<Other>&) const {

@@ -30,7 +30,8 @@ double cold_call(const Call& call) {
     };
     sweep_caches();
     double clock = timed([] {});
-    for (int i = 0; i < 20; ++i) clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
+    for (int i = 0; i < 20; ++i)
+        clock = std::min(clock, timed([] {}));  // nothing but the clock is warm again
     return timed(call) - clock;
 }
 

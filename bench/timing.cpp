@@ -48,7 +48,8 @@ double Series::spread() const {
 
 std::vector<Series> measure(const std::vector<Routine>& routines, Effort effort) {
     std::vector<int> passes;
-    for (const Routine& routine : routines) passes.push_back(passes_for(routine, effort.seconds_each));
+    for (const Routine& routine : routines)
+        passes.push_back(passes_for(routine, effort.seconds_each));
     std::vector<Series> series(routines.size());
     for (int round = 0; round < effort.rounds; ++round) {
         for (std::size_t r = 0; r < routines.size(); ++r) {

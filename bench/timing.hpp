@@ -1,7 +1,8 @@
 // Times of several routines that are compared with one another.
-// Takes: routines that each go over the same number of steps. Gives: nanoseconds a step, and ratios.
-// Keeps true: the routines run in turn, round after round, so that what the machine does meanwhile hits all of them;
-// figures are medians over the rounds, and a ratio is the median of the rounds' ratios.
+// Takes: routines that each go over the same number of steps. Gives: nanoseconds a step, and
+// ratios. Keeps true: the routines run in turn, round after round, so that what the machine does
+// meanwhile hits all of them; figures are medians over the rounds, and a ratio is the median of the
+// rounds' ratios.
 #pragma once
 
 #include <cstddef>
@@ -40,16 +41,17 @@ inline void settle_memory() {
     asm volatile("" ::: "memory");
 }
 
-/// A monitor, or an operator of one, step by step. sample(i) brings what step i takes, which a control loop has at
-/// hand.
+/// A monitor, or an operator of one, step by step. sample(i) brings what step i takes, which a
+/// control loop has at hand.
 struct Stepped {
     std::function<void()> reset;
     std::function<void(std::size_t i)> sample;
     std::function<void()> step;
 };
 
-/// The slowest of `steps` calls of step(), less the cost of reading the clock, in nanoseconds. Each is timed in several
-/// passes, which begin with reset(), and its fastest time counts: so what the machine does meanwhile does not.
+/// The slowest of `steps` calls of step(), less the cost of reading the clock, in nanoseconds. Each
+/// is timed in several passes, which begin with reset(), and its fastest time counts: so what the
+/// machine does meanwhile does not.
 double worst_step(std::size_t steps, const Stepped& stepped);
 
 }  // namespace bench

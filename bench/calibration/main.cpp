@@ -1,7 +1,7 @@
-// What calibration costs beside reading: `etlc calibrate` over many episodes against libzip alone on the same files.
-// bench_calibrate FOLDER [--episodes N] [--frames N] [--dimension N] [--rounds N]: makes the episodes where the folder
-// does not have them, then runs both in turns. Prints seconds, their ratio, the most memory that etlc took, and whether
-// one thread gave the same bytes.
+// What calibration costs beside reading: `etlc calibrate` over many episodes against libzip alone
+// on the same files. bench_calibrate FOLDER [--episodes N] [--frames N] [--dimension N] [--rounds
+// N]: makes the episodes where the folder does not have them, then runs both in turns. Prints
+// seconds, their ratio, the most memory that etlc took, and whether one thread gave the same bytes.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <zip.h>
@@ -31,12 +31,13 @@ struct Size {
 
 /// Magic word, version 1, length and dictionary, padded to 64 bytes, as numpy.save writes them.
 std::string npy_header(const std::string& type, const std::string& shape) {
-    std::string dictionary = "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
+    std::string dictionary =
+        "{'descr': '" + type + "', 'fortran_order': False, 'shape': " + shape + ", }";
     dictionary.append(63 - (10 + dictionary.size()) % 64, ' ');
     dictionary += '\n';
     const auto length = static_cast<std::uint16_t>(dictionary.size());
-    return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xff) + static_cast<char>(length >> 8) +
-           dictionary;
+    return std::string("\x93NUMPY\x01\x00", 8) + static_cast<char>(length & 0xff) +
+           static_cast<char>(length >> 8) + dictionary;
 }
 
 std::string bytes_of(const std::vector<float>& values) {
@@ -44,7 +45,8 @@ std::string bytes_of(const std::vector<float>& values) {
 }
 
 /// Stored, as numpy.savez does.
-void write_npz(const fs::path& path, const std::vector<std::pair<std::string, std::string>>& members) {
+void write_npz(const fs::path& path,
+               const std::vector<std::pair<std::string, std::string>>& members) {
     zip_t* archive = zip_open(path.c_str(), ZIP_CREATE | ZIP_TRUNCATE, nullptr);
     if (archive == nullptr) throw std::runtime_error("cannot write " + path.string());
     for (const auto& [name, bytes] : members) {
@@ -66,10 +68,11 @@ void make_episodes(const fs::path& folder, const Size& size) {
     std::generate(targets.begin(), targets.end(), drawn);
     std::ofstream(folder / "near.npy", std::ios::binary)
         << npy_header("<f4", "(8, " + std::to_string(size.dimension) + ")") << bytes_of(targets);
-    std::ofstream(folder / "near.etl") << "spec near;\ninput z : f32[" << size.dimension
-                                       << "];\ntarget goal = load(\"near.npy\");\n"
-                                          "predicate near = min l2(z, goal) <= calibrated(conformal, alpha = 0.1);\n"
-                                          "monitor m = F near;\n";
+    std::ofstream(folder / "near.etl")
+        << "spec near;\ninput z : f32[" << size.dimension
+        << "];\ntarget goal = load(\"near.npy\");\n"
+           "predicate near = min l2(z, goal) <= calibrated(conformal, alpha = 0.1);\n"
+           "monitor m = F near;\n";
     const std::string frames = std::to_string(size.frames);
     fs::create_directories(folder / "episodes");
     for (std::uint32_t e = 0; e < size.episodes; ++e) {
@@ -109,8 +112,8 @@ std::uint64_t read_all(const fs::path& folder) {
 
 void calibrate(const fs::path& folder, const std::string& options, const std::string& output) {
     const std::string command = "cd '" + folder.string() +
-                                "' && '" ETLC_COMMAND "' calibrate near.etl --data episodes " + options + " -o " +
-                                output + " > report.txt";
+                                "' && '" ETLC_COMMAND "' calibrate near.etl --data episodes " +
+                                options + " -o " + output + " > report.txt";
     if (std::system(command.c_str()) != 0) throw std::runtime_error(command + " failed");
 }
 
@@ -141,7 +144,9 @@ int main(int argc, char** argv) {
     app.add_option("folder", folder, "where the episodes are, or are made")->required();
     app.add_option("--episodes", size.episodes)->capture_default_str()->check(CLI::PositiveNumber);
     app.add_option("--frames", size.frames)->capture_default_str()->check(CLI::PositiveNumber);
-    app.add_option("--dimension", size.dimension)->capture_default_str()->check(CLI::PositiveNumber);
+    app.add_option("--dimension", size.dimension)
+        ->capture_default_str()
+        ->check(CLI::PositiveNumber);
     app.add_option("--rounds", rounds, "figures are medians over them")->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
 
@@ -157,9 +162,12 @@ int main(int argc, char** argv) {
     }
     rusage children{};
     getrusage(RUSAGE_CHILDREN, &children);
-    std::printf("%.2f GB; seconds: libzip %.2f, etlc calibrate %.2f (one thread %.2f); %.2f times libzip\n",
-                static_cast<double>(bytes) * 1e-9, median(reading), median(all), median(one), median(ratios));
-    std::printf("etlc took at most %ld MB; one thread and all gave %s bytes\n", children.ru_maxrss / 1024,
-                content(folder / "one.json") == content(folder / "all.json") ? "the same" : "DIFFERENT");
+    std::printf(
+        "%.2f GB; seconds: libzip %.2f, etlc calibrate %.2f (one thread %.2f); %.2f times libzip\n",
+        static_cast<double>(bytes) * 1e-9, median(reading), median(all), median(one),
+        median(ratios));
+    std::printf(
+        "etlc took at most %ld MB; one thread and all gave %s bytes\n", children.ru_maxrss / 1024,
+        content(folder / "one.json") == content(folder / "all.json") ? "the same" : "DIFFERENT");
     return 0;
 }

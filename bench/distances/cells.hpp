@@ -1,6 +1,7 @@
 // The cells of the distance bench and what competes in them.
-// A contestant gives, per cell, a function that takes an embedding (D floats) and K x D row-major targets and returns
-// the smallest l2 distance; it prepares what it wants from the targets in setup, which is not timed.
+// A contestant gives, per cell, a function that takes an embedding (D floats) and K x D row-major
+// targets and returns the smallest l2 distance; it prepares what it wants from the targets in
+// setup, which is not timed.
 #pragma once
 
 #include <cstdint>
@@ -45,8 +46,8 @@ struct Entry {
     void (*repeat)(Points points, const float* targets, const void* state, std::uint64_t calls);
 };
 
-/// Calls one after the other, as a program has them that is compiled like the contestant: what the compiler can inline
-/// is part of the loop.
+/// Calls one after the other, as a program has them that is compiled like the contestant: what the
+/// compiler can inline is part of the loop.
 template <Nearest kNearest>
 void repeat(Points points, const float* targets, const void* state, std::uint64_t calls) {
     volatile float sink = 0;
@@ -66,7 +67,8 @@ struct Contestant {
 };
 
 /// |g|^2 of every row: for the form |z|^2 + |g|^2 - 2 z.g.
-inline const void* squared_lengths(const float* targets, std::uint32_t rows, std::uint32_t dimension) {
+inline const void* squared_lengths(const float* targets, std::uint32_t rows,
+                                   std::uint32_t dimension) {
     static std::vector<float> lengths;
     lengths.assign(rows, 0);
     for (std::uint32_t k = 0; k < rows; ++k) {

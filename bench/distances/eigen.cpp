@@ -20,7 +20,8 @@ struct Forms {
     using Point = Eigen::Matrix<float, size(D, kFixed), 1>;
     using Rows = Eigen::Matrix<float, size(K, kFixed), 1>;
 
-    __attribute__((noinline)) static float gemv(const float* z, const float* targets, const void* lengths) {
+    __attribute__((noinline)) static float gemv(const float* z, const float* targets,
+                                                const void* lengths) {
         const Eigen::Map<const Targets> g(targets, K, D);
         const Eigen::Map<const Point> x(z, D);
         const Eigen::Map<const Rows> squares(static_cast<const float*>(lengths), K);
@@ -28,7 +29,8 @@ struct Forms {
         products.noalias() = g * x;
         return std::sqrt(std::max(0.0F, x.squaredNorm() + (squares - 2 * products).minCoeff()));
     }
-    __attribute__((noinline)) static float direct(const float* z, const float* targets, const void*) {
+    __attribute__((noinline)) static float direct(const float* z, const float* targets,
+                                                  const void*) {
         const Eigen::Map<const Targets> g(targets, K, D);
         const Eigen::Map<const Point> x(z, D);
         return std::sqrt((g.rowwise() - x.transpose()).rowwise().squaredNorm().minCoeff());

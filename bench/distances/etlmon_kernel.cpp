@@ -1,5 +1,6 @@
-// The runtime's kernel, as generated code calls it. Compiled once per compiler and set of flags; ETLC_BENCH_NAME is the
-// function, and -Detlmon=... gives each its own namespace, so that the linker keeps them apart.
+// The runtime's kernel, as generated code calls it. Compiled once per compiler and set of flags;
+// ETLC_BENCH_NAME is the function, and -Detlmon=... gives each its own namespace, so that the
+// linker keeps them apart.
 #include "cells.hpp"
 #include "etlmon/kernel.hpp"
 
@@ -21,9 +22,11 @@ struct Kernel {
         using namespace etlmon;
         if constexpr (detail::in_columns(K, D)) {
             const auto* columns = static_cast<const float*>(state);
-            return detail::best<L2, Min, detail::Fixed<K, D>, true>(z, columns, nullptr, {}, {}).delta;
+            return detail::best<L2, Min, detail::Fixed<K, D>, true>(z, columns, nullptr, {}, {})
+                .delta;
         } else {
-            return detail::best<L2, Min, detail::Fixed<K, D>, false>(z, targets, nullptr, {}, {}).delta;
+            return detail::best<L2, Min, detail::Fixed<K, D>, false>(z, targets, nullptr, {}, {})
+                .delta;
         }
     }
 };

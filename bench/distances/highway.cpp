@@ -1,6 +1,7 @@
-// Highway: the direct form row by row, four sums, with the widest vectors that the compiler's target has.
-#define HWY_COMPILE_ONLY_STATIC  // what the compiler's target has, also where the dispatch of this version does not
-                                 // know it
+// Highway: the direct form row by row, four sums, with the widest vectors that the compiler's
+// target has.
+#define HWY_COMPILE_ONLY_STATIC  // what the compiler's target has, also where the dispatch of this
+                                 // version does not know it
 #include <hwy/highway.h>
 
 #include <algorithm>

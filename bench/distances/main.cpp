@@ -1,7 +1,8 @@
-// min l2 over K targets: nanoseconds per call of every contestant in every cell, in one run, and the ratios that count.
-// Usage: bench_distances [--json FILE] [--rounds N] [--cold]
-// Contestants take turns within each round, so that a change of the machine's speed meets all of them; processor time,
-// of which the median round counts. Answers are compared first: a contestant that is wrong is an error, not a result.
+// min l2 over K targets: nanoseconds per call of every contestant in every cell, in one run, and
+// the ratios that count. Usage: bench_distances [--json FILE] [--rounds N] [--cold] Contestants
+// take turns within each round, so that a change of the machine's speed meets all of them;
+// processor time, of which the median round counts. Answers are compared first: a contestant that
+// is wrong is an error, not a result.
 // --cold: a turn is one call, after other data went through the caches, by the clock on the wall.
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -56,7 +57,8 @@ double exact(const Data& data, Cell cell, std::uint32_t point) {
     for (std::uint32_t k = 0; k < cell.rows; ++k) {
         double sum = 0;
         for (std::uint32_t i = 0; i < cell.dimension; ++i) {
-            const double d = double{z[i]} - double{data.targets()[std::size_t{k} * cell.dimension + i]};
+            const double d =
+                double{z[i]} - double{data.targets()[std::size_t{k} * cell.dimension + i]};
             sum += d * d;
         }
         least = std::min(least, sum);
@@ -95,18 +97,22 @@ double cold_ns(const Competitor& c, const Data& data, const float* point) {
 }
 
 /// ns per call of every contestant, median over the rounds.
-std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants, int rounds, bool cold) {
+std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& contestants,
+                                      int rounds, bool cold) {
     const Data data(cell);
     std::vector<Competitor> competitors;
     for (const Contestant& c : contestants) {
         const auto entry = std::find_if(c.entries.begin(), c.entries.end(), [&](const Entry& e) {
             return e.cell.dimension == cell.dimension && e.cell.rows == cell.rows;
         });
-        const void* state = c.setup != nullptr ? c.setup(data.targets(), cell.rows, cell.dimension) : nullptr;
+        const void* state =
+            c.setup != nullptr ? c.setup(data.targets(), cell.rows, cell.dimension) : nullptr;
         for (std::uint32_t i = 0; i < Points::kNumber && c.name != std::string("read floor"); ++i) {
-            const double got = entry->nearest(data.points()[i], data.targets(), state), want = exact(data, cell, i);
+            const double got = entry->nearest(data.points()[i], data.targets(), state),
+                         want = exact(data, cell, i);
             if (std::abs(got - want) > 1e-3 * want) {
-                std::fprintf(stderr, "%s at %u x %u: %g, expected %g\n", c.name, cell.dimension, cell.rows, got, want);
+                std::fprintf(stderr, "%s at %u x %u: %g, expected %g\n", c.name, cell.dimension,
+                             cell.rows, got, want);
                 std::exit(1);
             }
         }
@@ -117,7 +123,8 @@ std::map<std::string, double> measure(Cell cell, const std::vector<Contestant>& 
     }
     for (int round = 0; round < rounds; ++round) {
         const float* point = data.points()[static_cast<std::size_t>(round)];
-        for (Competitor& c : competitors) c.rounds.push_back(cold ? cold_ns(c, data, point) : warm_ns(c, data));
+        for (Competitor& c : competitors)
+            c.rounds.push_back(cold ? cold_ns(c, data, point) : warm_ns(c, data));
     }
     std::map<std::string, double> medians;
     for (const Competitor& c : competitors) medians[c.name] = median(c.rounds);
@@ -153,8 +160,9 @@ int main(int argc, char** argv) {
     all.insert(all.end(), peers.begin(), peers.end());
     all.insert(all.end(), ours.begin(), ours.end());
 
-    std::printf("min l2 over K targets of D float32, ns per call, %s caches, median of %d rounds; %s\n",
-                cold ? "cold" : "warm", rounds, cpu_name().c_str());
+    std::printf(
+        "min l2 over K targets of D float32, ns per call, %s caches, median of %d rounds; %s\n",
+        cold ? "cold" : "warm", rounds, cpu_name().c_str());
     std::printf("%-11s", "D x K");
     for (const Contestant& c : all) std::printf(" %16s", c.name);
     std::printf(" | of ours, the slowest: / best peer, floor /\n");
@@ -170,8 +178,8 @@ int main(int argc, char** argv) {
         std::string results;
         for (const Contestant& c : all) {
             std::printf(" %16.1f", ns[c.name]);
-            results +=
-                (results.empty() ? "" : ", ") + ('"' + std::string(c.name)) + "\": " + std::to_string(ns[c.name]);
+            results += (results.empty() ? "" : ", ") + ('"' + std::string(c.name)) +
+                       "\": " + std::to_string(ns[c.name]);
         }
         double best = HUGE_VAL, slowest = 0;
         for (const Contestant& c : peers) best = std::min(best, ns[c.name]);

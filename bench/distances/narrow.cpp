@@ -1,7 +1,8 @@
-// min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as gains, with the
-// bounds that it needs, int8 both widened and in integers (bytes.hpp); and what limits widening: the time to do nothing
-// with the rows but widen them to float32, in the registers of AVX-512. At the end, how long narrow embeddings take to
-// widen. Prints ns per call, medians, and the ratio to float32. Usage: bench_narrow [ROUNDS]
+// min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as
+// gains, with the bounds that it needs, int8 both widened and in integers (bytes.hpp); and what
+// limits widening: the time to do nothing with the rows but widen them to float32, in the registers
+// of AVX-512. At the end, how long narrow embeddings take to widen. Prints ns per call, medians,
+// and the ratio to float32. Usage: bench_narrow [ROUNDS]
 #include <time.h>
 
 #include <algorithm>
@@ -44,7 +45,8 @@ float enclosed(const Measured& measured) {
 #if defined(ETLMON_DISPATCH)
 /// Rows widened, and no arithmetic: their bits are or-ed, so that none can be left out.
 template <class G>
-__attribute__((noinline, target("avx2,fma,avx512f,avx512vl,avx512bw,avx512dq"))) float widened_only(G rows, size_t n) {
+__attribute__((noinline, target("avx2,fma,avx512f,avx512vl,avx512bw,avx512dq"))) float widened_only(
+    G rows, size_t n) {
     using namespace detail::x86_64_v4;
     WideBits a{}, b{}, c{}, d{};
     for (size_t i = 0; i + 4 * kWidth <= n; i += 4 * kWidth) {
@@ -89,20 +91,23 @@ void compare(int rounds) {
     }
     const auto point = [&](std::uint32_t call) { return z.data() + call % kPoints * D; };
     const auto f32 = [&](std::uint32_t call) {
-        return detail::best<L2, Min, Fixed<K, D>, false>(point(call), wide.data(), nullptr, {}, {}).delta;
+        return detail::best<L2, Min, Fixed<K, D>, false>(point(call), wide.data(), nullptr, {}, {})
+            .delta;
     };
     const auto f16 = [&](std::uint32_t call) {
-        return enclosed<D>(detail::best<L2, Min, Fixed<K, D>, false>(point(call), halves.data(), nullptr, {}, {}));
+        return enclosed<D>(
+            detail::best<L2, Min, Fixed<K, D>, false>(point(call), halves.data(), nullptr, {}, {}));
     };
     const auto i8 = [&](std::uint32_t call) {
         const detail::ScaledRows rows{bytes.data(), 0.01F};
-        return enclosed<D>(detail::best<L2, Min, Fixed<K, D>, false>(point(call), rows, nullptr, {}, {}));
+        return enclosed<D>(
+            detail::best<L2, Min, Fixed<K, D>, false>(point(call), rows, nullptr, {}, {}));
     };
 #if defined(ETLMON_X86_64)
     const auto integers = [&](std::uint32_t call) {
         alignas(64) std::uint8_t scratch[detail::bytes_scratch(D)];
-        const auto measured = detail::best_in_integers<L2, Min, Fixed<K, D>>(point(call), {bytes.data(), 0.01F},
-                                                                             sums.data(), scratch, {}, {});
+        const auto measured = detail::best_in_integers<L2, Min, Fixed<K, D>>(
+            point(call), {bytes.data(), 0.01F}, sums.data(), scratch, {}, {});
         return doubtful(detail::enclose_integers<L2>(measured, 0.01F, D, 0));
     };
 #else
@@ -129,9 +134,9 @@ void compare(int rounds) {
     static_cast<void>(sink);
     const double of_f32 = median(times[0]), of_f16 = median(times[1]), of_i8 = median(times[2]);
     const double of_integers = median(times[5]);
-    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16,
-                of_f32 / of_f16, of_i8, of_f32 / of_i8, of_integers, of_f32 / of_integers, median(times[3]),
-                median(times[4]));
+    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K,
+                of_f32, of_f16, of_f32 / of_f16, of_i8, of_f32 / of_i8, of_integers,
+                of_f32 / of_integers, median(times[3]), median(times[4]));
     std::fflush(stdout);
 }
 
@@ -155,16 +160,16 @@ void widen_embeddings(int rounds) {
         time([] { widen_f16(halves, to, D); }, times[0]);
         time([] { widen_i8(bytes, 0.01F, to, D); }, times[1]);
     }
-    std::printf("An embedding of %u elements to float32: %.1f from float16, %.1f from int8\n", D, median(times[0]),
-                median(times[1]));
+    std::printf("An embedding of %u elements to float32: %.1f from float16, %.1f from int8\n", D,
+                median(times[0]), median(times[1]));
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
     const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 25;
-    std::printf("%-15s %12s %12s %6s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16", "ratio",
-                "int8 widened", "ratio", "in integers", "ratio", "widen f16", "widen i8");
+    std::printf("%-15s %12s %12s %6s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16",
+                "ratio", "int8 widened", "ratio", "in integers", "ratio", "widen f16", "widen i8");
     compare<4, 384>(rounds);
     compare<16, 384>(rounds);
     compare<64, 384>(rounds);

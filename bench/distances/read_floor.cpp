@@ -1,4 +1,5 @@
-// The targets read once, as fast as they can be: what no kernel can beat by more than measurement noise.
+// The targets read once, as fast as they can be: what no kernel can beat by more than measurement
+// noise.
 #include <cstring>
 
 #include "cells.hpp"
@@ -21,7 +22,8 @@ __attribute__((noinline)) float read(const float*, const float* targets, const v
     const Wide* from = reinterpret_cast<const Wide*>(__builtin_assume_aligned(targets, 64));
     Wide a{}, b{}, c{}, d{};
     std::size_t i = 0;
-    for (; i + 4 <= kVectors; i += 4) a |= from[i], b |= from[i + 1], c |= from[i + 2], d |= from[i + 3];
+    for (; i + 4 <= kVectors; i += 4)
+        a |= from[i], b |= from[i + 1], c |= from[i + 2], d |= from[i + 3];
     if constexpr (kVectors % 4 != 0)
         for (; i < kVectors; ++i) a |= from[i];
     a = (a | b) | (c | d);

@@ -1,7 +1,8 @@
-// Searching a large target set against measuring all of it: nanoseconds per step of both, in turns, and their ratio.
-// Usage: bench_search [--rounds N] [--largest]   (--largest: also 100 000 rows of 768 elements, 307 MB)
-// The rows are clouds of 50 around points along paths, as recorded demonstrations are; the embedding is drawn anew at
-// every step (incoherent), or walks, its steps a share of the distance between neighbouring rows.
+// Searching a large target set against measuring all of it: nanoseconds per step of both, in turns,
+// and their ratio. Usage: bench_search [--rounds N] [--largest]   (--largest: also 100 000 rows of
+// 768 elements, 307 MB) The rows are clouds of 50 around points along paths, as recorded
+// demonstrations are; the embedding is drawn anew at every step (incoherent), or walks, its steps a
+// share of the distance between neighbouring rows.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -30,20 +31,22 @@ struct Free {
 /// Rows with the noise 1 in every element around centers of the spread 3, or without centers.
 template <std::uint32_t K, std::uint32_t D>
 std::unique_ptr<float, Free> make_rows(bool clouds) {
-    std::unique_ptr<float, Free> rows(static_cast<float*>(std::aligned_alloc(64, std::size_t{K} * D * sizeof(float))));
+    std::unique_ptr<float, Free> rows(
+        static_cast<float*>(std::aligned_alloc(64, std::size_t{K} * D * sizeof(float))));
     std::mt19937 random(K + D);
     std::normal_distribution<float> normal;
     std::vector<float> center(D);
     for (std::uint32_t k = 0; k < K; ++k) {
         if (clouds && k % 50 == 0)
             for (float& x : center) x = 3 * normal(random);
-        for (std::uint32_t i = 0; i < D; ++i) rows.get()[std::size_t{k} * D + i] = center[i] + normal(random);
+        for (std::uint32_t i = 0; i < D; ++i)
+            rows.get()[std::size_t{k} * D + i] = center[i] + normal(random);
     }
     return rows;
 }
 
-/// The embeddings of so many steps. `pace`: of a walk about a row of the middle, in units of the rows' noise; 0: drawn
-/// anew.
+/// The embeddings of so many steps. `pace`: of a walk about a row of the middle, in units of the
+/// rows' noise; 0: drawn anew.
 template <std::uint32_t K, std::uint32_t D>
 std::vector<float> make_trace(const float* rows, int steps, float pace) {
     std::mt19937 random(7);
@@ -64,24 +67,28 @@ void check(bool equal) {
 }
 
 template <class Metric, std::uint32_t K, std::uint32_t D>
-void measure(const char* metric, const float* rows, const char* about, float pace, int steps, int rounds) {
+void measure(const char* metric, const float* rows, const char* about, float pace, int steps,
+             int rounds) {
     const std::vector<float> trace = make_trace<K, D>(rows, steps, pace);
     const auto search = std::make_unique<etlmon::Search<K, D>>();
     std::vector<double> plain_ns, search_ns;
     for (int round = 0; round < rounds; ++round) {
         std::vector<etlmon::Measured> plain, found;
-        plain.reserve(static_cast<std::size_t>(steps)), found.reserve(static_cast<std::size_t>(steps));
+        plain.reserve(static_cast<std::size_t>(steps)),
+            found.reserve(static_cast<std::size_t>(steps));
         double start = processor_seconds();
         for (int i = 0; i < steps; ++i)
-            plain.push_back(
-                etlmon::measure_stored<Metric, etlmon::Min, K, D>(trace.data() + i * std::ptrdiff_t{D}, rows));
+            plain.push_back(etlmon::measure_stored<Metric, etlmon::Min, K, D>(
+                trace.data() + i * std::ptrdiff_t{D}, rows));
         plain_ns.push_back((processor_seconds() - start) * 1e9 / steps);
         search->reset();
         start = processor_seconds();
         for (int i = 0; i < steps; ++i)
-            found.push_back(search->template nearest<Metric>(trace.data() + i * std::ptrdiff_t{D}, rows));
+            found.push_back(
+                search->template nearest<Metric>(trace.data() + i * std::ptrdiff_t{D}, rows));
         search_ns.push_back((processor_seconds() - start) * 1e9 / steps);
-        check(std::memcmp(plain.data(), found.data(), plain.size() * sizeof(etlmon::Measured)) == 0);
+        check(std::memcmp(plain.data(), found.data(), plain.size() * sizeof(etlmon::Measured)) ==
+              0);
     }
     const double a = bench::median(plain_ns), b = bench::median(search_ns);
     std::printf("%-7s %4u x %-7u %-34s %14.0f %14.0f %8.3f\n", metric, D, K, about, a, b, b / a);
@@ -94,8 +101,10 @@ void measure(int steps, int rounds) {
         const auto rows = make_rows<K, D>(clouds);
         const std::string kind = clouds ? "clouds" : "one cloud";
         const auto both = [&](const std::string& about, float pace) {
-            measure<etlmon::L2, K, D>("l2", rows.get(), (kind + ", " + about).c_str(), pace, steps, rounds);
-            measure<etlmon::L1, K, D>("l1", rows.get(), (kind + ", " + about).c_str(), pace, steps, rounds);
+            measure<etlmon::L2, K, D>("l2", rows.get(), (kind + ", " + about).c_str(), pace, steps,
+                                      rounds);
+            measure<etlmon::L1, K, D>("l1", rows.get(), (kind + ", " + about).c_str(), pace, steps,
+                                      rounds);
         };
         both("drawn anew", 0);
         both("walk, 0.3 a step", 0.3F);
@@ -111,10 +120,11 @@ int main(int argc, char** argv) {
     bool largest = false;
     for (int i = 1; i < argc; ++i) {
         if (std::strcmp(argv[i], "--largest") == 0) largest = true;
-        if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc) rounds = std::max(1, std::atoi(argv[++i]));
+        if (std::strcmp(argv[i], "--rounds") == 0 && i + 1 < argc)
+            rounds = std::max(1, std::atoi(argv[++i]));
     }
-    std::printf("nanoseconds per step, median of %d rounds\n%-7s %-14s %-34s %14s %14s %8s\n", rounds, "min", "D x K",
-                "rows, embedding", "all rows", "search", "ratio");
+    std::printf("nanoseconds per step, median of %d rounds\n%-7s %-14s %-34s %14s %14s %8s\n",
+                rounds, "min", "D x K", "rows, embedding", "all rows", "search", "ratio");
     measure<256, 384>(2000, rounds);
     measure<1000, 768>(500, rounds);
     measure<10000, 384>(100, rounds);

@@ -1,5 +1,6 @@
-// The examples' monitors as they are measured: inputs that lie in buffers, as a control loop has them.
-// An example has a name, the generated Monitor, and fills its buffers from random numbers; `inputs` views them.
+// The examples' monitors as they are measured: inputs that lie in buffers, as a control loop has
+// them. An example has a name, the generated Monitor, and fills its buffers from random numbers;
+// `inputs` views them.
 #pragma once
 
 #include <cstdint>
@@ -72,7 +73,9 @@ struct Gauge {
     static constexpr const char* kName = "gauge: mahalanobis, l2 in EXPR, 3 x 3";
     using Monitor = gauge::Monitor;
     float v[3], t;
-    explicit Gauge(Random& random) : t(static_cast<float>(random() % 200) / 100) { fill(v, random, 0.75F, 1); }
+    explicit Gauge(Random& random) : t(static_cast<float>(random() % 200) / 100) {
+        fill(v, random, 0.75F, 1);
+    }
     gauge::Inputs inputs() const { return {v, t}; }
 };
 
@@ -80,7 +83,9 @@ struct Grasp {
     static constexpr const char* kName = "grasp: min l2, 384 x 4";
     using Monitor = grasp::Monitor;
     float z[384], force;
-    explicit Grasp(Random& random) : force(static_cast<float>(random() % 400) / 100) { fill(z, random, 0, 1); }
+    explicit Grasp(Random& random) : force(static_cast<float>(random() % 400) / 100) {
+        fill(z, random, 0, 1);
+    }
     grasp::Inputs inputs() const { return {z, force}; }
 };
 

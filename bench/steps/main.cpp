@@ -1,6 +1,7 @@
-// A whole step of the examples' monitors, and its split: measure() is the distances and what predicates make of them,
-// judge() the temporal operators. bench_steps [--json FILE] [--rounds N]
-// Cold: the first step after something else went through the caches, which is how a control loop finds them.
+// A whole step of the examples' monitors, and its split: measure() is the distances and what
+// predicates make of them, judge() the temporal operators. bench_steps [--json FILE] [--rounds N]
+// Cold: the first step after something else went through the caches, which is how a control loop
+// finds them.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -56,10 +57,11 @@ private:
 template <class Example>
 json measured(bench::Effort effort) {
     const auto stepped = std::make_shared<Stepped<Example>>();
-    const std::vector<bench::Series> series = bench::measure({{"step", [=] { stepped->step(); }, kSamples},
-                                                              {"measure", [=] { stepped->measure(); }, kSamples},
-                                                              {"judge", [=] { stepped->judge(); }, kSamples}},
-                                                             effort);
+    const std::vector<bench::Series> series =
+        bench::measure({{"step", [=] { stepped->step(); }, kSamples},
+                        {"measure", [=] { stepped->measure(); }, kSamples},
+                        {"judge", [=] { stepped->judge(); }, kSamples}},
+                       effort);
     std::size_t next = 0;
     std::vector<double> cold;
     for (int round = 0; round < effort.rounds; ++round) {
@@ -78,8 +80,9 @@ json measured(bench::Effort effort) {
 }
 
 void print(const json& row) {
-    std::printf("%-40s %9.1f %9.1f %9.1f %4.0f %9.0f %7.0f\n", row["example"].get<std::string>().c_str(),
-                row["step_ns"].get<double>(), row["measure_ns"].get<double>(), row["judge_ns"].get<double>(),
+    std::printf("%-40s %9.1f %9.1f %9.1f %4.0f %9.0f %7.0f\n",
+                row["example"].get<std::string>().c_str(), row["step_ns"].get<double>(),
+                row["measure_ns"].get<double>(), row["judge_ns"].get<double>(),
                 row["spread_percent"].get<double>(), row["cold_step_ns"].get<double>(),
                 row["state_bytes"].get<double>());
     std::fflush(stdout);
@@ -92,11 +95,13 @@ int main(int argc, char** argv) {
     bench::Effort effort;
     CLI::App app{"What a whole step of the examples' monitors costs."};
     app.add_option("--json", file, "writes the figures there too");
-    app.add_option("--rounds", effort.rounds, "rounds; figures are medians over them")->check(CLI::PositiveNumber);
+    app.add_option("--rounds", effort.rounds, "rounds; figures are medians over them")
+        ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
 
-    std::printf("%-40s %9s %9s %9s %4s %9s %7s\n%-40s %9s %9s %9s %4s %9s %7s\n", "example", "step", "measure", "judge",
-                "+-", "cold step", "state", "", "ns", "ns", "ns", "%", "ns", "bytes");
+    std::printf("%-40s %9s %9s %9s %4s %9s %7s\n%-40s %9s %9s %9s %4s %9s %7s\n", "example", "step",
+                "measure", "judge", "+-", "cold step", "state", "", "ns", "ns", "ns", "%", "ns",
+                "bytes");
     json all = json::array();
     const auto add = [&](json row) {
         print(row);

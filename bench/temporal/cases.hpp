@@ -1,7 +1,8 @@
 // The formulas that are measured: the generated class beside what one would write by hand.
-// A case has a title, the generated Monitor, the longest window, how its inputs are filled from signals, how many
-// monitors it has and how their verdicts are visited, and Plain: robustness alone, by hand; where there is a window,
-// Rescanning too, the same with each window gone through anew at each step, as straightforward monitors do.
+// A case has a title, the generated Monitor, the longest window, how its inputs are filled from
+// signals, how many monitors it has and how their verdicts are visited, and Plain: robustness
+// alone, by hand; where there is a window, Rescanning too, the same with each window gone through
+// anew at each step, as straightforward monitors do.
 #pragma once
 
 #include <cstddef>
@@ -50,7 +51,8 @@ namespace bench {
 
 struct NoRescanning {};
 
-/// No operator that remembers anything: what the samples, the predicates and the verdict cost alone.
+/// No operator that remembers anything: what the samples, the predicates and the verdict cost
+/// alone.
 struct One {
     static constexpr const char* kTitle = "p, sliding";
     static constexpr uint32_t kWindow = 1;
@@ -79,7 +81,9 @@ struct Three {
     BENCH_GENERATED(three, BENCH_PQR)
     struct Plain {
         void reset() {}
-        void step(const Signals& s, std::size_t i, float* rho) { *rho = smaller(smaller(s.p[i], s.q[i]), s.r[i]); }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            *rho = smaller(smaller(s.p[i], s.q[i]), s.r[i]);
+        }
     };
     using Rescanning = NoRescanning;
 };
@@ -91,7 +95,9 @@ struct Invariant {
     struct Plain {
         float worst;
         void reset() { worst = kInfinity; }
-        void step(const Signals& s, std::size_t i, float* rho) { *rho = worst = smaller(worst, s.p[i]); }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            *rho = worst = smaller(worst, s.p[i]);
+        }
     };
     using Rescanning = NoRescanning;
 };
@@ -124,7 +130,9 @@ template <template <class, uint32_t> class Window, uint32_t N>
 struct SlidingUntil {
     Window<PlainUntil, N> window;
     void reset() { window.reset(); }
-    void step(const Signals& s, std::size_t i, float* rho) { *rho = window.push({s.q[i], s.p[i]}).value; }
+    void step(const Signals& s, std::size_t i, float* rho) {
+        *rho = window.push({s.q[i], s.p[i]}).value;
+    }
 };
 
 struct Eventually50 {
@@ -167,8 +175,8 @@ struct Until10000 {
     using Rescanning = NoRescanning;
 };
 
-/// The Outer of all positions of what a window about each of them says: settled where the window is past, else the
-/// newest sample decides, since what is to come may be anything.
+/// The Outer of all positions of what a window about each of them says: settled where the window is
+/// past, else the newest sample decides, since what is to come may be anything.
 template <template <class, uint32_t> class Window, class Outer, class Inner, uint32_t N>
 struct OfEveryWindow {
     Window<Inner, N + 1> window;
@@ -205,7 +213,8 @@ struct EventuallyAlways1000 {
     using Rescanning = OfEveryWindow<Rescan, PlainMax, PlainMin, 1000>;
 };
 
-/// On a prefix p U[0,100] q holds everywhere where q is met in time everywhere, and p or q holds everywhere.
+/// On a prefix p U[0,100] q holds everywhere where q is met in time everywhere, and p or q holds
+/// everywhere.
 struct AlwaysUntil100 {
     static constexpr const char* kTitle = "G (p U[0,100] q)";
     static constexpr uint32_t kWindow = 100;
@@ -234,7 +243,8 @@ struct AlwaysUntil100 {
     using Rescanning = ByHand<Rescan>;
 };
 
-/// G[0,Outer] (p -> F[0,W] q) on the prefix: settled requests, and pending ones, which a q answers all at once.
+/// G[0,Outer] (p -> F[0,W] q) on the prefix: settled requests, and pending ones, which a q answers
+/// all at once.
 template <template <class, uint32_t> class Window, uint32_t W, uint32_t Outer>
 struct Responding {
     Window<PlainMax, W + 1> answers;
@@ -250,7 +260,8 @@ struct Responding {
     void step(const Signals& s, std::size_t i, float* rho) {
         const float excuse = -s.p[i];
         const float value = larger(answers.push(s.q[i]), excuses.push(excuse));
-        if (steps >= W && (Outer == kForever || steps <= Outer + W)) settled = smaller(settled, value);
+        if (steps >= W && (Outer == kForever || steps <= Outer + W))
+            settled = smaller(settled, value);
         if (Outer == kForever || steps <= Outer) pending = smaller(pending, excuse);
         pending = larger(pending, s.q[i]);
         if (Outer != kForever || steps < W) ++steps;
@@ -297,7 +308,8 @@ struct Nested {
     using Rescanning = ByHand<Rescan>;
 };
 
-/// Ten windows over one signal: each the larger of the one before and of what that was ten steps ago.
+/// Ten windows over one signal: each the larger of the one before and of what that was ten steps
+/// ago.
 struct Responses {
     static constexpr const char* kTitle = "ten of G (p -> F[0,w] q)";
     static constexpr uint32_t kWindow = 100;
@@ -306,9 +318,9 @@ struct Responses {
     static constexpr std::size_t kMonitors = 10;
     template <class Visit>
     static void visit(const responses::Verdicts& verdicts, const Visit& take) {
-        const etlmon::Verdict* const all[] = {&verdicts.m10, &verdicts.m20, &verdicts.m30, &verdicts.m40,
-                                              &verdicts.m50, &verdicts.m60, &verdicts.m70, &verdicts.m80,
-                                              &verdicts.m90, &verdicts.m100};
+        const etlmon::Verdict* const all[] = {
+            &verdicts.m10, &verdicts.m20, &verdicts.m30, &verdicts.m40, &verdicts.m50,
+            &verdicts.m60, &verdicts.m70, &verdicts.m80, &verdicts.m90, &verdicts.m100};
         for (std::size_t m = 0; m < kMonitors; ++m) take(m, *all[m]);
     }
     struct Plain {
@@ -343,12 +355,15 @@ struct Responses {
     struct EachOnItsOwn<Window, std::index_sequence<M...>> {
         std::tuple<Responding<Window, 10 * (M + 1), 0xffffffff>...> all;
         void reset() { (std::get<M>(all).reset(), ...); }
-        void step(const Signals& s, std::size_t i, float* rho) { (std::get<M>(all).step(s, i, rho + M), ...); }
+        void step(const Signals& s, std::size_t i, float* rho) {
+            (std::get<M>(all).step(s, i, rho + M), ...);
+        }
     };
     using Rescanning = EachOnItsOwn<Rescan, std::make_index_sequence<kMonitors>>;
 };
 
-/// A general state machine: no loop by hand is known to be cheaper than the definition over the horizon.
+/// A general state machine: no loop by hand is known to be cheaper than the definition over the
+/// horizon.
 struct SmallMachine {
     static constexpr const char* kTitle = "G (p -> F[0,4] (q && X r))";
     static constexpr uint32_t kWindow = 5;

@@ -1,6 +1,6 @@
-// Temporal operators of generated monitors, on robustness values that are ready, against what one would write by hand.
-// bench_temporal [--operators] [--json FILE] [--only TEXT] [--rounds N]: prints the table of monitors, or that of the
-// runtime's operators by themselves.
+// Temporal operators of generated monitors, on robustness values that are ready, against what one
+// would write by hand. bench_temporal [--operators] [--json FILE] [--only TEXT] [--rounds N]:
+// prints the table of monitors, or that of the runtime's operators by themselves.
 #include <CLI/CLI.hpp>
 #include <cstdio>
 #include <fstream>
@@ -42,7 +42,8 @@ std::vector<Row> rows() {
 /// A figure, or blanks where there is none.
 std::string figure(const json& row, const char* name, int decimals) {
     char text[32] = "-";
-    if (row.contains(name)) std::snprintf(text, sizeof text, "%.*f", decimals, row[name].get<double>());
+    if (row.contains(name))
+        std::snprintf(text, sizeof text, "%.*f", decimals, row[name].get<double>());
     return text;
 }
 
@@ -93,10 +94,12 @@ json measured(const Row& row, bench::Effort effort) {
     std::vector<Routine> routines{row.judge.loop, row.judge.call,   row.rho.loop,
                                   row.rho.call,   row.verdict.loop, row.verdict.call};
     std::size_t next = routines.size();
-    for (const std::optional<Routine>& more : {row.plain.loop, row.plain.call, row.rescan, row.copilot})
+    for (const std::optional<Routine>& more :
+         {row.plain.loop, row.plain.call, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
-    const bench::Ways<Series> ready{series[0], series[1]}, rho{series[2], series[3]}, verdict{series[4], series[5]};
+    const bench::Ways<Series> ready{series[0], series[1]}, rho{series[2], series[3]},
+        verdict{series[4], series[5]};
     json result{{"formula", row.title},
                 {"ready_ns", ready.loop.median()},
                 {"ready_called_ns", ready.call.median()},
@@ -150,12 +153,15 @@ int main(int argc, char** argv) {
     bench::Effort effort;
     CLI::App app{"What a step of temporal operators costs, against loops written by hand."};
     app.add_option("--only", only, "the formulas whose text contains this");
-    app.add_flag("--operators", operators, "the operators of the runtime by themselves instead of monitors");
+    app.add_flag("--operators", operators,
+                 "the operators of the runtime by themselves instead of monitors");
     app.add_option("--json", file, "writes the figures there too");
-    app.add_option("--rounds", effort.rounds, "rounds; figures are medians over them")->check(CLI::PositiveNumber);
+    app.add_option("--rounds", effort.rounds, "rounds; figures are medians over them")
+        ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
 
-    const json all = operators ? bench::measure_operators(only, effort) : measure_monitors(only, effort);
+    const json all =
+        operators ? bench::measure_operators(only, effort) : measure_monitors(only, effort);
     if (file.empty()) return 0;
     std::ofstream out(file);
     out << all.dump(2) << '\n';

@@ -47,7 +47,8 @@ struct Recurrence {
     V push(V v) { return acc = max_of(acc, v); }
 };
 
-/// Sliding maximum by a queue of falling candidates: each value is stored once, but one step may drop all of them.
+/// Sliding maximum by a queue of falling candidates: each value is stored once, but one step may
+/// drop all of them.
 template <uint32_t N>
 struct Wedge {
     using Element = Key;
@@ -90,7 +91,8 @@ Routine routine() {
     const auto elements = std::make_shared<std::vector<Element>>();
     const std::vector<float> x = walk(kSamples, 1);
     const std::vector<float> y = walk(kSamples, 2);
-    for (std::size_t i = 0; i < kSamples; ++i) elements->push_back(Sampled<Element>::element(x[i], y[i]));
+    for (std::size_t i = 0; i < kSamples; ++i)
+        elements->push_back(Sampled<Element>::element(x[i], y[i]));
     op->reset();
     return {"", [=] { steps(*op, elements->data()); }, kSamples};
 }
@@ -101,7 +103,9 @@ double slowest(uint32_t n) {
     const std::vector<float> samples = saw(4 * std::size_t{n}, 2 * std::size_t{n});
     const auto op = std::make_unique<Operator>();
     Element element{};
-    const auto sample = [&](std::size_t i) { element = Sampled<Element>::element(samples[i], -samples[i]); };
+    const auto sample = [&](std::size_t i) {
+        element = Sampled<Element>::element(samples[i], -samples[i]);
+    };
     const auto step = [&] {
         auto result = Sampled<Element>::result(op->push(element));
         asm volatile("" : : "r"(&result) : "memory");
@@ -154,8 +158,8 @@ void measure_length(const std::string& only, Effort effort, nlohmann::json& all)
                        {"to_wedge", ratio(own, series[1])},
                        {"worst_step_ns", chosen[c]->slowest(N)},
                        {"state_bytes", chosen[c]->bytes}});
-        std::printf("%-16s %7u %8.2f %4.0f %13.2f %8.2f %10.0f %9zu\n", chosen[c]->name.c_str(), N, own.median(),
-                    100 * own.spread(), ratio(own, series[0]), ratio(own, series[1]),
+        std::printf("%-16s %7u %8.2f %4.0f %13.2f %8.2f %10.0f %9zu\n", chosen[c]->name.c_str(), N,
+                    own.median(), 100 * own.spread(), ratio(own, series[0]), ratio(own, series[1]),
                     all.back()["worst_step_ns"].get<double>(), chosen[c]->bytes);
         std::fflush(stdout);
     }
@@ -164,8 +168,8 @@ void measure_length(const std::string& only, Effort effort, nlohmann::json& all)
 }  // namespace
 
 nlohmann::json measure_operators(const std::string& only, Effort effort) {
-    std::printf("%-16s %7s %8s %4s %13s %8s %10s %9s\n", "operator", "length", "ns", "+- %", "/ recurrence", "/ wedge",
-                "worst, ns", "bytes");
+    std::printf("%-16s %7s %8s %4s %13s %8s %10s %9s\n", "operator", "length", "ns", "+- %",
+                "/ recurrence", "/ wedge", "worst, ns", "bytes");
     nlohmann::json all = nlohmann::json::array();
     measure_length<100>(only, effort, all);
     measure_length<1000>(only, effort, all);

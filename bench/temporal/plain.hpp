@@ -1,7 +1,7 @@
-// What one would write by hand, in floats: robustness alone, every sample there, no bounds, no verdict.
-// Takes: one robustness a step. Gives: the value of the operator over the last N. Keeps true: PlainWindow is the
-// cheapest known on average (van Herk 1992, Gil and Werman 1993), though a step in N does the work of all; Rescan is
-// the definition, over all N samples at each step.
+// What one would write by hand, in floats: robustness alone, every sample there, no bounds, no
+// verdict. Takes: one robustness a step. Gives: the value of the operator over the last N. Keeps
+// true: PlainWindow is the cheapest known on average (van Herk 1992, Gil and Werman 1993), though a
+// step in N does the work of all; Rescan is the definition, over all N samples at each step.
 #pragma once
 
 #include <cstddef>
@@ -39,7 +39,8 @@ struct PlainUntil {
     };
     static constexpr Element identity() { return {-kInfinity, kInfinity}; }
     static Element combine(Element older, Element newer) {
-        return {larger(older.value, smaller(older.guard, newer.value)), smaller(older.guard, newer.guard)};
+        return {larger(older.value, smaller(older.guard, newer.value)),
+                smaller(older.guard, newer.guard)};
     }
 };
 
@@ -57,7 +58,8 @@ public:
         elements_[at_++] = element;
         if (at_ == N) {
             const Element whole = prefix_;
-            for (uint32_t i = N - 1; i > 0; --i) elements_[i - 1] = Monoid::combine(elements_[i - 1], elements_[i]);
+            for (uint32_t i = N - 1; i > 0; --i)
+                elements_[i - 1] = Monoid::combine(elements_[i - 1], elements_[i]);
             at_ = 0;
             prefix_ = Monoid::identity();
             return whole;
@@ -68,7 +70,8 @@ public:
 private:
     uint32_t at_;
     Element prefix_;
-    Element elements_[N];  ///< up to at_ this block's samples, from there the suffixes of the block before
+    Element elements_[N];  ///< up to at_ this block's samples, from there the suffixes of the block
+                           ///< before
 };
 
 template <uint32_t N>

@@ -1,6 +1,7 @@
 // One formula of cases.hpp as routines to be timed and compared.
-// Takes: a case and signals. Gives: what to run, and what the monitor holds. Keeps true: all routines of a row go over
-// the same samples, write what they find to memory, and were seen to agree on every robustness.
+// Takes: a case and signals. Gives: what to run, and what the monitor holds. Keeps true: all
+// routines of a row go over the same samples, write what they find to memory, and were seen to
+// agree on every robustness.
 #pragma once
 
 #include <algorithm>
@@ -21,10 +22,11 @@
 namespace bench {
 
 constexpr std::size_t kSteps = 1 << 15;
-constexpr std::size_t kChunk = 512;  ///< results are written over again, so that they stay in the first-level cache
+constexpr std::size_t kChunk =
+    512;  ///< results are written over again, so that they stay in the first-level cache
 
-/// The steps in a loop, which keeps the state in registers where it can; or each called by itself, as in a control
-/// loop: it finds the state in memory and leaves it there.
+/// The steps in a loop, which keeps the state in registers where it can; or each called by itself,
+/// as in a control loop: it finds the state in memory and leaves it there.
 template <class T>
 struct Ways {
     T loop, call;
@@ -35,9 +37,11 @@ struct Row {
     std::size_t state_bytes = 0;
     std::uint32_t operations = 0;
     Ways<std::optional<Routine>> plain;  ///< robustness by hand
-    std::optional<Routine> rescan;       ///< the same, with windows gone through anew at each step, in a loop
-    std::optional<Routine> copilot;      ///< Copilot's monitor, called
-    Ways<Routine> judge;            ///< the monitor on predicates that are ready; its user reads `robustness` alone
+    std::optional<Routine>
+        rescan;  ///< the same, with windows gone through anew at each step, in a loop
+    std::optional<Routine> copilot;  ///< Copilot's monitor, called
+    Ways<Routine>
+        judge;  ///< the monitor on predicates that are ready; its user reads `robustness` alone
     Ways<Routine> rho;              ///< the monitor's whole step
     Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
     std::function<double()> worst;  ///< nanoseconds of its slowest step
@@ -48,48 +52,54 @@ template <class Case>
 std::vector<typename Case::Monitor::Atoms> measured(const Signals& signals) {
     typename Case::Monitor monitor;
     std::vector<typename Case::Monitor::Atoms> atoms;
-    for (std::size_t i = 0; i < signals.size(); ++i) atoms.push_back(monitor.measure(Case::inputs(signals, i)));
+    for (std::size_t i = 0; i < signals.size(); ++i)
+        atoms.push_back(monitor.measure(Case::inputs(signals, i)));
     return atoms;
 }
 
 /// A chunk of steps whose predicates are ready, robustness alone.
 template <class Case, bool kCalled>
 [[gnu::noinline]] void judge_robustness(typename Case::Monitor& monitor,
-                                        const std::vector<typename Case::Monitor::Atoms>& atoms, std::size_t from,
-                                        float* __restrict out) {
+                                        const std::vector<typename Case::Monitor::Atoms>& atoms,
+                                        std::size_t from, float* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
-        Case::visit(monitor.judge(atoms[from + i]), [&](std::size_t m, const etlmon::Verdict& verdict) {
-            out[i * Case::kMonitors + m] = verdict.robustness;
-        });
+        Case::visit(monitor.judge(atoms[from + i]),
+                    [&](std::size_t m, const etlmon::Verdict& verdict) {
+                        out[i * Case::kMonitors + m] = verdict.robustness;
+                    });
         if (kCalled) settle_memory();
     }
 }
 
 /// The monitor's user: a chunk of steps, robustness alone.
 template <class Case, bool kCalled>
-[[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
-                                       float* __restrict out) {
+[[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals,
+                                       std::size_t from, float* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
-        Case::visit(monitor.step(Case::inputs(signals, from + i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
-            out[i * Case::kMonitors + m] = verdict.robustness;
-        });
+        Case::visit(monitor.step(Case::inputs(signals, from + i)),
+                    [&](std::size_t m, const etlmon::Verdict& verdict) {
+                        out[i * Case::kMonitors + m] = verdict.robustness;
+                    });
         if (kCalled) settle_memory();
     }
 }
 
 /// A chunk of steps, all of every verdict.
 template <class Case, bool kCalled>
-[[gnu::noinline]] void read_verdict(typename Case::Monitor& monitor, const Signals& signals, std::size_t from,
-                                    etlmon::Verdict* __restrict out) {
+[[gnu::noinline]] void read_verdict(typename Case::Monitor& monitor, const Signals& signals,
+                                    std::size_t from, etlmon::Verdict* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
         Case::visit(monitor.step(Case::inputs(signals, from + i)),
-                    [&](std::size_t m, const etlmon::Verdict& verdict) { out[i * Case::kMonitors + m] = verdict; });
+                    [&](std::size_t m, const etlmon::Verdict& verdict) {
+                        out[i * Case::kMonitors + m] = verdict;
+                    });
         if (kCalled) settle_memory();
     }
 }
 
 template <class ByHand, std::size_t kMonitors, bool kCalled>
-[[gnu::noinline]] void by_hand(ByHand& monitor, const Signals& signals, std::size_t from, float* __restrict out) {
+[[gnu::noinline]] void by_hand(ByHand& monitor, const Signals& signals, std::size_t from,
+                               float* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
         monitor.step(signals, from + i, out + i * kMonitors);
         if (kCalled) settle_memory();
@@ -103,8 +113,8 @@ template <class ByHand, std::size_t kMonitors, bool kCalled>
 
 /// Goes over all steps of a trace, chunk by chunk, with something that takes a chunk.
 template <class Result, class State, class Trace, class Chunk>
-Routine routine(const std::string& name, std::size_t monitors, const std::shared_ptr<const Trace>& trace,
-                const Chunk& chunk) {
+Routine routine(const std::string& name, std::size_t monitors,
+                const std::shared_ptr<const Trace>& trace, const Chunk& chunk) {
     const auto state = std::make_shared<State>();
     const auto results = std::make_shared<std::vector<Result>>(kChunk * monitors);
     state->reset();
@@ -127,11 +137,13 @@ void check(const Signals& signals, ByHand& by_hand) {
     float rho[Case::kMonitors];
     for (std::size_t i = 0; i < signals.size(); ++i) {
         by_hand.step(signals, i, rho);
-        Case::visit(monitor->step(Case::inputs(signals, i)), [&](std::size_t m, const etlmon::Verdict& verdict) {
-            if (verdict.decided() && verdict.robustness != rho[m])
-                throw std::logic_error(std::string(Case::kTitle) + ": what it is compared with disagrees at step " +
-                                       std::to_string(i));
-        });
+        Case::visit(monitor->step(Case::inputs(signals, i)),
+                    [&](std::size_t m, const etlmon::Verdict& verdict) {
+                        if (verdict.decided() && verdict.robustness != rho[m])
+                            throw std::logic_error(std::string(Case::kTitle) +
+                                                   ": what it is compared with disagrees at step " +
+                                                   std::to_string(i));
+                    });
     }
 }
 
@@ -165,9 +177,9 @@ double slowest_step() {
     auto inputs = Case::inputs(signals, 0);
     std::vector<etlmon::Verdict> verdicts(Case::kMonitors);
     const auto keep = [&](std::size_t m, const etlmon::Verdict& verdict) { verdicts[m] = verdict; };
-    return worst_step(signals.size(),
-                      {[&] { monitor->reset(); }, [&](std::size_t i) { inputs = Case::inputs(signals, i); },
-                       [&] { Case::visit(monitor->step(inputs), keep); }});
+    return worst_step(signals.size(), {[&] { monitor->reset(); },
+                                       [&](std::size_t i) { inputs = Case::inputs(signals, i); },
+                                       [&] { Case::visit(monitor->step(inputs), keep); }});
 }
 
 template <class Case>
@@ -182,13 +194,16 @@ Row row() {
     if constexpr (!std::is_same_v<typename Case::Plain, NoRescanning>) {
         using Plain = typename Case::Plain;
         check<Case>(*signals, *std::make_unique<Plain>());
-        result.plain = {routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>),
-                        routine<float, Plain>("plain, called", kMonitors, signals, by_hand<Plain, kMonitors, true>)};
+        result.plain = {
+            routine<float, Plain>("plain", kMonitors, signals, by_hand<Plain, kMonitors, false>),
+            routine<float, Plain>("plain, called", kMonitors, signals,
+                                  by_hand<Plain, kMonitors, true>)};
     }
     if constexpr (!std::is_same_v<typename Case::Rescanning, NoRescanning>) {
         using Rescanning = typename Case::Rescanning;
         check<Case>(*signals, *std::make_unique<Rescanning>());
-        result.rescan = routine<float, Rescanning>("rescan", kMonitors, signals, by_hand<Rescanning, kMonitors, false>);
+        result.rescan = routine<float, Rescanning>("rescan", kMonitors, signals,
+                                                   by_hand<Rescanning, kMonitors, false>);
     }
     result.copilot = copilot_routine<Case>(signals);
     const auto monitored = [&](auto result_type, const char* name, auto chunk) {
@@ -196,8 +211,9 @@ Row row() {
     };
     using Atoms = std::vector<typename Monitor::Atoms>;
     const auto atoms = std::make_shared<const Atoms>(measured<Case>(*signals));
-    result.judge = {routine<float, Monitor>("ready", kMonitors, atoms, judge_robustness<Case, false>),
-                    routine<float, Monitor>("ready, called", kMonitors, atoms, judge_robustness<Case, true>)};
+    result.judge = {
+        routine<float, Monitor>("ready", kMonitors, atoms, judge_robustness<Case, false>),
+        routine<float, Monitor>("ready, called", kMonitors, atoms, judge_robustness<Case, true>)};
     result.rho = {monitored(float{}, "robustness", read_robustness<Case, false>),
                   monitored(float{}, "robustness, called", read_robustness<Case, true>)};
     result.verdict = {monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false>),

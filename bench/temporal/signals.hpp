@@ -23,7 +23,8 @@ inline std::vector<float> walk(std::size_t length, unsigned seed) {
     return samples;
 }
 
-/// Falls for twice as long as the longest window, then jumps: a queue of candidates fills up and empties in one step.
+/// Falls for twice as long as the longest window, then jumps: a queue of candidates fills up and
+/// empties in one step.
 inline std::vector<float> saw(std::size_t length, std::size_t period) {
     std::vector<float> samples(length);
     for (std::size_t i = 0; i < length; ++i) samples[i] = -static_cast<float>(i % period);

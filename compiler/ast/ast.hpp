@@ -1,6 +1,7 @@
-// The spec as written: one plain struct a construct, each with its span. Names are not resolved, nothing is checked.
-// Takes: what parse/ saw. Gives: check/ its input, and `--emit ast` its text.
-// Keeps true: declarations stand in file order; && and || are n-ary, so a long chain is not a deep tree.
+// The spec as written: one plain struct a construct, each with its span. Names are not resolved,
+// nothing is checked. Takes: what parse/ saw. Gives: check/ its input, and `--emit ast` its text.
+// Keeps true: declarations stand in file order; && and || are n-ary, so a long chain is not a deep
+// tree.
 #pragma once
 
 #include <cstdint>
@@ -23,11 +24,12 @@ struct Name {
 
 /// A decimal number, kept as its exact text: it rounds once, where it is used.
 struct Number {
-    std::string text;  ///< with a leading '-' where it was negated; or "inf", "-inf" (bounds and ranges only)
+    std::string text;  ///< with a leading '-' where it was negated; or "inf", "-inf" (bounds and
+                       ///< ranges only)
     Span span;
 };
 
-// ---- expressions: EXPR ---------------------------------------------------------------------------------------------
+// ---- expressions: EXPR --------------------------------------------------------------------------
 
 struct MatrixLiteral {
     std::vector<std::vector<Number>> rows;
@@ -92,11 +94,12 @@ struct Expr {
     Kind kind = Kind::number;
     std::string text;                    ///< number: its digits; name: the input
     std::unique_ptr<Distance> distance;  ///< kind distance
-    std::vector<ExprPtr> arguments;      ///< operands, in order; add and multiply etc. are binary, left-associated
+    std::vector<ExprPtr>
+        arguments;  ///< operands, in order; add and multiply etc. are binary, left-associated
     Span span;
 };
 
-// ---- formulas ------------------------------------------------------------------------------------------------------
+// ---- formulas -----------------------------------------------------------------------------------
 
 enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
 
@@ -139,8 +142,9 @@ struct Formula {
         since,
     };
     Kind kind = Kind::constant_true;
-    std::string name;                  ///< kind name
-    std::vector<FormulaPtr> operands;  ///< conjunction and disjunction: two or more; implication etc.: left, right
+    std::string name;  ///< kind name
+    std::vector<FormulaPtr>
+        operands;  ///< conjunction and disjunction: two or more; implication etc.: left, right
     std::optional<Interval> interval;
     ExprPtr left;  ///< comparison: EXPR CMP NUMBER
     Comparison comparison = Comparison::less_equal;
@@ -149,7 +153,7 @@ struct Formula {
     Span span;
 };
 
-// ---- declarations --------------------------------------------------------------------------------------------------
+// ---- declarations -------------------------------------------------------------------------------
 
 struct Rate {
     Number number;
@@ -182,7 +186,8 @@ struct Input {
 
 struct Target {
     Name name;
-    std::variant<Load, MatrixLiteral, VectorLiteral> value;  ///< a VectorLiteral is an error that check/ explains
+    std::variant<Load, MatrixLiteral, VectorLiteral>
+        value;  ///< a VectorLiteral is an error that check/ explains
     Span span;
 };
 
@@ -230,13 +235,14 @@ using Declaration = std::variant<Rate, Input, Target, Predicate, Truth, Let, Mon
 struct Spec {
     Name name;  ///< empty text: missing or unreadable, already reported
     std::vector<Declaration> declarations;
-    /// Names of declarations that could not be read. check/ takes them as declared, so that one broken line does not
-    /// make every use of its name an error too. The reserved word `rate` stands for a `rate` or `period` declaration.
+    /// Names of declarations that could not be read. check/ takes them as declared, so that one
+    /// broken line does not make every use of its name an error too. The reserved word `rate`
+    /// stands for a `rate` or `period` declaration.
     std::vector<Name> unreadable;
 };
 
-/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again gives the same
-/// tree.
+/// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again
+/// gives the same tree.
 std::string print(const Spec& spec);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);

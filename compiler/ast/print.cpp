@@ -38,7 +38,9 @@ std::string text_of(const VectorLiteral& vector) {
 }
 
 std::string text_of(const MatrixLiteral& matrix) {
-    const auto row = [](const std::vector<Number>& values) { return text_of(VectorLiteral{values, {}}); };
+    const auto row = [](const std::vector<Number>& values) {
+        return text_of(VectorLiteral{values, {}});
+    };
     return fmt::format("[{}]", joined(matrix.rows, ", ", row));
 }
 
@@ -66,13 +68,15 @@ std::string text_of(const Aggregation& aggregation) {
 
 std::string text_of(const Distance& distance) {
     const std::string aggregation = distance.aggregation ? text_of(*distance.aggregation) : "";
-    const std::string weights = distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
+    const std::string weights =
+        distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
     const std::string names = joined(distance.point, ", ", [](const Name& n) { return n.text; });
     const std::string point = distance.point_is_vector ? fmt::format("[{}]", names) : names;
-    return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights, point, distance.target.text);
+    return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights, point,
+                       distance.target.text);
 }
 
-// ---- expressions ---------------------------------------------------------------------------------------------------
+// ---- expressions --------------------------------------------------------------------------------
 
 /// How tight an expression binds, from the loosest.
 enum ExprLevel : std::uint8_t { kSum, kProduct, kSign, kPrimary };
@@ -141,10 +145,19 @@ private:
     std::string& text_;
 };
 
-// ---- formulas ------------------------------------------------------------------------------------------------------
+// ---- formulas -----------------------------------------------------------------------------------
 
 /// How tight a formula binds, from the loosest.
-enum FormulaLevel : std::uint8_t { kIff, kImplies, kOr, kAnd, kBinary, kPrefix, kComparison, kAtom };
+enum FormulaLevel : std::uint8_t {
+    kIff,
+    kImplies,
+    kOr,
+    kAnd,
+    kBinary,
+    kPrefix,
+    kComparison,
+    kAtom
+};
 
 struct Operator {
     FormulaLevel level;
@@ -200,7 +213,9 @@ private:
     void print(const Formula& f) {
         const Operator op = operator_of(f.kind);
         switch (op.level) {
-            case kAtom: text_ += f.kind == Formula::Kind::name ? std::string_view(f.name) : op.symbol; break;
+            case kAtom:
+                text_ += f.kind == Formula::Kind::name ? std::string_view(f.name) : op.symbol;
+                break;
             case kComparison: comparison(f); break;
             case kPrefix: prefix(f, op); break;
             case kIff: chain(f, op, kIff, kImplies); break;
@@ -239,7 +254,7 @@ private:
     std::string& text_;
 };
 
-// ---- declarations --------------------------------------------------------------------------------------------------
+// ---- declarations -------------------------------------------------------------------------------
 
 std::string text_of(const Calibrated& calibrated) {
     std::string arguments;
@@ -261,9 +276,11 @@ std::string text_of(const Rate& rate) {
 }
 
 std::string text_of(const Input& input) {
-    std::string result = fmt::format("input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
-                                     text_of(input.type));
-    if (input.range) result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
+    std::string result = fmt::format(
+        "input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
+        text_of(input.type));
+    if (input.range)
+        result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
     if (input.hold) result += fmt::format(" hold {}", input.hold->text);
     return result;
 }
@@ -286,7 +303,8 @@ std::string text_of(const Let& let) {
 }
 
 std::string text_of(const Monitor& monitor) {
-    const std::string calibrated = monitor.calibrated ? fmt::format(" {}", text_of(*monitor.calibrated)) : "";
+    const std::string calibrated =
+        monitor.calibrated ? fmt::format(" {}", text_of(*monitor.calibrated)) : "";
     return fmt::format("{}monitor {} = {}{}", monitor.sliding ? "sliding " : "", monitor.name.text,
                        print(*monitor.formula), calibrated);
 }

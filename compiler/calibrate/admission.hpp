@@ -1,7 +1,8 @@
 // Which episodes a guarantee may be taken from.
-// Takes: what was read of every episode, and the episodes that thresholds behind it have seen. Gives: an error for each
-// that voids the guarantee: a target among its frames, the same episode twice, one that was seen. Keeps true: every
-// calibration asks here, and what is calibrated beyond this is exchangeable with what comes, as far as data can tell.
+// Takes: what was read of every episode, and the episodes that thresholds behind it have seen.
+// Gives: an error for each that voids the guarantee: a target among its frames, the same episode
+// twice, one that was seen. Keeps true: every calibration asks here, and what is calibrated beyond
+// this is exchangeable with what comes, as far as data can tell.
 #pragma once
 
 #include <cstdint>
@@ -30,8 +31,8 @@ void refuse_void(const check::Model& model, const std::vector<const Recorded*>& 
                  const std::vector<std::string>& seen, diag::Sink& sink);
 
 template <class Episode>
-void refuse_void(const check::Model& model, const std::vector<Episode>& episodes, const std::vector<std::string>& seen,
-                 diag::Sink& sink) {
+void refuse_void(const check::Model& model, const std::vector<Episode>& episodes,
+                 const std::vector<std::string>& seen, diag::Sink& sink) {
     std::vector<const Recorded*> recorded;
     for (const Episode& episode : episodes) recorded.push_back(&episode);
     refuse_void(model, recorded, seen, sink);

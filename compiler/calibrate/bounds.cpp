@@ -37,19 +37,24 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Covers the rounding of what is computed here in double.
 constexpr double kSlack = 1 + 1e-12;
 
-/// |computed - exact| of one row, or of a mean over `rows` rows, where the exact distance is `exact`. Concave in it, so
-/// what holds of rows holds of their mean.
-double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double exact, double magnitude) {
+/// |computed - exact| of one row, or of a mean over `rows` rows, where the exact distance is
+/// `exact`. Concave in it, so what holds of rows holds of their mean.
+double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double exact,
+             double magnitude) {
     double bound = etlmon::rounding_bound(plan::metric_id(distance), dimension, exact, magnitude);
     if (distance.aggregation == Aggregation::mean) bound += etlmon::mean_bound(rows, exact + bound);
     return bound * kSlack;
 }
 
-/// Two builds differ by twice the error of one. The greatest exact distance that may measure as `delta` solves
-/// exact = delta + error(exact); from below the iteration converges to it, because the error grows slower than exact.
-Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double delta, double magnitude) {
+/// Two builds differ by twice the error of one. The greatest exact distance that may measure as
+/// `delta` solves exact = delta + error(exact); from below the iteration converges to it, because
+/// the error grows slower than exact.
+Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double delta,
+                double magnitude) {
     if (std::isinf(delta)) return {delta, delta};
-    const auto error_at = [&](double exact) { return error(distance, rows, dimension, exact, magnitude); };
+    const auto error_at = [&](double exact) {
+        return error(distance, rows, dimension, exact, magnitude);
+    };
     double greatest = delta;
     for (int i = 0; i < 100; ++i) {
         const double next = delta + error_at(greatest);
@@ -58,16 +63,19 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
         if (settled) break;
     }
     greatest = greatest * kSlack + DBL_MIN;
-    // With full weights the error falls at first as `exact` grows, from r: it is r^2 / exact above r. Where delta is
-    // above 2 r the exact distance is at least delta / 2; below, no positive number is a lower bound, nor comes out.
+    // With full weights the error falls at first as `exact` grows, from r: it is r^2 / exact above
+    // r. Where delta is above 2 r the exact distance is at least delta / 2; below, no positive
+    // number is a lower bound, nor comes out.
     const double below = error_at(delta) + (magnitude > 0 ? error_at(delta / 2) : 0);
-    const bool cut_off = distance.metric == check::Metric::cosine && distance.aggregation != Aggregation::mean;
+    const bool cut_off =
+        distance.metric == check::Metric::cosine && distance.aggregation != Aggregation::mean;
     const double ceiling = cut_off ? 2.0 : kInfinity;
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
 /// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/error_bounds.hpp.
-double magnitude_of(const Distance& distance, const float* z, const float* g, std::uint32_t dimension) {
+double magnitude_of(const Distance& distance, const float* z, const float* g,
+                    std::uint32_t dimension) {
     std::vector<double> d(dimension);
     for (std::uint32_t i = 0; i < dimension; ++i)
         d[i] = std::abs(static_cast<double>(z[i]) - static_cast<double>(g[i]));
@@ -75,7 +83,8 @@ double magnitude_of(const Distance& distance, const float* z, const float* g, st
     for (std::size_t i = 0; i < dimension; ++i) {
         const float* row = distance.weights.data() + i * dimension;
         double along = 0;
-        for (std::size_t j = 0; j < dimension; ++j) along += std::abs(static_cast<double>(row[j])) * d[j];
+        for (std::size_t j = 0; j < dimension; ++j)
+            along += std::abs(static_cast<double>(row[j])) * d[j];
         sum += d[i] * along;
     }
     return sum;
@@ -86,7 +95,8 @@ double aggregate(const Distance& distance, std::vector<double> rows) {
         case Aggregation::min: return *std::min_element(rows.begin(), rows.end());
         case Aggregation::max: return *std::max_element(rows.begin(), rows.end());
         case Aggregation::mean:
-            return std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
+            return std::accumulate(rows.begin(), rows.end(), 0.0) /
+                   static_cast<double>(rows.size());
         case Aggregation::kth: break;
     }
     std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
@@ -101,9 +111,10 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     std::vector<double> highs;
     for (std::uint32_t k = 0; k < target.rows; ++k) {
         const float* g = target.values.data() + static_cast<std::size_t>(k) * target.dimension;
-        const float delta = etlmon::measure(etlmon::MetricId::mahalanobis, etlmon::AggregationId::min, 1, z, g, 1,
-                                            target.dimension, distance.weights.data(), nullptr)
-                                .delta;
+        const float delta =
+            etlmon::measure(etlmon::MetricId::mahalanobis, etlmon::AggregationId::min, 1, z, g, 1,
+                            target.dimension, distance.weights.data(), nullptr)
+                .delta;
         const Interval one = spread(row, 1, target.dimension, static_cast<double>(delta),
                                     magnitude_of(distance, z, g, target.dimension));
         lows.push_back(one.low);
@@ -116,15 +127,18 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     return result;
 }
 
-/// EXPR over intervals. Exact operands give an exact result; one so small that a build may flush it to zero does not.
+/// EXPR over intervals. Exact operands give an exact result; one so small that a build may flush it
+/// to zero does not.
 class Expression {
 public:
-    Expression(const check::Model& model, const plan::Evaluator& measured) : model_(model), measured_(measured) {}
+    Expression(const check::Model& model, const plan::Evaluator& measured)
+        : model_(model), measured_(measured) {}
 
     Range of(const Expr& e) const {
         std::vector<Range> a;
         for (const Expr& argument : e.arguments) a.push_back(of(argument));
-        const bool exact = std::all_of(a.begin(), a.end(), [](const Range& r) { return r.low == r.high; });
+        const bool exact =
+            std::all_of(a.begin(), a.end(), [](const Range& r) { return r.low == r.high; });
         const auto binary = [&](auto on_numbers, auto on_ranges) {
             if (exact) return flushed(on_numbers(a[0].low, a[1].low));
             return widened(on_ranges(a[0], a[1]));
@@ -134,15 +148,19 @@ public:
             case Expr::Kind::scalar: return flushed(*measured_.input(e.index));
             case Expr::Kind::distance: return distance(e.index);
             case Expr::Kind::negate: return check::negate(a[0]);
-            case Expr::Kind::add: return binary([](float x, float y) { return etlmon::add(x, y); }, check::add);
+            case Expr::Kind::add:
+                return binary([](float x, float y) { return etlmon::add(x, y); }, check::add);
             case Expr::Kind::subtract:
-                return binary([](float x, float y) { return etlmon::subtract(x, y); }, check::subtract);
+                return binary([](float x, float y) { return etlmon::subtract(x, y); },
+                              check::subtract);
             case Expr::Kind::multiply:
-                return binary([](float x, float y) { return etlmon::multiply(x, y); }, check::multiply);
+                return binary([](float x, float y) { return etlmon::multiply(x, y); },
+                              check::multiply);
             case Expr::Kind::divide:
                 return binary([](float x, float y) { return etlmon::divide(x, y); }, check::divide);
             case Expr::Kind::abs: return check::abs(a[0]);
-            case Expr::Kind::sqrt: return widened(check::sqrt(a[0]));  // may differ in the last place
+            case Expr::Kind::sqrt:
+                return widened(check::sqrt(a[0]));  // may differ in the last place
             case Expr::Kind::min: return check::min(a);
             case Expr::Kind::max: return check::max(a);
         }
@@ -156,8 +174,10 @@ private:
     }
 
     static Range widened(const Range& r) {
-        return {down(static_cast<double>(std::nextafter(r.low, -kFloatInfinity)) - static_cast<double>(FLT_MIN)),
-                up(static_cast<double>(std::nextafter(r.high, kFloatInfinity)) + static_cast<double>(FLT_MIN))};
+        return {down(static_cast<double>(std::nextafter(r.low, -kFloatInfinity)) -
+                     static_cast<double>(FLT_MIN)),
+                up(static_cast<double>(std::nextafter(r.high, kFloatInfinity)) +
+                   static_cast<double>(FLT_MIN))};
     }
 
     Range distance(Index index) const {
@@ -165,14 +185,17 @@ private:
         return {down(interval.low), up(interval.high)};
     }
 
-    static Interval of_distance(const check::Model& model, Index index, const plan::Evaluator& measured);
-    friend std::optional<Interval> etlc::calibrate::interval_of(const check::Model&, Index, const plan::Evaluator&);
+    static Interval of_distance(const check::Model& model, Index index,
+                                const plan::Evaluator& measured);
+    friend std::optional<Interval> etlc::calibrate::interval_of(const check::Model&, Index,
+                                                                const plan::Evaluator&);
 
     const check::Model& model_;
     const plan::Evaluator& measured_;
 };
 
-Interval Expression::of_distance(const check::Model& model, Index index, const plan::Evaluator& measured) {
+Interval Expression::of_distance(const check::Model& model, Index index,
+                                 const plan::Evaluator& measured) {
     const Distance& distance = model.distances[index];
     const check::Target& target = model.targets[distance.target];
     const float delta = measured.measured(index).delta;
@@ -182,22 +205,26 @@ Interval Expression::of_distance(const check::Model& model, Index index, const p
     std::vector<float> point;
     if (distance.point_is_vector)
         for (const Index input : distance.point) point.push_back(*measured.input(input));
-    return of_full_weights(distance, target,
-                           distance.point_is_vector ? point.data() : measured.input(distance.point[0]));
+    return of_full_weights(
+        distance, target,
+        distance.point_is_vector ? point.data() : measured.input(distance.point[0]));
 }
 
 }  // namespace
 
-Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double delta) {
+Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t dimension,
+                     double delta) {
     return spread(distance, rows, dimension, delta, 0);
 }
 
-std::optional<Interval> interval_of(const check::Model& model, Index predicate, const plan::Evaluator& measured) {
+std::optional<Interval> interval_of(const check::Model& model, Index predicate,
+                                    const plan::Evaluator& measured) {
     const check::Predicate& p = model.predicates[predicate];
     if (std::isnan(measured.distance(predicate))) return std::nullopt;
     if (p.plain_distance()) return Expression::of_distance(model, p.expression.index, measured);
     const Range range = Expression(model, measured).of(p.expression);
-    if (!(range.low <= range.high)) return Interval{-kInfinity, kInfinity};  // infinities that cancel
+    if (!(range.low <= range.high))
+        return Interval{-kInfinity, kInfinity};  // infinities that cancel
     return Interval{static_cast<double>(range.low), static_cast<double>(range.high)};
 }
 

@@ -24,7 +24,8 @@ std::string counted(std::uint64_t n, const std::string& noun) {
 
 class Refusing {
 public:
-    Refusing(const check::Model& model, const std::vector<Demonstration>& demonstrations, diag::Sink& sink)
+    Refusing(const check::Model& model, const std::vector<Demonstration>& demonstrations,
+             diag::Sink& sink)
         : model_(model), demonstrations_(demonstrations), sink_(sink) {}
 
     void report(Index predicate, std::size_t of, Refusal refusal) {
@@ -34,15 +35,17 @@ public:
             case Refusal::no_positives: no_positives(p); break;
             case Refusal::too_few: too_few(p); break;
             case Refusal::not_finite:
-                sink_.report(
-                    Code::no_threshold, p.threshold.span,
-                    fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no threshold lies beyond it",
-                                p.name, p.threshold.alpha));
+                sink_.report(Code::no_threshold, p.threshold.span,
+                             fmt::format("the score of '{}' at the rank of alpha = {} is infinite: "
+                                         "no threshold lies beyond it",
+                                         p.name, p.threshold.alpha));
                 break;
             case Refusal::no_f1:
-                sink_.report(Code::no_threshold, p.threshold.span,
-                             fmt::format("no observed value as threshold of '{}' finds a positive frame; it has {}",
-                                         p.name, counted(positives_, "positive frame")));
+                sink_.report(
+                    Code::no_threshold, p.threshold.span,
+                    fmt::format(
+                        "no observed value as threshold of '{}' finds a positive frame; it has {}",
+                        p.name, counted(positives_, "positive frame")));
                 break;
         }
     }
@@ -64,12 +67,14 @@ private:
         auto& error = sink_.report(
             Code::no_positive_frame, p.threshold.span,
             positives_ == 0
-                ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn its threshold from", p.name,
-                              all)
-                : fmt::format("the distance of '{}' is unknown at all {} where it is true, in {}", p.name,
-                              counted(positives_, "frame"), all));
+                ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn its "
+                              "threshold from",
+                              p.name, all)
+                : fmt::format("the distance of '{}' is unknown at all {} where it is true, in {}",
+                              p.name, counted(positives_, "frame"), all));
         for (const check::Truth& truth : model_.truths)
-            if (&model_.predicates[truth.predicate] == &p) error.note(truth.span, "its truth is here");
+            if (&model_.predicates[truth.predicate] == &p)
+                error.note(truth.span, "its truth is here");
     }
 
     void too_few(const check::Predicate& p) {
@@ -78,13 +83,16 @@ private:
         const std::string what = pooled ? "positive frame" : "demonstration";
         auto& error = sink_.report(
             Code::too_few_scores, p.threshold.span,
-            fmt::format("alpha = {} needs at least {}{}; there {} {}", p.threshold.alpha, counted(needed, what),
+            fmt::format("alpha = {} needs at least {}{}; there {} {}", p.threshold.alpha,
+                        counted(needed, what),
                         pooled ? "" : fmt::format(" in which '{}' is true at some frame", p.name),
-                        (pooled ? pooled_ : with_score_) == 1 ? "is" : "are", pooled ? pooled_ : with_score_));
+                        (pooled ? pooled_ : with_score_) == 1 ? "is" : "are",
+                        pooled ? pooled_ : with_score_));
         if (!pooled && with_score_ < demonstrations_.size())
-            error.note(fmt::format(
-                "of {}, {} without such a frame {} left out", counted(demonstrations_.size(), "demonstration"),
-                demonstrations_.size() - with_score_, demonstrations_.size() - with_score_ == 1 ? "is" : "are"));
+            error.note(fmt::format("of {}, {} without such a frame {} left out",
+                                   counted(demonstrations_.size(), "demonstration"),
+                                   demonstrations_.size() - with_score_,
+                                   demonstrations_.size() - with_score_ == 1 ? "is" : "are"));
     }
 
     const check::Model& model_;
@@ -96,11 +104,13 @@ private:
     std::uint64_t pooled_ = 0;
 };
 
-thresholds::Entry entry_of(const check::Model& model, Index predicate, const std::vector<Demonstration>& demonstrations,
-                           std::size_t of, const Fitted& fitted) {
+thresholds::Entry entry_of(const check::Model& model, Index predicate,
+                           const std::vector<Demonstration>& demonstrations, std::size_t of,
+                           const Fitted& fitted) {
     check::Provenance provenance = check::provenance(model, predicate);
-    const bool arrays_only = std::all_of(demonstrations.begin(), demonstrations.end(),
-                                         [&](const Demonstration& d) { return d.scores[of].from_array; });
+    const bool arrays_only =
+        std::all_of(demonstrations.begin(), demonstrations.end(),
+                    [&](const Demonstration& d) { return d.scores[of].from_array; });
     thresholds::Entry entry;
     entry.method = check::method_name(model.predicates[predicate].threshold.origin);
     entry.alpha = model.predicates[predicate].threshold.alpha;
@@ -117,18 +127,23 @@ thresholds::Entry entry_of(const check::Model& model, Index predicate, const std
 
 }  // namespace
 
-std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink) {
+std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
+                                     diag::Sink& sink) {
     const std::vector<Index> predicates = calibrated_predicates(model);
     if (predicates.empty()) {
-        sink.report(Code::nothing_to_calibrate, model.monitors.front().span, "nothing in this spec is calibrated")
-            .note("a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, alpha = 0.1);");
+        sink.report(Code::nothing_to_calibrate, model.monitors.front().span,
+                    "nothing in this spec is calibrated")
+            .note(
+                "a calibrated one is written: predicate p = min l2(z, t) <= calibrated(conformal, "
+                "alpha = 0.1);");
         return std::nullopt;
     }
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
     const Leaks leaks(model, predicates);
-    const auto demonstrations = over_episodes<Demonstration>(
-        paths, request, sink, [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
+    const auto demonstrations = over_episodes<Demonstration>(paths, request, sink, [&] {
+        return std::make_unique<Scorer>(model, leaks, predicates, request.names);
+    });
     if (!demonstrations) return std::nullopt;
     refuse_void(model, *demonstrations, {}, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -147,7 +162,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             continue;
         }
         if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
-            sink.report(Code::start_out_of_range, predicate.threshold.span, check::outside(predicate, out->epsilon))
+            sink.report(Code::start_out_of_range, predicate.threshold.span,
+                        check::outside(predicate, out->epsilon))
                 .note("give it lo and hi with room on both sides of the threshold");
             continue;
         }
@@ -155,13 +171,16 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
         threshold.value = all.back().epsilon;
         if (threshold.adaptation)
-            threshold.value = *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
+            threshold.value =
+                *check::start(*threshold.adaptation, threshold.value, predicate.upper_bound());
         threshold.n = all.back().n;
         threshold.k = all.back().k;
-        result.file.predicates[predicate.name] = entry_of(model, predicates[i], *demonstrations, i, all.back());
+        result.file.predicates[predicate.name] =
+            entry_of(model, predicates[i], *demonstrations, i, all.back());
     }
     if (sink.has_errors()) return std::nullopt;
-    for (const Demonstration& demonstration : *demonstrations) result.file.episodes.push_back(demonstration.hash);
+    for (const Demonstration& demonstration : *demonstrations)
+        result.file.episodes.push_back(demonstration.hash);
     result.report = report(calibrated, predicates, *demonstrations, all);
     return result;
 }

@@ -1,7 +1,8 @@
 // `etlc calibrate`: thresholds from labelled demonstrations.
-// Takes: a spec that may lack thresholds, and the episodes. Gives: the thresholds file and what a person should know
-// about it. Keeps true: the result is the same whatever the number of threads; one episode a thread is open at a time;
-// what voids the guarantee (too few demonstrations, one that is given twice, one that is its own target) is refused.
+// Takes: a spec that may lack thresholds, and the episodes. Gives: the thresholds file and what a
+// person should know about it. Keeps true: the result is the same whatever the number of threads;
+// one episode a thread is open at a time; what voids the guarantee (too few demonstrations, one
+// that is given twice, one that is its own target) is refused.
 #pragma once
 
 #include <functional>
@@ -19,7 +20,7 @@ namespace etlc::calibrate {
 
 struct Request {
     std::vector<std::string> data;  ///< files, folders and patterns
-    std::string groups;             ///< of .h5 files, those that are episodes; empty: the file is one
+    std::string groups;  ///< of .h5 files, those that are episodes; empty: the file is one
     data::NamesInFile names;
     unsigned jobs = 0;    ///< threads; 0: as many as the machine has
     std::string version;  ///< of etlc
@@ -33,10 +34,13 @@ struct Calibration {
 };
 
 /// Nothing where the sink now says why.
-std::optional<Calibration> calibrate(const check::Model& model, const Request& request, diag::Sink& sink);
+std::optional<Calibration> calibrate(const check::Model& model, const Request& request,
+                                     diag::Sink& sink);
 
-/// What the thresholds are, what they were taken from, and what they guarantee. `model` has them already.
+/// What the thresholds are, what they were taken from, and what they guarantee. `model` has them
+/// already.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Demonstration>& demonstrations, const std::vector<Fitted>& fitted);
+                   const std::vector<Demonstration>& demonstrations,
+                   const std::vector<Fitted>& fitted);
 
 }  // namespace etlc::calibrate

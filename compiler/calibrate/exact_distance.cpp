@@ -36,7 +36,8 @@ Directions directions(const std::vector<double>& z, double z_length, const float
 }
 
 /// (z - g)^T W (z - g)
-double quadratic_form(const check::Distance& distance, const std::vector<double>& z, const float* g) {
+double quadratic_form(const check::Distance& distance, const std::vector<double>& z,
+                      const float* g) {
     const std::size_t n = z.size();
     double sum = 0;
     for (std::size_t i = 0; i < n; ++i) {
@@ -52,11 +53,13 @@ double quadratic_form(const check::Distance& distance, const std::vector<double>
     return std::max(sum, 0.0);  // W is positive definite
 }
 
-double to_row(const check::Distance& distance, const std::vector<double>& z, double z_length, const float* g) {
+double to_row(const check::Distance& distance, const std::vector<double>& z, double z_length,
+              const float* g) {
     double sum = 0;
     double greatest = 0;
     switch (distance.metric) {
-        case Metric::cosine: return std::min(2.0, directions(z, z_length, g).apart / 2);  // 1 - u.v = |u - v|^2 / 2
+        case Metric::cosine:
+            return std::min(2.0, directions(z, z_length, g).apart / 2);  // 1 - u.v = |u - v|^2 / 2
         case Metric::angular: {
             const Directions d = directions(z, z_length, g);
             return 2 * std::atan2(std::sqrt(d.apart), std::sqrt(d.along));
@@ -79,7 +82,8 @@ double aggregate(const check::Distance& distance, std::vector<double> rows) {
         case check::Aggregation::min: return *std::min_element(rows.begin(), rows.end());
         case check::Aggregation::max: return *std::max_element(rows.begin(), rows.end());
         case check::Aggregation::mean:
-            return std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
+            return std::accumulate(rows.begin(), rows.end(), 0.0) /
+                   static_cast<double>(rows.size());
         case check::Aggregation::kth: break;
     }
     std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
@@ -91,12 +95,14 @@ double aggregate(const check::Distance& distance, std::vector<double> rows) {
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point) {
     const check::Target& target = model.targets[distance.target];
-    const bool of_directions = distance.metric == Metric::cosine || distance.metric == Metric::angular;
+    const bool of_directions =
+        distance.metric == Metric::cosine || distance.metric == Metric::angular;
     const double z_length = of_directions ? length(point.data(), point.size()) : 1;
     if (z_length == 0) return std::nullopt;
     std::vector<double> rows;
     for (std::size_t k = 0; k < target.rows; ++k)
-        rows.push_back(to_row(distance, point, z_length, target.values.data() + k * target.dimension));
+        rows.push_back(
+            to_row(distance, point, z_length, target.values.data() + k * target.dimension));
     return aggregate(distance, std::move(rows));
 }
 

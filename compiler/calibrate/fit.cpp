@@ -17,9 +17,13 @@ struct HalfF1 {
     std::uint64_t true_positives = 0;
     std::uint64_t of = 1;
 
-    double value() const { return 2 * static_cast<double>(true_positives) / static_cast<double>(of); }
+    double value() const {
+        return 2 * static_cast<double>(true_positives) / static_cast<double>(of);
+    }
     /// Frames are fewer than 2^32 in any memory, so the products fit.
-    bool operator<(const HalfF1& other) const { return true_positives * other.of < other.true_positives * of; }
+    bool operator<(const HalfF1& other) const {
+        return true_positives * other.of < other.true_positives * of;
+    }
 };
 
 }  // namespace
@@ -48,9 +52,11 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
 }
 
 Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
-    std::sort(labelled.begin(), labelled.end(), [](const auto& a, const auto& b) { return a.score < b.score; });
+    std::sort(labelled.begin(), labelled.end(),
+              [](const auto& a, const auto& b) { return a.score < b.score; });
     const auto is_positive = [](const Scores::Labelled& frame) { return frame.positive; };
-    const auto positives = static_cast<std::uint64_t>(std::count_if(labelled.begin(), labelled.end(), is_positive));
+    const auto positives =
+        static_cast<std::uint64_t>(std::count_if(labelled.begin(), labelled.end(), is_positive));
     if (positives == 0) return Refusal::no_positives;
     Fitted result;
     result.n = labelled.size();
@@ -60,10 +66,11 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
         const float epsilon = labelled[i].score;
         const std::size_t before = i;
         const std::uint64_t positives_before = true_positives;
-        for (; i < labelled.size() && labelled[i].score == epsilon; ++i) true_positives += labelled[i].positive ? 1 : 0;
+        for (; i < labelled.size() && labelled[i].score == epsilon; ++i)
+            true_positives += labelled[i].positive ? 1 : 0;
         if (std::isinf(epsilon)) continue;
-        const HalfF1 here =
-            strict ? HalfF1{positives_before, positives + before} : HalfF1{true_positives, positives + i};
+        const HalfF1 here = strict ? HalfF1{positives_before, positives + before}
+                                   : HalfF1{true_positives, positives + i};
         if (!(best < here)) continue;  // of equals the first is the strictest
         best = here;
         result.epsilon = epsilon;
@@ -74,7 +81,8 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
     return result;
 }
 
-Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of) {
+Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations,
+        std::size_t of) {
     const bool is_f1 = predicate.threshold.origin == ThresholdOrigin::f1;
     std::vector<Scores::Labelled> labelled;
     std::vector<double> reaches;

@@ -1,7 +1,7 @@
 // From scores to thresholds.
-// Takes: the scores of a predicate in every demonstration. Gives: epsilon, or why there is none. Keeps true:
-// Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et al.), mirrored for >= and >; the
-// rank is never clamped: too few demonstrations are an error.
+// Takes: the scores of a predicate in every demonstration. Gives: epsilon, or why there is none.
+// Keeps true: Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et
+// al.), mirrored for >= and >; the rank is never clamped: too few demonstrations are an error.
 #pragma once
 
 #include <cstdint>
@@ -17,7 +17,8 @@ struct Fitted {
     float epsilon = 0;    ///< of an adaptive threshold: before it is put on its grid
     std::uint64_t n = 0;  ///< scores: demonstrations (conformal) or frames
     std::uint64_t k = 0;  ///< rank taken; 0 for f1
-    /// Conformal: all, as far out as any build may measure them, ascending. Of the pooled methods the one taken.
+    /// Conformal: all, as far out as any build may measure them, ascending. Of the pooled methods
+    /// the one taken.
     std::vector<double> scores;
     double f1 = 0;  ///< f1: what epsilon reaches on the frames that it was chosen on
 };
@@ -38,17 +39,19 @@ struct OutOfRange {
 using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 
 /// `of`: which of the demonstrations' scores are this predicate's.
-Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations, std::size_t of);
+Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations,
+        std::size_t of);
 
-/// From scores of which a smaller one always is a better one, to thresholds and scores as they are compared: those of
+/// From scores of which a smaller one always is a better one, to thresholds and scores as they are
+/// compared: those of
 /// >= and > change their sign. Scores are ascending after it.
 void mirror(Fitted& fitted, bool upper_bound);
 
 /// The first float32 strictly beyond the k-th smallest, k the rank of alpha.
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
-/// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1; of equals the
-/// least. Scores are those of all labelled frames.
+/// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1;
+/// of equals the least. Scores are those of all labelled frames.
 Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict);
 
 }  // namespace etlc::calibrate

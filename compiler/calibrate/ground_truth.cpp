@@ -19,7 +19,8 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
         formula.kind = check::Formula::Kind::boolean_input;
         formula.index = label;
     }
-    for (check::Monitor& monitor : result.model.monitors) monitor.calibration.reset();  // the truth needs no shift
+    for (check::Monitor& monitor : result.model.monitors)
+        monitor.calibration.reset();  // the truth needs no shift
     result.model.truths.clear();
     return result;
 }

@@ -21,8 +21,8 @@ void collect_distances(const Expr& e, std::vector<Index>& distances) {
     for (const Expr& argument : e.arguments) collect_distances(argument, distances);
 }
 
-/// How far a number moves when it is rounded to the input's type. Targets are float32, and so are the samples of all
-/// inputs but these two.
+/// How far a number moves when it is rounded to the input's type. Targets are float32, and so are
+/// the samples of all inputs but these two.
 double rounding(const Input& input, double x) {
     constexpr double kABitMore = 1 + 0x1p-8;
     switch (input.type) {
@@ -34,19 +34,21 @@ double rounding(const Input& input, double x) {
 
 double length(const float* v, std::size_t n) {
     double square = 0;
-    for (std::size_t i = 0; i < n; ++i) square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
+    for (std::size_t i = 0; i < n; ++i)
+        square += static_cast<double>(v[i]) * static_cast<double>(v[i]);
     return std::sqrt(square);
 }
 
-/// A vector of scalars may well come to lie where somebody has written a target down: a robot stops at the origin. Rows
-/// of a file are looked for all the same, for they may have been recorded.
+/// A vector of scalars may well come to lie where somebody has written a target down: a robot stops
+/// at the origin. Rows of a file are looked for all the same, for they may have been recorded.
 bool may_be_recorded(const check::Model& model, const Distance& distance) {
     return !distance.point_is_vector || !model.targets[distance.target].path.empty();
 }
 
 /// A scalar that counts as missing.
 bool outside(const Input& input, const plan::Sample& sample) {
-    return input.has_range && !(input.range.low <= sample.values[0] && sample.values[0] <= input.range.high);
+    return input.has_range &&
+           !(input.range.low <= sample.values[0] && sample.values[0] <= input.range.high);
 }
 
 /// The numbers of a vector of scalars; empty where one is missing.
@@ -61,12 +63,15 @@ std::vector<float> gathered(const check::Model& model, const Distance& distance,
     return point;
 }
 
-/// Two numbers of a row and a sample are told apart where they differ by more than the sample was rounded.
+/// Two numbers of a row and a sample are told apart where they differ by more than the sample was
+/// rounded.
 struct Rounded {
     const Input& input;
     double relative = 0;  ///< of the row's number, which by direction has the sample's length
 
-    bool same(double x, double g) const { return std::abs(x - g) <= relative * std::abs(g) + rounding(input, x); }
+    bool same(double x, double g) const {
+        return std::abs(x - g) <= relative * std::abs(g) + rounding(input, x);
+    }
 };
 
 /// By direction: how far the length of z is from that of what was rounded to it, relative to it.
@@ -94,11 +99,12 @@ void Leaks::watch(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
     const check::Target& target = model_.targets[distance.target];
     Watched watched{predicate, index, false, {}, {}};
-    watched.by_direction =
-        target.dimension > 1 && (distance.metric == Metric::cosine || distance.metric == Metric::angular);
+    watched.by_direction = target.dimension > 1 && (distance.metric == Metric::cosine ||
+                                                    distance.metric == Metric::angular);
     const bool known = std::any_of(watched_.begin(), watched_.end(), [&](const Watched& other) {
         const Distance& of = model_.distances[other.distance];
-        return of.point == distance.point && of.target == distance.target && other.by_direction == watched.by_direction;
+        return of.point == distance.point && of.target == distance.target &&
+               other.by_direction == watched.by_direction;
     });
     if (known) return;
     for (std::uint32_t row = 0; row < target.rows; ++row) {
@@ -110,7 +116,8 @@ void Leaks::watch(Index predicate, Index index) {
     watched_.push_back(std::move(watched));
 }
 
-std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples, std::uint64_t frame) const {
+std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
+                                std::uint64_t frame) const {
     for (const Watched& watched : watched_) {
         const auto row = row_of(watched, samples);
         if (row) return Leak{watched.predicate, watched.distance, *row, frame};
@@ -118,12 +125,15 @@ std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples, std::u
     return std::nullopt;
 }
 
-/// Row by row, of which the first element tells nearly all apart. z is the row g or, by direction, |z| / |g| times g.
-std::optional<std::uint32_t> Leaks::row_of(const Watched& watched, const std::vector<plan::Sample>& samples) const {
+/// Row by row, of which the first element tells nearly all apart. z is the row g or, by direction,
+/// |z| / |g| times g.
+std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
+                                           const std::vector<plan::Sample>& samples) const {
     const Distance& distance = model_.distances[watched.distance];
     const check::Target& target = model_.targets[distance.target];
     const plan::Sample& sample = samples[distance.point[0]];
-    const auto vector = distance.point_is_vector ? gathered(model_, distance, samples) : std::vector<float>{};
+    const auto vector =
+        distance.point_is_vector ? gathered(model_, distance, samples) : std::vector<float>{};
     const std::vector<float>& z = distance.point_is_vector ? vector : sample.values;
     if (!sample.present || z.empty()) return std::nullopt;
     const double size = watched.by_direction ? length(z.data(), z.size()) : 1;

@@ -18,7 +18,8 @@ std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::funct
             if (!first) first = std::current_exception();
         }
     };
-    const std::size_t wanted = std::max(1U, asked > 0 ? asked : std::thread::hardware_concurrency());
+    const std::size_t wanted =
+        std::max(1U, asked > 0 ? asked : std::thread::hardware_concurrency());
     const std::size_t threads = std::min(wanted, most);
     std::vector<std::thread> others;
     try {

@@ -30,8 +30,8 @@ std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::funct
 /// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an
 /// episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
 template <class T, class Request, class Make>
-std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths, const Request& request,
-                                            diag::Sink& sink, Make make) {
+std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
+                                            const Request& request, diag::Sink& sink, Make make) {
     std::vector<std::optional<diag::Result<T>>> results(paths.size());
     std::atomic<std::size_t> next = 0;
     std::size_t done = 0;

@@ -62,8 +62,10 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
 
 Failure no_label(const check::Model& model, Index predicate) {
     const std::string& name = model.predicates[predicate].name;
-    return {Code::no_label, fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it",
-                                        name, data::in_quotes(array_name(model, predicate)))};
+    return {
+        Code::no_label,
+        fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it",
+                    name, data::in_quotes(array_name(model, predicate)))};
 }
 
 }  // namespace
@@ -75,7 +77,8 @@ std::vector<Index> identity_inputs(const check::Model& model) {
         for (const Index input : predicate.inputs) {
             const std::pair<std::string, Index> named{model.inputs[input].name, input};
             all.insert(named);
-            if (predicate.threshold.origin != check::ThresholdOrigin::literal) calibrated.insert(named);
+            if (predicate.threshold.origin != check::ThresholdOrigin::literal)
+                calibrated.insert(named);
         }
     }
     std::vector<Index> result;
@@ -116,8 +119,8 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     // What only truths read may be absent where arrays stand in for them.
     std::vector<std::size_t> identity;
     for (const Index input : wanted.identity)
-        identity.push_back(
-            static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) - inputs.begin()));
+        identity.push_back(static_cast<std::size_t>(
+            std::lower_bound(inputs.begin(), inputs.end(), input) - inputs.begin()));
     Recording result(model, std::move(identity));
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
@@ -146,7 +149,8 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     }
     result.channel_inputs_ = inputs;
     for (const Index input : inputs)
-        result.narrowed_.push_back(std::find(wanted.inputs.begin(), wanted.inputs.end(), input) != wanted.inputs.end());
+        result.narrowed_.push_back(std::find(wanted.inputs.begin(), wanted.inputs.end(), input) !=
+                                   wanted.inputs.end());
     result.samples_.resize(model.inputs.size());
     result.frame_.resize(model.inputs.size());
     return result;
@@ -173,7 +177,8 @@ diag::Result<bool> Recording::narrow() {
         if (!narrowed_[c]) continue;
         const Index input = channel_inputs_[c];
         std::string why;
-        auto sample = plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
+        auto sample =
+            plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
         if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
         samples_[input] = std::move(*sample);
     }

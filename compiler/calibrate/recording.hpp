@@ -1,7 +1,8 @@
-// One recorded episode, a frame after the other: what the monitor would have been given, and what was true.
-// Takes: what is wanted of an episode, and how to open it. Gives: per frame the samples in the monitor's precision and
-// the label of every predicate; at the end a hash of the content. Keeps true: memory is that of one frame (and of the
-// windows of truths); a Boolean array `truth.NAME` in the episode stands in for the spec's `truth NAME`.
+// One recorded episode, a frame after the other: what the monitor would have been given, and what
+// was true. Takes: what is wanted of an episode, and how to open it. Gives: per frame the samples
+// in the monitor's precision and the label of every predicate; at the end a hash of the content.
+// Keeps true: memory is that of one frame (and of the windows of truths); a Boolean array
+// `truth.NAME` in the episode stands in for the spec's `truth NAME`.
 #pragma once
 
 #include <functional>
@@ -24,22 +25,24 @@ struct Wanted {
     std::vector<Index> identity;    ///< inputs that the hash is made of, all of them wanted too
 };
 
-/// The inputs that predicates with a calibrated threshold read, in order of their names: two episodes with equal
-/// samples of these give equal scores, whatever else they hold. Without such a predicate, the inputs of all.
+/// The inputs that predicates with a calibrated threshold read, in order of their names: two
+/// episodes with equal samples of these give equal scores, whatever else they hold. Without such a
+/// predicate, the inputs of all.
 std::vector<Index> identity_inputs(const check::Model& model);
 
-/// The predicates whose truth is known: from the spec, or from an array in the episode of that path. Failures do not
-/// name the path.
+/// The predicates whose truth is known: from the spec, or from an array in the episode of that
+/// path. Failures do not name the path.
 diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
                                              const data::NamesInFile& names);
 
 /// Opens an episode with these channels.
-using Opener = std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
+using Opener =
+    std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
 
 class Recording {
 public:
-    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an array. They do
-    /// not name the episode.
+    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an
+    /// array. They do not name the episode.
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     /// The next frame; false at the end of the episode.

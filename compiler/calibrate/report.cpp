@@ -48,24 +48,31 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                                counted(fitted.n, "labelled frame"));
         case ThresholdOrigin::conformal:
             return fmt::format(
-                "conformal, alpha = {}: beyond score {} of {}, from the {}, one of each demonstration\n"
-                "    a new demonstration is covered with probability >= 1 - {}; given these {}, with {:.3f} to {:.3f} "
+                "conformal, alpha = {}: beyond score {} of {}, from the {}, one of each "
+                "demonstration\n"
+                "    a new demonstration is covered with probability >= 1 - {}; given these {}, "
+                "with {:.3f} to {:.3f} "
                 "(5 % and 95 % quantile of Beta({}, {}), without ties)",
                 threshold.alpha, fitted.k, fitted.n, from, threshold.alpha, fitted.n,
-                check::coverage_quantile(fitted.n, fitted.k, 0.05), check::coverage_quantile(fitted.n, fitted.k, 0.95),
-                fitted.k, fitted.n + 1 - fitted.k);
+                check::coverage_quantile(fitted.n, fitted.k, 0.05),
+                check::coverage_quantile(fitted.n, fitted.k, 0.95), fitted.k,
+                fitted.n + 1 - fitted.k);
         case ThresholdOrigin::class_conditional:
             return fmt::format(
-                "class_conditional, alpha = {}: beyond score {} of {}, from the {}, one of each positive frame\n"
-                "    a positive frame is covered with probability >= 1 - {} where frames are exchangeable, which those "
+                "class_conditional, alpha = {}: beyond score {} of {}, from the {}, one of each "
+                "positive frame\n"
+                "    a positive frame is covered with probability >= 1 - {} where frames are "
+                "exchangeable, which those "
                 "of one recording seldom are; no guarantee for episodes",
                 threshold.alpha, fitted.k, fitted.n, from, threshold.alpha);
         case ThresholdOrigin::adaptive: {
             const check::Adaptation& moves = *threshold.adaptation;
             return fmt::format(
-                "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from the {}, one of each "
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from "
+                "the {}, one of each "
                 "demonstration\n"
-                "    of the first T labelled positive frames it misses at most {}, H being the misses at which the end "
+                "    of the first T labelled positive frames it misses at most {}, H being the "
+                "misses at which the end "
                 "of "
                 "its range held it back",
                 threshold.alpha, moves.gamma, moves.lo, moves.hi, fitted.k, fitted.n, from,
@@ -76,31 +83,36 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     return "";
 }
 
-std::string predicate_report(const check::Model& model, Index index, const std::vector<Demonstration>& demonstrations,
-                             std::size_t of, const Fitted& fitted) {
+std::string predicate_report(const check::Model& model, Index index,
+                             const std::vector<Demonstration>& demonstrations, std::size_t of,
+                             const Fitted& fitted) {
     const check::Predicate& predicate = model.predicates[index];
     const Totals totals(demonstrations, of);
-    std::string text = fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
-                                   predicate.name, predicate.text, predicate.threshold.value, how(predicate, fitted),
-                                   totals.positives, totals.negatives);
+    std::string text =
+        fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
+                    predicate.name, predicate.text, predicate.threshold.value,
+                    how(predicate, fitted), totals.positives, totals.negatives);
     if (totals.unlabelled > 0) text += fmt::format(", {} unknown and left out", totals.unlabelled);
     text += '\n';
     if (totals.from_array > 0)
-        text += fmt::format("    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
-                            totals.from_array, counted(demonstrations.size(), "demonstration"), predicate.name);
+        text += fmt::format(
+            "    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
+            totals.from_array, counted(demonstrations.size(), "demonstration"), predicate.name);
     const bool by_demonstration =
         predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
     if (by_demonstration && totals.without_score > 0)
-        text +=
-            fmt::format("    {} without a positive frame left out\n", counted(totals.without_score, "demonstration"));
+        text += fmt::format("    {} without a positive frame left out\n",
+                            counted(totals.without_score, "demonstration"));
     if (totals.unmeasured > 0)
-        text += fmt::format("    {} of unknown distance skipped\n", counted(totals.unmeasured, "labelled frame"));
+        text += fmt::format("    {} of unknown distance skipped\n",
+                            counted(totals.unmeasured, "labelled frame"));
     return text;
 }
 
 std::string monitor_report(const check::Model& model) {
     std::size_t widest = 0;
-    for (const check::Monitor& monitor : model.monitors) widest = std::max(widest, monitor.name.size());
+    for (const check::Monitor& monitor : model.monitors)
+        widest = std::max(widest, monitor.name.size());
     std::string text = "\nguarantees\n";
     bool zero_aside = false;
     for (const check::Monitor& monitor : model.monitors) {
@@ -110,12 +122,14 @@ std::string monitor_report(const check::Model& model) {
             if (claim.part.empty())
                 text += fmt::format("    {:<{}}  {}\n", monitor.name, widest, check::text(claim));
             else
-                text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part, check::text(claim));
+                text += fmt::format("    {:<{}}  of its part {}: {}\n", "", widest, claim.part,
+                                    check::text(claim));
         }
     }
     if (zero_aside) text += fmt::format("    {}\n", check::kZeroAside);
     return text +
-           "    Probabilities are over the demonstrations and the new episode together, which have to be exchangeable, "
+           "    Probabilities are over the demonstrations and the new episode together, which have "
+           "to be exchangeable, "
            "per episode as recorded.\n"
            "    Where a sample is missing, what is said of successes does not hold.\n";
 }
@@ -123,11 +137,12 @@ std::string monitor_report(const check::Model& model) {
 }  // namespace
 
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Demonstration>& demonstrations, const std::vector<Fitted>& fitted) {
+                   const std::vector<Demonstration>& demonstrations,
+                   const std::vector<Fitted>& fitted) {
     std::uint64_t frames = 0;
     for (const Demonstration& demonstration : demonstrations) frames += demonstration.frames;
-    std::string text =
-        fmt::format("{}, {}\n", counted(demonstrations.size(), "demonstration"), counted(frames, "frame"));
+    std::string text = fmt::format("{}, {}\n", counted(demonstrations.size(), "demonstration"),
+                                   counted(frames, "frame"));
     for (std::size_t i = 0; i < predicates.size(); ++i)
         text += predicate_report(model, predicates[i], demonstrations, i, fitted[i]);
     return text + monitor_report(model);

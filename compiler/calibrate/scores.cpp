@@ -21,7 +21,8 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
     return found;
 }
 
-Scorer::Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates, data::NamesInFile names)
+Scorer::Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates,
+               data::NamesInFile names)
     : model_(model),
       leaks_(leaks),
       predicates_(std::move(predicates)),

@@ -1,7 +1,7 @@
 // Nonconformity scores: what the calibrated predicates measured in one demonstration.
-// Takes: a demonstration. Gives: per calibrated predicate its score and the counts that the report needs. Keeps true:
-// distances come from the kernels that the monitor uses; memory is that of one frame, but for the pooled methods, which
-// keep a number for every frame that they pool.
+// Takes: a demonstration. Gives: per calibrated predicate its score and the counts that the report
+// needs. Keeps true: distances come from the kernels that the monitor uses; memory is that of one
+// frame, but for the pooled methods, which keep a number for every frame that they pool.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +14,8 @@
 
 namespace etlc::calibrate {
 
-/// One predicate in one demonstration. Scores are negated for >= and >, so that a smaller one always is a better one.
+/// One predicate in one demonstration. Scores are negated for >= and >, so that a smaller one
+/// always is a better one.
 struct Scores {
     struct Labelled {
         float score = 0;
@@ -42,7 +43,8 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 /// Scores one demonstration after the other. Not shared between threads.
 class Scorer {
 public:
-    Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates, data::NamesInFile names);
+    Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates,
+           data::NamesInFile names);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
 

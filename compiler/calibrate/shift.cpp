@@ -51,33 +51,37 @@ struct Totals {
     }
 };
 
-void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t episodes, Refusal refusal,
-            diag::Sink& sink) {
+void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t episodes,
+            Refusal refusal, diag::Sink& sink) {
     const check::Threshold& threshold = monitor.calibration->threshold;
     if (refusal == Refusal::no_positives) {
-        sink.report(
-            Code::no_positive_frame, threshold.span,
-            fmt::format("the ground truth of '{}' is {} at no step of {}, so there is nothing to learn its shift from",
-                        monitor.name, truth_word(monitor), counted(episodes, "episode")));
+        sink.report(Code::no_positive_frame, threshold.span,
+                    fmt::format("the ground truth of '{}' is {} at no step of {}, so there is "
+                                "nothing to learn its shift from",
+                                monitor.name, truth_word(monitor), counted(episodes, "episode")));
     } else if (refusal == Refusal::too_few) {
         auto& error = sink.report(
             Code::too_few_scores, threshold.span,
-            fmt::format(
-                "alpha = {} needs at least {} in which the ground truth of '{}' is {} at some step; there {} {}",
-                threshold.alpha, counted(check::scores_needed(threshold.alpha), "episode"), monitor.name,
-                truth_word(monitor), totals.with_score == 1 ? "is" : "are", totals.with_score));
+            fmt::format("alpha = {} needs at least {} in which the ground truth of '{}' is {} at "
+                        "some step; there {} {}",
+                        threshold.alpha, counted(check::scores_needed(threshold.alpha), "episode"),
+                        monitor.name, truth_word(monitor), totals.with_score == 1 ? "is" : "are",
+                        totals.with_score));
         if (totals.with_score < episodes)
-            error.note(fmt::format("of {}, {} without such a step {} left out", counted(episodes, "episode"),
-                                   episodes - totals.with_score, episodes - totals.with_score == 1 ? "is" : "are"));
+            error.note(fmt::format("of {}, {} without such a step {} left out",
+                                   counted(episodes, "episode"), episodes - totals.with_score,
+                                   episodes - totals.with_score == 1 ? "is" : "are"));
     } else {
-        sink.report(Code::no_threshold, threshold.span,
-                    fmt::format("the score of '{}' at the rank of alpha = {} is infinite: no shift lies beyond it",
-                                monitor.name, threshold.alpha));
+        sink.report(
+            Code::no_threshold, threshold.span,
+            fmt::format(
+                "the score of '{}' at the rank of alpha = {} is infinite: no shift lies beyond it",
+                monitor.name, threshold.alpha));
     }
 }
 
-thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor, const Fitted& fitted,
-                           const std::vector<MonitorEpisode>& episodes) {
+thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor,
+                           const Fitted& fitted, const std::vector<MonitorEpisode>& episodes) {
     check::Provenance provenance = check::provenance(model, monitor);
     thresholds::Entry entry;
     entry.method = "conformal";
@@ -94,23 +98,29 @@ thresholds::Entry entry_of(const check::Model& model, const check::Monitor& moni
     return entry;
 }
 
-std::string monitor_report(const check::Model& model, const check::Monitor& monitor, const Totals& totals,
-                           const Fitted& fitted, std::size_t episodes) {
+std::string monitor_report(const check::Model& model, const check::Monitor& monitor,
+                           const Totals& totals, const Fitted& fitted, std::size_t episodes) {
     std::string text = fmt::format(
         "\n{}: rho of {} less {:.9g}\n"
-        "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose ground truth is {} "
+        "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose "
+        "ground truth is {} "
         "at "
         "some step\n"
-        "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % quantile, without ties)\n",
-        monitor.name, check::shown(model, monitor.formula), fitted.epsilon, monitor.calibration->threshold.alpha,
-        fitted.k, fitted.n, against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
-        check::text(check::claims(model, monitor)[0]), fitted.n, 1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
+        "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
+        "quantile, without ties)\n",
+        monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
+        monitor.calibration->threshold.alpha, fitted.k, fitted.n,
+        against_alarms(monitor) ? "smallest" : "greatest", truth_word(monitor),
+        check::text(check::claims(model, monitor)[0]), fitted.n,
+        1 - check::coverage_quantile(fitted.n, fitted.k, 0.05),
         1 - check::coverage_quantile(fitted.n, fitted.k, 0.95));
     if (totals.with_score < episodes)
-        text += fmt::format("    {} without such a step left out\n", counted(episodes - totals.with_score, "episode"));
+        text += fmt::format("    {} without such a step left out\n",
+                            counted(episodes - totals.with_score, "episode"));
     if (totals.unknown > 0)
-        text += fmt::format("    {} at which a missing label leaves the ground truth open skipped\n",
-                            counted(totals.unknown, "step"));
+        text +=
+            fmt::format("    {} at which a missing label leaves the ground truth open skipped\n",
+                        counted(totals.unknown, "step"));
     return text;
 }
 
@@ -123,7 +133,8 @@ std::vector<Index> calibrated_monitors(const check::Model& model) {
     return found;
 }
 
-std::optional<std::vector<Index>> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors,
+std::optional<std::vector<Index>> labelled_predicates(const check::Model& model,
+                                                      const std::vector<Index>& monitors,
                                                       const Request& request, diag::Sink& sink) {
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -147,7 +158,8 @@ check::Model unshifted(check::Model model) {
 }
 
 std::optional<Calibration> calibrate_monitors(const check::Model& model, const MonitorPlans& plans,
-                                              thresholds::File before, const Request& request, diag::Sink& sink) {
+                                              thresholds::File before, const Request& request,
+                                              diag::Sink& sink) {
     const std::vector<Index> monitors = calibrated_monitors(model);
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -164,7 +176,8 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, const M
     result.file.etlc = request.version;
     std::uint64_t frames = 0;
     for (const MonitorEpisode& episode : *episodes) frames += episode.frames;
-    result.report = fmt::format("{}, {}\n", counted(episodes->size(), "episode"), counted(frames, "frame"));
+    result.report =
+        fmt::format("{}, {}\n", counted(episodes->size(), "episode"), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
         const Totals totals(*episodes, i);

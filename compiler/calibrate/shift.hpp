@@ -1,8 +1,9 @@
 // Calibration of whole monitors: by how much rho has to be shifted.
-// Takes: a spec whose predicates have their thresholds, and labelled episodes that these were not calibrated on. Gives:
-// per calibrated monitor a shift. Keeps true: the score of an episode is the greatest rho over the steps at which the
-// ground-truth monitor is violated (against missed_success: the least over those at which it is satisfied), in every
-// build; the shift is strictly beyond score k, so a covered episode has no such step with the wrong sign.
+// Takes: a spec whose predicates have their thresholds, and labelled episodes that these were not
+// calibrated on. Gives: per calibrated monitor a shift. Keeps true: the score of an episode is the
+// greatest rho over the steps at which the ground-truth monitor is violated (against
+// missed_success: the least over those at which it is satisfied), in every build; the shift is
+// strictly beyond score k, so a covered episode has no such step with the wrong sign.
 #pragma once
 
 #include <optional>
@@ -19,9 +20,10 @@ namespace etlc::calibrate {
 /// Monitors of the model that are calibrated as a whole.
 std::vector<Index> calibrated_monitors(const check::Model& model);
 
-/// Predicates in these monitors that get labels: all that are not their own truth, and those that the first episode has
-/// an array of labels for. Nothing where the sink now says why.
-std::optional<std::vector<Index>> labelled_predicates(const check::Model& model, const std::vector<Index>& monitors,
+/// Predicates in these monitors that get labels: all that are not their own truth, and those that
+/// the first episode has an array of labels for. Nothing where the sink now says why.
+std::optional<std::vector<Index>> labelled_predicates(const check::Model& model,
+                                                      const std::vector<Index>& monitors,
                                                       const Request& request, diag::Sink& sink);
 
 /// The model without shifts: what its plan is made of.
@@ -34,7 +36,8 @@ struct MonitorPlans {
     const GroundTruth& ground_truth;
 };
 
-/// One monitor in one episode. Scores are negated for missed_success, so that a smaller one always is a better one.
+/// One monitor in one episode. Scores are negated for missed_success, so that a smaller one always
+/// is a better one.
 struct MonitorScore {
     std::uint64_t steps = 0;    ///< at which the truth is what the monitor must not miss
     std::uint64_t unknown = 0;  ///< at which a missing sample leaves that open
@@ -45,9 +48,10 @@ struct MonitorEpisode : Recorded {
     std::vector<MonitorScore> scores;  ///< per calibrated monitor
 };
 
-/// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the predicates (or an
-/// empty one where all are literal). Nothing where the sink now says why.
+/// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the
+/// predicates (or an empty one where all are literal). Nothing where the sink now says why.
 std::optional<Calibration> calibrate_monitors(const check::Model& model, const MonitorPlans& plans,
-                                              thresholds::File before, const Request& request, diag::Sink& sink);
+                                              thresholds::File before, const Request& request,
+                                              diag::Sink& sink);
 
 }  // namespace etlc::calibrate

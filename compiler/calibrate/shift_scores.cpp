@@ -36,8 +36,9 @@ std::vector<Index> inputs_of(const check::Model& model, const MonitorPlans& plan
 
 }  // namespace
 
-MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans, const Leaks& leaks,
-                             const std::vector<Index>& monitors, const data::NamesInFile& names)
+MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plans,
+                             const Leaks& leaks, const std::vector<Index>& monitors,
+                             const data::NamesInFile& names)
     : model_(model),
       plans_(plans),
       leaks_(leaks),
@@ -46,14 +47,16 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       highest_(plans.monitors),
       lowest_(plans.monitors),
       truths_(plans.truths),
-      wanted_{&model, inputs_of(model, plans), labelled_predicates(plans.ground_truth), identity_inputs(model)} {
+      wanted_{&model, inputs_of(model, plans), labelled_predicates(plans.ground_truth),
+              identity_inputs(model)} {
     for (const Index monitor : monitors) {
         said_at_.push_back(position(plans.monitors, monitor));
         truth_at_.push_back(position(plans.truths, monitor));
     }
     lowest_.replace_literals([this](Index p) { return spread(model_, p, lowest_); });
-    // A verdict reads the low end: of a literal that is the first end, of a negated one the second. With the ends
-    // exchanged it is the highest that a build may have, while the range of a missing sample stays as it is.
+    // A verdict reads the low end: of a literal that is the first end, of a negated one the second.
+    // With the ends exchanged it is the highest that a build may have, while the range of a missing
+    // sample stays as it is.
     highest_.replace_literals([this](Index p) {
         const plan::Value value = spread(model_, p, highest_);
         return plan::Value{value.high, value.low};
@@ -77,8 +80,10 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
         std::vector<plan::Sample> labelled = recording->samples();
         labelled.resize(plans_.ground_truth.model.inputs.size());
         for (const Index predicate : wanted_.predicates)
-            labelled[plans_.ground_truth.inputs[predicate]] = sample_of(recording->label(predicate));
-        note(truths_.step(labelled), highest_.step(recording->samples()), lowest_.step(recording->samples()), result);
+            labelled[plans_.ground_truth.inputs[predicate]] =
+                sample_of(recording->label(predicate));
+        note(truths_.step(labelled), highest_.step(recording->samples()),
+             lowest_.step(recording->samples()), result);
     }
     std::uint32_t last_positions = 0;
     for (const plan::Monitor& monitor : plans_.monitors.monitors)
@@ -90,14 +95,17 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
     return result;
 }
 
-void MonitorScorer::note(const std::vector<etlmon::Verdict>& truths, const std::vector<etlmon::Verdict>& highest,
-                         const std::vector<etlmon::Verdict>& lowest, MonitorEpisode& episode) const {
+void MonitorScorer::note(const std::vector<etlmon::Verdict>& truths,
+                         const std::vector<etlmon::Verdict>& highest,
+                         const std::vector<etlmon::Verdict>& lowest,
+                         MonitorEpisode& episode) const {
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const etlmon::Verdict& truth = truths[truth_at_[i]];
         if (!truth.decided()) continue;
         MonitorScore& score = episode.scores[i];
         if (truth.unknown()) ++score.unknown;
-        const bool alarms = model_.monitors[monitors_[i]].calibration->against == check::Against::missed_alarm;
+        const bool alarms =
+            model_.monitors[monitors_[i]].calibration->against == check::Against::missed_alarm;
         if (alarms ? !truth.violated() : !truth.satisfied()) continue;
         const double rho = alarms ? static_cast<double>(highest[said_at_[i]].robustness)
                                   : -static_cast<double>(lowest[said_at_[i]].robustness);

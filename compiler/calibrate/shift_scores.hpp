@@ -1,6 +1,7 @@
 // Monitors beside their ground truth, an episode at a time.
-// Takes: both plans and an episode. Gives: the score of every calibrated monitor. Keeps true: rho is taken as
-// pessimistic as a verdict takes it where samples are missing; otherwise as high (low) as any build may measure.
+// Takes: both plans and an episode. Gives: the score of every calibrated monitor. Keeps true: rho
+// is taken as pessimistic as a verdict takes it where samples are missing; otherwise as high (low)
+// as any build may measure.
 #pragma once
 
 #include <memory>
@@ -24,7 +25,8 @@ public:
     diag::Result<MonitorEpisode> score(const std::string& path);
 
 private:
-    void note(const std::vector<etlmon::Verdict>& truths, const std::vector<etlmon::Verdict>& highest,
+    void note(const std::vector<etlmon::Verdict>& truths,
+              const std::vector<etlmon::Verdict>& highest,
               const std::vector<etlmon::Verdict>& lowest, MonitorEpisode& episode) const;
 
     const check::Model& model_;

@@ -26,8 +26,8 @@ Label label_of(bool value) {
     return value ? Label::yes : Label::no;
 }
 
-/// "A sample with any element not finite, or a scalar outside its declared range, counts as missing": the monitor sees
-/// float32, so that is what has to be finite and in range.
+/// "A sample with any element not finite, or a scalar outside its declared range, counts as
+/// missing": the monitor sees float32, so that is what has to be finite and in range.
 bool usable(const Input& input, const std::vector<double>& sample) {
     if (sample.empty()) return false;
     return std::all_of(sample.begin(), sample.end(), [&](double x) {
@@ -39,7 +39,8 @@ bool usable(const Input& input, const std::vector<double>& sample) {
 
 }  // namespace
 
-TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas) : model_(model) {
+TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas)
+    : model_(model) {
     std::vector<bool> wanted(model.formulas.size());
     for (const Index formula : formulas) wanted[formula] = true;
     std::set<Index> inputs;
@@ -115,14 +116,15 @@ Label TruthEvaluator::value(Index index) {
         case equivalence: return both(either(negate(at(0)), at(1)), either(negate(at(1)), at(0)));
         case previous:
         case once: return in_the_past(formula, memories_[index], Label::yes, at(0));
-        case historically: return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
+        case historically:
+            return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
         case since: return in_the_past(formula, memories_[index], at(0), at(1));
         default: return Label::unknown;  // no future operator stands in a truth
     }
 }
 
-/// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j, k])": yes where g was
-/// yes at such a j and f has been yes since, possible where neither was no.
+/// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j,
+/// k])": yes where g was yes at such a j and f has been yes since, possible where neither was no.
 Label TruthEvaluator::in_the_past(const Formula& formula, Memory& memory, Label f, Label g) const {
     memory.delayed.push_back(g);
     if (memory.delayed.size() > formula.low) {
@@ -183,7 +185,8 @@ double TruthEvaluator::expression(const Expr& e) const {
 
 double TruthEvaluator::measure(const check::Distance& distance) const {
     std::vector<double> point;
-    for (const Index input : distance.point) point.insert(point.end(), values_[input].begin(), values_[input].end());
+    for (const Index input : distance.point)
+        point.insert(point.end(), values_[input].begin(), values_[input].end());
     return exact_distance(model_, distance, point).value_or(kUnknown);
 }
 

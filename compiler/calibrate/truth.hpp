@@ -1,8 +1,9 @@
 // Ground truth: formulas over recorded inputs, present and past, one frame after the other.
-// Takes: formulas of the model without future operators, and the numbers of one frame a step, as recorded. Gives: yes,
-// no, or unknown where a missing sample leaves it open. Keeps true: computed in double with exact comparisons, literals
-// as written; a `hold` and a range apply as they do to the monitor; the definitions are those of docs/language.md, read
-// as Boolean; the work of a step does not depend on the length of a window.
+// Takes: formulas of the model without future operators, and the numbers of one frame a step, as
+// recorded. Gives: yes, no, or unknown where a missing sample leaves it open. Keeps true: computed
+// in double with exact comparisons, literals as written; a `hold` and a range apply as they do to
+// the monitor; the definitions are those of docs/language.md, read as Boolean; the work of a step
+// does not depend on the length of a window.
 #pragma once
 
 #include <cstdint>
@@ -18,7 +19,8 @@ using check::Index;
 /// Ordered: && is the least, || the greatest, unknown in between (Kleene's strong logic).
 enum class Label : std::uint8_t { no, unknown, yes };
 
-/// The samples of one frame by index of the model's inputs; empty: missing. An int8 embedding holds its integers.
+/// The samples of one frame by index of the model's inputs; empty: missing. An int8 embedding holds
+/// its integers.
 using Frame = std::vector<std::vector<double>>;
 
 class TruthEvaluator {
@@ -34,7 +36,8 @@ public:
     const std::vector<Index>& inputs() const { return inputs_; }
 
 private:
-    /// Of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that decide. A frame is counted from 1.
+    /// Of `f S[a,b] g`, and of O, H and Y, which it defines: the last frames that decide. A frame
+    /// is counted from 1.
     struct Memory {
         std::deque<Label> delayed;        ///< g of the last a frames
         std::uint64_t last_yes = 0;       ///< frame, at least a ago, at which g was yes

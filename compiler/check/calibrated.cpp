@@ -47,8 +47,9 @@ const Method* find_method(Context& c, const ast::Name& name) {
         if (method.name == name.text) return &method;
         names.push_back(method.name);
     }
-    auto& error = c.report(Code::unknown_method, name.span,
-                           fmt::format("'{}' is not a calibration method; expected {}", name.text, listed(names)));
+    auto& error = c.report(
+        Code::unknown_method, name.span,
+        fmt::format("'{}' is not a calibration method; expected {}", name.text, listed(names)));
     if (const auto near = diag::nearest_name(name.text, {names.begin(), names.end()}))
         error.note(fmt::format("did you mean '{}'?", *near));
     return nullptr;
@@ -59,9 +60,10 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
     const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
                            Decimal::parse(number->text) < Decimal::parse("1");
     if (open_unit) return true;
-    const auto [text, span] = number != nullptr ? std::pair(number->text, number->span)
-                                                : std::pair(std::get<ast::Name>(argument.value).text,
-                                                            std::get<ast::Name>(argument.value).span);
+    const auto [text, span] = number != nullptr
+                                  ? std::pair(number->text, number->span)
+                                  : std::pair(std::get<ast::Name>(argument.value).text,
+                                              std::get<ast::Name>(argument.value).span);
     c.report(Code::calibration_argument, span,
              fmt::format("alpha = {}; expected a number between 0 and 1, neither of them", text));
     return false;
@@ -76,17 +78,19 @@ bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& met
         const auto& known = method.arguments;
         if (std::find(known.begin(), known.end(), key) == known.end())
             c.report(Code::calibration_argument, argument.key.span,
-                     known.empty()
-                         ? fmt::format("{} has no arguments", method.name)
-                         : fmt::format("{} has no argument '{}'; expected {}", method.name, key, listed(known)));
+                     known.empty() ? fmt::format("{} has no arguments", method.name)
+                                   : fmt::format("{} has no argument '{}'; expected {}",
+                                                 method.name, key, listed(known)));
         else if (!given.insert(key).second)
-            c.report(Code::calibration_argument, argument.key.span, fmt::format("{} is given twice", key));
+            c.report(Code::calibration_argument, argument.key.span,
+                     fmt::format("{} is given twice", key));
     }
     return c.sink.errors() == errors;
 }
 
 /// The text of alpha, empty for a method without; nothing where an argument had an error.
-std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, const Method& method) {
+std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
+                                    const Method& method) {
     const std::size_t errors = c.sink.errors();
     arguments_fit(c, written, method);
     std::string alpha;
@@ -105,7 +109,8 @@ std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written, 
     return alpha;
 }
 
-Threshold uncalibrated(const ast::Calibrated& written, const Method& method, const std::string& alpha) {
+Threshold uncalibrated(const ast::Calibrated& written, const Method& method,
+                       const std::string& alpha) {
     Threshold threshold;
     threshold.origin = method.origin;
     threshold.alpha = alpha;
@@ -117,7 +122,8 @@ Threshold uncalibrated(const ast::Calibrated& written, const Method& method, con
     return threshold;
 }
 
-constexpr std::string_view kMonitorForm = "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
+constexpr std::string_view kMonitorForm =
+    "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
 
 /// The value of `against`, where it is one.
 std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
@@ -125,7 +131,8 @@ std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& a
     for (const Against against : {Against::missed_alarm, Against::missed_success})
         if (name != nullptr && name->text == word(against)) return against;
     const Span span = name != nullptr ? name->span : std::get<ast::Number>(argument.value).span;
-    c.report(Code::calibration_argument, span, "expected against = missed_alarm or against = missed_success");
+    c.report(Code::calibration_argument, span,
+             "expected against = missed_alarm or against = missed_success");
     return std::nullopt;
 }
 
@@ -135,33 +142,39 @@ std::string_view word(Against against) {
     return against == Against::missed_alarm ? "missed_alarm" : "missed_success";
 }
 
-std::optional<MonitorCalibration> check_monitor_calibrated(Context& c, const ast::Calibrated& written) {
+std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
+                                                           const ast::Calibrated& written) {
     const Method* method = find_method(c, written.method);
     if (method == nullptr) return std::nullopt;
     if (method->origin != ThresholdOrigin::conformal) {
         c.report(Code::unknown_method, written.method.span,
-                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates", method->name))
+                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates",
+                             method->name))
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;
     }
     std::optional<Against> against;
     ast::Calibrated rest = written;
-    std::erase_if(rest.arguments, [](const auto& argument) { return argument.key.text == "against"; });
+    std::erase_if(rest.arguments,
+                  [](const auto& argument) { return argument.key.text == "against"; });
     const std::size_t errors = c.sink.errors();
     for (const ast::Calibrated::Argument& argument : written.arguments) {
         if (argument.key.text != "against") continue;
-        if (against) c.report(Code::calibration_argument, argument.key.span, "against is given twice");
+        if (against)
+            c.report(Code::calibration_argument, argument.key.span, "against is given twice");
         against = against_of(c, argument);
     }
     const auto alpha = alpha_of(c, rest, *method);
     if (!alpha || c.sink.errors() > errors) return std::nullopt;
     if (!against) {
         c.report(Code::calibration_argument, written.span,
-                 fmt::format("a monitor is calibrated against one kind of error; expected {}", kMonitorForm));
+                 fmt::format("a monitor is calibrated against one kind of error; expected {}",
+                             kMonitorForm));
         return std::nullopt;
     }
     MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
-    result.threshold.text = fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));
+    result.threshold.text =
+        fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));
     return result;
 }
 
@@ -175,8 +188,8 @@ std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& wri
     threshold.adaptation = check_adaptation(c, written, *alpha);
     if (!threshold.adaptation) return std::nullopt;
     const Adaptation& moves = *threshold.adaptation;
-    threshold.text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})", *alpha, moves.gamma,
-                                 moves.lo, moves.hi);
+    threshold.text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})",
+                                 *alpha, moves.gamma, moves.lo, moves.hi);
     return threshold;
 }
 

@@ -4,7 +4,8 @@
 
 namespace etlc::check {
 
-std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options, diag::Sink& sink) {
+std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options,
+                           diag::Sink& sink) {
     Context context{spec, file, options, sink};
     context.incomplete = sink.has_errors();
     context.model.file = file;

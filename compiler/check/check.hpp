@@ -1,7 +1,7 @@
 // Syntax tree to typed spec.
-// Takes: the tree, and the files it loads (paths relative to the spec). Gives: the model, or nothing where there was an
-// error. Keeps true: all errors are reported in one go, each cause once; a broken declaration hides no other and causes
-// no cascade.
+// Takes: the tree, and the files it loads (paths relative to the spec). Gives: the model, or
+// nothing where there was an error. Keeps true: all errors are reported in one go, each cause once;
+// a broken declaration hides no other and causes no cascade.
 #pragma once
 
 #include <optional>
@@ -16,7 +16,8 @@ namespace etlc::check {
 struct Options {
     /// Thresholds file; empty: SPEC.thresholds.json beside the spec where it exists.
     std::string thresholds_path;
-    /// `etlc calibrate` reads a spec before it has thresholds: epsilon is then NaN and no file is looked for.
+    /// `etlc calibrate` reads a spec before it has thresholds: epsilon is then NaN and no file is
+    /// looked for.
     bool allow_uncalibrated = false;
     /// Or before it has those of its monitors: their shift is then NaN.
     bool allow_uncalibrated_monitors = false;
@@ -25,6 +26,7 @@ struct Options {
 /// Where the thresholds of a spec are looked for: SPEC.thresholds.json beside SPEC.etl.
 std::string default_thresholds_path(const std::string& spec_path);
 
-std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options, diag::Sink& sink);
+std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options,
+                           diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -10,8 +10,8 @@ namespace etlc::check {
 
 namespace {
 
-/// floor(alpha * factor), digit by digit from the last: with alpha = 0.d1 d2 ... the carry out of d1 is what stands
-/// before the point.
+/// floor(alpha * factor), digit by digit from the last: with alpha = 0.d1 d2 ... the carry out of
+/// d1 is what stands before the point.
 std::uint64_t whole_part_of_product(const Decimal& alpha, std::uint64_t factor) {
     std::uint64_t carry = 0;
     for (std::size_t i = alpha.digits.size(); i-- > 0;)

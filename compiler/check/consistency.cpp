@@ -15,7 +15,8 @@ namespace {
 using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
-/// One score a demonstration, all of them kept; the other methods pool frames and keep the score that was taken.
+/// One score a demonstration, all of them kept; the other methods pool frames and keep the score
+/// that was taken.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }
@@ -34,38 +35,45 @@ std::string shown(const std::string& alpha) {
 Found counts(const Entry& entry, const std::string& place) {
     const std::uint64_t kept = keeps_all(entry) ? entry.n : 1;
     if (entry.n == 0 || entry.n > kMaxScores)
-        return Contradiction{fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
+        return Contradiction{
+            fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
     if (entry.scores.size() != kept)
         return Contradiction{fmt::format(
             "'{}.scores' has {}, expected {}", place, plural(entry.scores.size(), "element"),
-            keeps_all(entry) ? fmt::format("n of them, which is {}", kept) : "1, the score that was taken")};
+            keeps_all(entry) ? fmt::format("n of them, which is {}", kept)
+                             : "1, the score that was taken")};
     for (std::size_t i = 1; i < entry.scores.size(); ++i)
         if (entry.scores[i] < entry.scores[i - 1])
-            return Contradiction{fmt::format("'{0}.scores[{1}]' is {2}, expected at least {3}, the score before it",
-                                             place, i, entry.scores[i], entry.scores[i - 1])};
+            return Contradiction{
+                fmt::format("'{0}.scores[{1}]' is {2}, expected at least {3}, the score before it",
+                            place, i, entry.scores[i], entry.scores[i - 1])};
     if (entry.method == "f1") return std::nullopt;
     const std::uint64_t k = rank(entry.alpha, entry.n);
     if (k > entry.n)
-        return Contradiction{fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place, entry.n,
-                                         scores_needed(entry.alpha), shown(entry.alpha))};
+        return Contradiction{
+            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place,
+                        entry.n, scores_needed(entry.alpha), shown(entry.alpha))};
     if (k != entry.k)
-        return Contradiction{fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place, entry.k,
-                                         k, shown(entry.alpha), plural(entry.n, "score"))};
+        return Contradiction{
+            fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
+                        entry.k, k, shown(entry.alpha), plural(entry.n, "score"))};
     return std::nullopt;
 }
 
-Found episodes_of(const Entry& entry, const std::string& place, const std::vector<std::string>& episodes) {
+Found episodes_of(const Entry& entry, const std::string& place,
+                  const std::vector<std::string>& episodes) {
     const std::string list = entry.against.empty() ? "episodes" : place + ".episodes";
     const std::uint64_t least = keeps_all(entry) ? entry.n : 1;
     if (episodes.size() < least)
-        return Contradiction{fmt::format("'{}' has {}, expected at least {}{}", list,
-                                         plural(episodes.size(), "element"), least,
-                                         keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
+        return Contradiction{fmt::format(
+            "'{}' has {}, expected at least {}{}", list, plural(episodes.size(), "element"), least,
+            keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
     std::set<std::string> seen;
     for (std::size_t i = 0; i < episodes.size(); ++i)
         if (!seen.insert(episodes[i]).second)
-            return Contradiction{fmt::format("'{}[{}]' is '{}', which stands in it before; expected each episode once",
-                                             list, i, episodes[i])};
+            return Contradiction{fmt::format(
+                "'{}[{}]' is '{}', which stands in it before; expected each episode once", list, i,
+                episodes[i])};
     return std::nullopt;
 }
 
@@ -76,8 +84,9 @@ Found threshold(const Entry& entry, const std::string& place, bool upper_bound) 
     const float expected = f1 ? static_cast<float>(score) : beyond(score, upper_bound);
     if (entry.epsilon == expected) return std::nullopt;
     return Contradiction{
-        fmt::format("'{0}.epsilon' is {1:.9g}, expected {2:.9g}: {3} '{0}.scores[{4}]', {5:.17g}", place, entry.epsilon,
-                    expected, f1 ? "that is" : "the first float32 beyond", at, score),
+        fmt::format("'{0}.epsilon' is {1:.9g}, expected {2:.9g}: {3} '{0}.scores[{4}]', {5:.17g}",
+                    place, entry.epsilon, expected, f1 ? "that is" : "the first float32 beyond", at,
+                    score),
         true};
 }
 
@@ -93,8 +102,9 @@ Found contradiction(const Entry& entry, const std::string& place, bool upper_bou
 std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
                                           const std::vector<std::string>& others) {
     const std::set<std::string> known(others.begin(), others.end());
-    const auto found = std::find_if(episodes.begin(), episodes.end(),
-                                    [&](const std::string& episode) { return known.contains(episode); });
+    const auto found =
+        std::find_if(episodes.begin(), episodes.end(),
+                     [&](const std::string& episode) { return known.contains(episode); });
     if (found == episodes.end()) return std::nullopt;
     return *found;
 }

@@ -19,7 +19,9 @@ Constancy negation(Constancy a) {
 
 /// `deciding` decides alone, as `never` does under &&.
 Constancy combine(const Operands& operands, Constancy deciding) {
-    const auto is = [](Constancy value) { return [value](Constancy operand) { return operand == value; }; };
+    const auto is = [](Constancy value) {
+        return [value](Constancy operand) { return operand == value; };
+    };
     if (std::any_of(operands.begin(), operands.end(), is(deciding))) return deciding;
     const Constancy other = negation(deciding);
     return std::all_of(operands.begin(), operands.end(), is(other)) ? other : varies;
@@ -34,7 +36,8 @@ Constancy equivalence(Constancy a, Constancy b) {
     return a == b ? always : never;
 }
 
-/// F and O: without an operand that holds they fail, and a window that holds the present is never empty.
+/// F and O: without an operand that holds they fail, and a window that holds the present is never
+/// empty.
 Constancy some(Constancy operand, bool holds_present) {
     if (operand == never) return never;
     return operand == always && holds_present ? always : varies;
@@ -76,7 +79,8 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::until:
         case Kind::since: return until(operands[0], operands[1], present);
         case Kind::release: return release(operands[0], operands[1], present);
-        case Kind::weak_until: return release(operands[1], disjunction({operands[0], operands[1]}), present);
+        case Kind::weak_until:
+            return release(operands[1], disjunction({operands[0], operands[1]}), present);
     }
     return varies;
 }

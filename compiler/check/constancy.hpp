@@ -1,6 +1,7 @@
 // Which formulas have one verdict whatever the inputs are.
-// Takes: the formulas of the model; predicates count as able to change. Gives: for each formula its constant, if it has
-// one. Keeps true: what is called constant has robustness +inf or -inf at every position that a prefix can have.
+// Takes: the formulas of the model; predicates count as able to change. Gives: for each formula its
+// constant, if it has one. Keeps true: what is called constant has robustness +inf or -inf at every
+// position that a prefix can have.
 #pragma once
 
 #include <cstdint>

@@ -1,7 +1,8 @@
 // What the steps of check share while they build the model.
 // Takes: the tree. Gives: the model under construction, the names, and the one way to report.
-// Keeps true: model.inputs, .targets, .lets and .monitors and the named predicates have one element a declaration, in
-// file order, from the start; an element that had an error is marked broken in `scope`.
+// Keeps true: model.inputs, .targets, .lets and .monitors and the named predicates have one element
+// a declaration, in file order, from the start; an element that had an error is marked broken in
+// `scope`.
 #pragma once
 
 #include <map>
@@ -23,7 +24,8 @@
 
 namespace etlc::check {
 
-/// Formulas that nest deeper, their lets written out, are refused, so that later stages may recurse.
+/// Formulas that nest deeper, their lets written out, are refused, so that later stages may
+/// recurse.
 inline constexpr std::uint32_t kMaxDepth = 1000;
 
 struct Context {
@@ -64,11 +66,13 @@ void for_each_declaration(const ast::Spec& spec, Visit visit) {
         if (const auto* found = std::get_if<T>(&declaration)) visit(*found, index++);
 }
 
-/// What `name` means; null, with a diagnostic at the first such use, where nothing declares it. `wanted` is what would
-/// fit here, in words ("a predicate, a let or a bool input"), `kinds` the kinds among which a near name is looked for.
+/// What `name` means; null, with a diagnostic at the first such use, where nothing declares it.
+/// `wanted` is what would fit here, in words ("a predicate, a let or a bool input"), `kinds` the
+/// kinds among which a near name is looked for.
 const Reference* find(Context& context, const ast::Name& name, const std::vector<NameKind>& kinds,
                       std::string_view wanted);
-/// The same, and an error where the name is of another kind than `kind`. kNone: reported, or the declaration is broken.
+/// The same, and an error where the name is of another kind than `kind`. kNone: reported, or the
+/// declaration is broken.
 Index resolve(Context& context, const ast::Name& name, NameKind kind);
 
 /// The number rounded once to float32; overflow and underflow are reported, with 1 in its place.

@@ -21,7 +21,8 @@ std::int64_t parse_exponent(std::string_view text) {
     return negative ? -value : value;
 }
 
-/// Digits that a decimal keeps in front of or behind its point before it is written with an exponent.
+/// Digits that a decimal keeps in front of or behind its point before it is written with an
+/// exponent.
 constexpr std::int64_t kPlainDigits = 21;
 constexpr std::int64_t kPlainZeros = 6;
 
@@ -32,7 +33,8 @@ Fit nearest(std::string_view text, T& value) {
     const auto result = std::from_chars(text.data(), text.data() + text.size(), value);
     const bool huge = result.ec == std::errc::result_out_of_range && exact.exponent > 0;
     if (huge || std::isinf(value)) {
-        value = exact.negative ? -std::numeric_limits<T>::infinity() : std::numeric_limits<T>::infinity();
+        value = exact.negative ? -std::numeric_limits<T>::infinity()
+                               : std::numeric_limits<T>::infinity();
         return Fit::overflow;
     }
     if (result.ec != std::errc() || value == 0) {
@@ -67,8 +69,8 @@ Decimal Decimal::parse(std::string_view text) {
 
 Decimal Decimal::of(double value) {
     std::array<char, 1200> buffer;  // 767 significant digits are the most that a double has
-    const auto end =
-        std::to_chars(buffer.data(), buffer.data() + buffer.size(), value, std::chars_format::scientific, 800);
+    const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
+                                   std::chars_format::scientific, 800);
     return parse({buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())});
 }
 
@@ -93,7 +95,8 @@ std::string Decimal::text() const {
         if (size > 1) text.append(".").append(digits, 1);
         return text.append("e").append(std::to_string(exponent - 1));
     }
-    if (exponent <= 0) return text.append("0.").append(static_cast<std::size_t>(-exponent), '0').append(digits);
+    if (exponent <= 0)
+        return text.append("0.").append(static_cast<std::size_t>(-exponent), '0').append(digits);
     const auto point = static_cast<std::size_t>(exponent);
     if (size <= exponent) return text.append(digits).append(point - digits.size(), '0');
     return text.append(digits, 0, point).append(".").append(digits, point);

@@ -1,7 +1,7 @@
 // Decimal numbers as the spec writes them.
-// Takes: text of the grammar's form ("-0.29", "1e-3"; "inf" and "-inf" only where a function says so). Gives: its exact
-// value, its canonical text, and its float32 by one rounding (to nearest, or outward for ranges).
-// Keeps true: nothing passes through binary floating point on the way.
+// Takes: text of the grammar's form ("-0.29", "1e-3"; "inf" and "-inf" only where a function says
+// so). Gives: its exact value, its canonical text, and its float32 by one rounding (to nearest, or
+// outward for ranges). Keeps true: nothing passes through binary floating point on the way.
 #pragma once
 
 #include <compare>
@@ -23,7 +23,9 @@ struct Decimal {
 
     bool is_zero() const { return digits.empty(); }
     bool is_positive() const { return !negative && !is_zero(); }
-    bool is_whole() const { return static_cast<std::int64_t>(digits.size()) <= exponent || is_zero(); }
+    bool is_whole() const {
+        return static_cast<std::int64_t>(digits.size()) <= exponent || is_zero();
+    }
     /// The value where it is a whole number in [0, limit].
     std::optional<std::uint64_t> whole(std::uint64_t limit) const;
     /// Equal values give equal texts: "0.5", "-20", "1e-9".
@@ -35,7 +37,8 @@ struct Decimal {
 
 enum class Fit : std::uint8_t { fits, overflow, underflow };
 
-/// The float32 nearest to the text; overflow gives an infinity, underflow a zero of a number that is none.
+/// The float32 nearest to the text; overflow gives an infinity, underflow a zero of a number that
+/// is none.
 Fit to_float(std::string_view text, float& value);
 /// The double nearest to the text, infinities where it overflows.
 double to_double(std::string_view text);

@@ -35,11 +35,14 @@ void declare_all(Context& c) {
     for (const ast::Declaration& declaration : c.spec.declarations) {
         if (const auto* input = std::get_if<ast::Input>(&declaration))
             for (const ast::Name& name : input->names) declare(c, NameKind::input, name);
-        if (const auto* target = std::get_if<ast::Target>(&declaration)) declare(c, NameKind::target, target->name);
+        if (const auto* target = std::get_if<ast::Target>(&declaration))
+            declare(c, NameKind::target, target->name);
         if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))
             declare(c, NameKind::predicate, predicate->name);
-        if (const auto* let = std::get_if<ast::Let>(&declaration)) declare(c, NameKind::let, let->name);
-        if (const auto* monitor = std::get_if<ast::Monitor>(&declaration)) declare(c, NameKind::monitor, monitor->name);
+        if (const auto* let = std::get_if<ast::Let>(&declaration))
+            declare(c, NameKind::let, let->name);
+        if (const auto* monitor = std::get_if<ast::Monitor>(&declaration))
+            declare(c, NameKind::monitor, monitor->name);
     }
     for (const ast::Name& name : c.spec.unreadable)
         if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
@@ -56,7 +59,8 @@ void declare_names(Context& c) {
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)
-        c.report(Code::no_monitor, c.spec.name.span, "the spec has no monitor, so there is nothing to compile")
+        c.report(Code::no_monitor, c.spec.name.span,
+                 "the spec has no monitor, so there is nothing to compile")
             .note("add a line such as 'monitor m = G p;'");
 }
 

@@ -42,7 +42,8 @@ std::string_view word(Aggregation aggregation) {
 
 class DistanceCheck {
 public:
-    DistanceCheck(Context& context, const ast::Distance& written) : c_(context), written_(written) {}
+    DistanceCheck(Context& context, const ast::Distance& written)
+        : c_(context), written_(written) {}
 
     Index run() {
         set_metric();
@@ -69,7 +70,8 @@ private:
         const Index index = resolve(c_, name, NameKind::input);
         if (index == kNone) return kNone;
         const Input& input = c_.model.inputs[index];
-        const bool fits = written_.point_is_vector ? input.type == InputType::scalar : input.is_embedding();
+        const bool fits =
+            written_.point_is_vector ? input.type == InputType::scalar : input.is_embedding();
         if (fits) return index;
         const std::string_view found = input.is_embedding()              ? "an embedding"
                                        : input.type == InputType::scalar ? "a scalar"
@@ -77,8 +79,10 @@ private:
         auto& error = c_.report(
             Code::point_form, name.span,
             fmt::format("'{}' is {}; expected {}", name.text, found,
-                        written_.point_is_vector ? "the scalars of a vector" : "an embedding, or a vector of scalars"));
-        if (input.is_embedding()) error.note(fmt::format("an embedding stands without brackets: {}", name.text));
+                        written_.point_is_vector ? "the scalars of a vector"
+                                                 : "an embedding, or a vector of scalars"));
+        if (input.is_embedding())
+            error.note(fmt::format("an embedding stands without brackets: {}", name.text));
         if (input.type == InputType::scalar)
             error.note(fmt::format("for a point of one dimension write [{}]", name.text));
         return kNone;
@@ -88,7 +92,8 @@ private:
         distance_.point_is_vector = written_.point_is_vector;
         for (const ast::Name& name : written_.point) distance_.point.push_back(element(name));
         if (distance_.point.empty()) return false;
-        return std::find(distance_.point.begin(), distance_.point.end(), kNone) == distance_.point.end();
+        return std::find(distance_.point.begin(), distance_.point.end(), kNone) ==
+               distance_.point.end();
     }
 
     std::uint32_t dimension() const {
@@ -101,14 +106,19 @@ private:
     bool dimensions_agree() {
         if (dimension() == target().dimension) return true;
         const std::string point =
-            distance_.point_is_vector ? "the vector" : fmt::format("'{}'", c_.model.inputs[distance_.point[0]].name);
-        auto& error = c_.report(Code::dimension_mismatch, source::join(written_.point_span, written_.target.span),
-                                fmt::format("{} has dimension {}, target '{}' has dimension {}", point, dimension(),
-                                            target().name, target().dimension));
+            distance_.point_is_vector
+                ? "the vector"
+                : fmt::format("'{}'", c_.model.inputs[distance_.point[0]].name);
+        auto& error = c_.report(Code::dimension_mismatch,
+                                source::join(written_.point_span, written_.target.span),
+                                fmt::format("{} has dimension {}, target '{}' has dimension {}",
+                                            point, dimension(), target().name, target().dimension));
         if (!distance_.point_is_vector)
-            error.note(c_.model.inputs[distance_.point[0]].span, fmt::format("{} is declared here", point));
-        error.note(target().span, fmt::format("'{}' has {} row{} of {}", target().name, target().rows,
-                                              target().rows == 1 ? "" : "s", target().dimension));
+            error.note(c_.model.inputs[distance_.point[0]].span,
+                       fmt::format("{} is declared here", point));
+        error.note(target().span,
+                   fmt::format("'{}' has {} row{} of {}", target().name, target().rows,
+                               target().rows == 1 ? "" : "s", target().dimension));
         return false;
     }
 
@@ -116,9 +126,11 @@ private:
         if (!written_.aggregation) {
             if (target().rows == 1) return true;
             c_.report(Code::aggregation_missing, written_.metric.span,
-                      fmt::format("target '{}' has {} rows; expected min, max, mean or kth(n) before {}", target().name,
-                                  target().rows, written_.metric.text))
-                .note(fmt::format("the distance to the nearest row is 'min {}(...)'", written_.metric.text));
+                      fmt::format(
+                          "target '{}' has {} rows; expected min, max, mean or kth(n) before {}",
+                          target().name, target().rows, written_.metric.text))
+                .note(fmt::format("the distance to the nearest row is 'min {}(...)'",
+                                  written_.metric.text));
             return false;
         }
         using Kind = ast::Aggregation::Kind;
@@ -138,9 +150,10 @@ private:
             distance_.kth = static_cast<std::uint32_t>(*n);
             return true;
         }
-        c_.report(Code::kth_out_of_range, written_.aggregation->span,
-                  fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {} row{}", text,
-                              target().name, target().rows, target().rows == 1 ? "" : "s"));
+        c_.report(
+            Code::kth_out_of_range, written_.aggregation->span,
+            fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {} row{}",
+                        text, target().name, target().rows, target().rows == 1 ? "" : "s"));
         return false;
     }
 
@@ -150,11 +163,13 @@ private:
         const std::size_t columns = target().dimension;
         for (std::size_t row = 0; row < target().rows; ++row) {
             const auto begin = target().values.begin() + static_cast<std::ptrdiff_t>(row * columns);
-            if (!std::all_of(begin, begin + static_cast<std::ptrdiff_t>(columns), [](float x) { return x == 0; }))
+            if (!std::all_of(begin, begin + static_cast<std::ptrdiff_t>(columns),
+                             [](float x) { return x == 0; }))
                 continue;
-            c_.report(Code::zero_row, written_.target.span,
-                      fmt::format("row {} (from 0) of target '{}' is zero, and {} needs a direction", row,
-                                  target().name, written_.metric.text))
+            c_.report(
+                  Code::zero_row, written_.target.span,
+                  fmt::format("row {} (from 0) of target '{}' is zero, and {} needs a direction",
+                              row, target().name, written_.metric.text))
                 .note(target().span, fmt::format("'{}' is declared here", target().name));
             return false;
         }
@@ -180,7 +195,8 @@ private:
             distance_.kth = 1;
         } else {
             text = word(distance_.aggregation);
-            if (distance_.aggregation == Aggregation::kth) text += fmt::format("({})", distance_.kth);
+            if (distance_.aggregation == Aggregation::kth)
+                text += fmt::format("({})", distance_.kth);
             text += ' ';
         }
         text += written_.metric.text;
@@ -195,8 +211,8 @@ private:
     Index add() {
         distance_.text = canonical_text();
         distance_.span = written_.span;
-        const auto [at, is_new] =
-            c_.distance_of_text.try_emplace(distance_.text, static_cast<Index>(c_.model.distances.size()));
+        const auto [at, is_new] = c_.distance_of_text.try_emplace(
+            distance_.text, static_cast<Index>(c_.model.distances.size()));
         if (is_new) c_.model.distances.push_back(std::move(distance_));
         return at->second;
     }

@@ -37,8 +37,8 @@ std::int64_t power_of_unit(std::string_view unit) {
     return unit == "us" ? -6 : unit == "ms" ? -3 : 0;
 }
 
-/// `time` / `step`, or time x rate. Minutes over minutes cancel first, so that the products stay below 2^128: the
-/// numerator is at most 60 x 10^36, and the denominator at most 60 x 10^18.
+/// `time` / `step`, or time x rate. Minutes over minutes cancel first, so that the products stay
+/// below 2^128: the numerator is at most 60 x 10^36, and the denominator at most 60 x 10^18.
 Fraction quotient(const Quantity& time, const Quantity& step) {
     const Scaled t = scaled(time.value);
     const Scaled s = scaled(step.value);
@@ -128,8 +128,8 @@ std::string duration_text(std::uint64_t steps, const Quantity& step, std::string
     std::string text = decimal_text(x);
     if (text.empty()) text = fraction_text(x);
     if (text.empty())
-        text = fmt::format("about {:.6g}",
-                           static_cast<double>(steps) * seconds(step) / seconds({Decimal::parse("1"), unit}));
+        text = fmt::format("about {:.6g}", static_cast<double>(steps) * seconds(step) /
+                                               seconds({Decimal::parse("1"), unit}));
     return text + " " + std::string(unit);
 }
 

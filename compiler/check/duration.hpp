@@ -1,7 +1,7 @@
 // Exact decimal fractions of time.
-// Takes: a duration and a rate or period, each a decimal of at most kMaxTimeDigits significant digits with a unit.
-// Gives: how many steps the duration is, or between which two numbers of steps it lies. Keeps true: integer arithmetic
-// of 128 bits that cannot overflow for such numbers.
+// Takes: a duration and a rate or period, each a decimal of at most kMaxTimeDigits significant
+// digits with a unit. Gives: how many steps the duration is, or between which two numbers of steps
+// it lies. Keeps true: integer arithmetic of 128 bits that cannot overflow for such numbers.
 #pragma once
 
 #include <cstdint>

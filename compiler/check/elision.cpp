@@ -14,7 +14,9 @@ constexpr std::string_view kLeftOut = "...";
 
 /// The first and the last characters of a long word; no code point is cut in two.
 std::string middle_left_out(const std::string& word, std::size_t most) {
-    const auto inside = [&](std::size_t i) { return (static_cast<unsigned char>(word[i]) & 0xC0U) == 0x80U; };
+    const auto inside = [&](std::size_t i) {
+        return (static_cast<unsigned char>(word[i]) & 0xC0U) == 0x80U;
+    };
     const std::size_t kept = most - kLeftOut.size();
     std::size_t head = (kept + 1) / 2;
     std::size_t tail = word.size() - kept / 2;
@@ -38,13 +40,16 @@ public:
     std::string elided(Phrase::Operand operand, std::size_t most) const {
         if (auto text = whole(operand, most)) return *std::move(text);
         const Phrase phrase = phrase_of_(operand.formula);
-        const std::size_t around = phrase.opening.size() + phrase.closing.size() + (operand.brackets ? 2 : 0);
+        const std::size_t around =
+            phrase.opening.size() + phrase.closing.size() + (operand.brackets ? 2 : 0);
         std::string inside;
         if (phrase.operands.empty()) {
-            if (most < around - phrase.opening.size() + 2 * kLeftOut.size()) return std::string(kLeftOut);
+            if (most < around - phrase.opening.size() + 2 * kLeftOut.size())
+                return std::string(kLeftOut);
             inside = middle_left_out(phrase.opening, most - (around - phrase.opening.size()));
         } else {
-            const std::size_t gaps = phrase.separator.size() * std::min<std::size_t>(phrase.operands.size() - 1, 2);
+            const std::size_t gaps =
+                phrase.separator.size() * std::min<std::size_t>(phrase.operands.size() - 1, 2);
             const std::size_t least =
                 around + gaps + kLeftOut.size() * std::min<std::size_t>(phrase.operands.size(), 3);
             if (most < least) return std::string(kLeftOut);
@@ -55,14 +60,16 @@ public:
 
 private:
     /// False as soon as the text is too long. Each level has at least one character of its own.
-    bool append(Phrase::Operand operand, std::size_t most, std::string& text, std::size_t depth = 0) const {
+    bool append(Phrase::Operand operand, std::size_t most, std::string& text,
+                std::size_t depth = 0) const {
         if (depth > most) return false;
         const Phrase phrase = phrase_of_(operand.formula);
         if (operand.brackets) text += '(';
         text += phrase.opening;
         for (std::size_t i = 0; i < phrase.operands.size(); ++i) {
             if (i > 0) text += phrase.separator;
-            if (text.size() > most || !append(phrase.operands[i], most, text, depth + 1)) return false;
+            if (text.size() > most || !append(phrase.operands[i], most, text, depth + 1))
+                return false;
         }
         text += phrase.closing;
         if (operand.brackets) text += ')';
@@ -80,7 +87,8 @@ private:
         room -= head.size() + tail.size();
         std::size_t next = 1;
         std::size_t last = operands.size() - 1;
-        for (bool ahead = true; next < last && room >= separator.size(); ahead = !ahead) {  // whole ones between
+        for (bool ahead = true; next < last && room >= separator.size();
+             ahead = !ahead) {  // whole ones between
             const auto more = whole(operands[ahead ? next : last - 1], room - separator.size());
             if (!more) break;
             room -= more->size() + separator.size();
@@ -92,9 +100,12 @@ private:
     }
 
     /// Half of the room for each; what one leaves of it is the other's.
-    std::pair<std::string, std::string> two(Phrase::Operand left, Phrase::Operand right, std::size_t room) const {
-        if (const auto first = whole(left, room / 2)) return {*first, elided(right, room - first->size())};
-        if (const auto second = whole(right, room / 2)) return {elided(left, room - second->size()), *second};
+    std::pair<std::string, std::string> two(Phrase::Operand left, Phrase::Operand right,
+                                            std::size_t room) const {
+        if (const auto first = whole(left, room / 2))
+            return {*first, elided(right, room - first->size())};
+        if (const auto second = whole(right, room / 2))
+            return {elided(left, room - second->size()), *second};
         return {elided(left, room / 2), elided(right, room / 2)};
     }
 

@@ -1,9 +1,9 @@
 // Formulas as text that people read: long ones with parts left out.
 // Takes: what each formula's text is made of. Gives: the whole text where it has at most kMostShown
-// characters, else one of at most so many, in which "..." stands for what is left out: operands in the
-// middle of a chain, operands too deep, the middle of a long name. Keeps true: brackets are paired; the
-// work depends on the limit and not on the formula, which shares parts and may be exponentially long as
-// a tree.
+// characters, else one of at most so many, in which "..." stands for what is left out: operands in
+// the middle of a chain, operands too deep, the middle of a long name. Keeps true: brackets are
+// paired; the work depends on the limit and not on the formula, which shares parts and may be
+// exponentially long as a tree.
 #pragma once
 
 #include <functional>

@@ -45,11 +45,12 @@ bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
     if (result.index == kNone) return false;
     const Input& input = c.model.inputs[result.index];
     if (input.type == InputType::scalar) return true;
-    auto& error = c.report(
-        Code::operand_not_scalar, written.span,
-        fmt::format("'{}' is {}; expected a scalar", written.text, input.is_embedding() ? "an embedding" : "a bool"));
+    auto& error = c.report(Code::operand_not_scalar, written.span,
+                           fmt::format("'{}' is {}; expected a scalar", written.text,
+                                       input.is_embedding() ? "an embedding" : "a bool"));
     if (input.is_embedding())
-        error.note(fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
+        error.note(
+            fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
     if (!input.is_embedding()) error.note("a bool stands in formulas as it is");
     return false;
 }
@@ -94,7 +95,8 @@ std::optional<Expr> check_expression(Context& context, const ast::Expr& expressi
 
 Range range_of(const Model& model, const Expr& expression, const Expr*& undefined) {
     std::vector<Range> arguments;
-    for (const Expr& argument : expression.arguments) arguments.push_back(range_of(model, argument, undefined));
+    for (const Expr& argument : expression.arguments)
+        arguments.push_back(range_of(model, argument, undefined));
     switch (expression.kind) {
         case Kind::number: return {expression.number32, expression.number32};
         case Kind::scalar: return model.inputs[expression.index].range;

@@ -15,8 +15,9 @@ std::optional<Expr> check_expression(Context& context, const ast::Expr& expressi
 /// The distance's index in the model; kNone where it had an error, which is reported.
 Index check_distance(Context& context, const ast::Distance& distance);
 
-/// What the expression can be, by interval arithmetic. `undefined` is set to the part, if there is one, that has no
-/// value whatever the inputs are: the square root of numbers below zero, a division by zero.
+/// What the expression can be, by interval arithmetic. `undefined` is set to the part, if there is
+/// one, that has no value whatever the inputs are: the square root of numbers below zero, a
+/// division by zero.
 Range range_of(const Model& model, const Expr& expression, const Expr*& undefined);
 
 /// Inputs that the expression reads, ascending.

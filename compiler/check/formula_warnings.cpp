@@ -23,12 +23,15 @@ std::vector<Index> structures(const Model& model) {
     for (const Formula& formula : model.formulas) {
         std::vector<Index> operands;
         for (const Index operand : formula.operands) operands.push_back(result[operand]);
-        const bool commutes =
-            formula.kind == Kind::conjunction || formula.kind == Kind::disjunction || formula.kind == Kind::equivalence;
+        const bool commutes = formula.kind == Kind::conjunction ||
+                              formula.kind == Kind::disjunction ||
+                              formula.kind == Kind::equivalence;
         if (commutes) std::sort(operands.begin(), operands.end());
-        std::vector<Index> key{static_cast<Index>(formula.kind), formula.index, formula.low, formula.high};
+        std::vector<Index> key{static_cast<Index>(formula.kind), formula.index, formula.low,
+                               formula.high};
         key.insert(key.end(), operands.begin(), operands.end());
-        result.push_back(known.try_emplace(std::move(key), static_cast<Index>(known.size())).first->second);
+        result.push_back(
+            known.try_emplace(std::move(key), static_cast<Index>(known.size())).first->second);
     }
     return result;
 }
@@ -58,7 +61,8 @@ public:
             const Monitor& monitor = model_.monitors[i];
             const Entity& entity = c_.scope.entity(NameKind::monitor, i);
             if (monitor.formula == kNone) continue;
-            if (!warn_of_constant(monitor, entity.span)) warn_of_first_position(monitor, entity.span);
+            if (!warn_of_constant(monitor, entity.span))
+                warn_of_first_position(monitor, entity.span);
             warn_of_same_monitor(monitor, entity);
         }
     }
@@ -74,7 +78,8 @@ private:
         return found;
     }
 
-    /// Two operands of the same structure, or one the negation of the other: `p || p`, `p U p`, `p && !p`.
+    /// Two operands of the same structure, or one the negation of the other: `p || p`, `p U p`, `p
+    /// && !p`.
     void warn_of_same_operands(Index at) {
         const Formula& formula = model_.formulas[at];
         if (formula.operands.size() < 2) return;
@@ -82,9 +87,9 @@ private:
         for (const Index operand : formula.operands) {
             const auto [same, is_new] = seen.try_emplace(structures_[operand], operand);
             if (is_new) continue;
-            c_.report(
-                Code::same_operands, c_.operator_spans[at],
-                fmt::format("{} has the operand '{}' twice", operator_word(formula.kind), shown(model_, operand)));
+            c_.report(Code::same_operands, c_.operator_spans[at],
+                      fmt::format("{} has the operand '{}' twice", operator_word(formula.kind),
+                                  shown(model_, operand)));
             return;
         }
         for (const Index operand : formula.operands) {
@@ -92,63 +97,79 @@ private:
             const Index inner = model_.formulas[operand].operands[0];
             if (!seen.contains(structures_[inner])) continue;
             c_.report(Code::same_operands, c_.operator_spans[at],
-                      fmt::format("{} has the operand '{}' and its negation", operator_word(formula.kind),
-                                  shown(model_, inner)));
+                      fmt::format("{} has the operand '{}' and its negation",
+                                  operator_word(formula.kind), shown(model_, inner)));
             return;
         }
     }
 
     void warn_of_eventual_implication(Index at) {
         const Formula& formula = model_.formulas[at];
-        if (formula.kind != Kind::eventually || model_.formulas[formula.operands[0]].kind != Kind::implication) return;
+        if (formula.kind != Kind::eventually ||
+            model_.formulas[formula.operands[0]].kind != Kind::implication)
+            return;
         const Formula& implication = model_.formulas[formula.operands[0]];
         const std::string left = shown(model_, implication.operands[0]);
-        c_.report(Code::eventual_implication, c_.operator_spans[at],
-                  fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
-            .note("G (a -> F b) says that every a is followed by a b, F (a && b) that both happen at once");
+        c_.report(
+              Code::eventual_implication, c_.operator_spans[at],
+              fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
+            .note(
+                "G (a -> F b) says that every a is followed by a b, F (a && b) that both happen at "
+                "once");
     }
 
     void warn_of_last_step(Index at) {
         const Formula& outer = model_.formulas[at];
         if (outer.operands.size() != 1) return;
         const Formula& inner = model_.formulas[outer.operands[0]];
-        const bool eventually_always = is_unbounded(outer, Kind::eventually) && is_unbounded(inner, Kind::always);
-        const bool always_eventually = is_unbounded(outer, Kind::always) && is_unbounded(inner, Kind::eventually);
+        const bool eventually_always =
+            is_unbounded(outer, Kind::eventually) && is_unbounded(inner, Kind::always);
+        const bool always_eventually =
+            is_unbounded(outer, Kind::always) && is_unbounded(inner, Kind::eventually);
         if (!eventually_always && !always_eventually) return;
         const std::string_view words = eventually_always ? "F G" : "G F";
         auto& warning = c_.report(
             Code::last_step_only, c_.operator_spans[at],
             inner.low == 0
-                ? fmt::format("on a growing prefix {} says no more than that its operand holds at the last step", words)
-                : fmt::format("on a growing prefix the inner operator of {} looks past the last step, where it is {}",
+                ? fmt::format("on a growing prefix {} says no more than that its operand holds at "
+                              "the last step",
+                              words)
+                : fmt::format("on a growing prefix the inner operator of {} looks past the last "
+                              "step, where it is {}",
                               words, eventually_always ? "always satisfied" : "never satisfied"));
-        warning.note("every operator is cut at the prefix; G F[0, b] p or F G[0, b] p with a bound says more");
+        warning.note(
+            "every operator is cut at the prefix; G F[0, b] p or F G[0, b] p with a bound says "
+            "more");
     }
 
     bool warn_of_constant(const Monitor& monitor, Span name) {
         const Constancies& found = constancies_[monitor.formula];
         const Constancy constancy = monitor.sliding ? found.anywhere : found.at_start;
         if (constancy == Constancy::varies) return false;
-        auto& warning = c_.report(Code::constant_verdict, name,
-                                  fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
-                                              constancy == Constancy::always ? "satisfied" : "violated"));
+        auto& warning = c_.report(
+            Code::constant_verdict, name,
+            fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
+                        constancy == Constancy::always ? "satisfied" : "violated"));
         if (!monitor.sliding && found.anywhere == Constancy::varies)
             warning.note(
-                "a prefix monitor reports about position 0, which has no past; did you mean a sliding monitor?");
+                "a prefix monitor reports about position 0, which has no past; did you mean a "
+                "sliding monitor?");
         return true;
     }
 
     void warn_of_first_position(const Monitor& monitor, Span name) {
         if (monitor.sliding || reaches_[monitor.formula].future != kNone) return;
         c_.report(Code::first_position_only, name,
-                  fmt::format("'{}' looks only at position 0, so that its verdict never changes after the first step",
+                  fmt::format("'{}' looks only at position 0, so that its verdict never changes "
+                              "after the first step",
                               monitor.name))
             .note("did you mean a sliding monitor, or G in front of the formula?");
     }
 
     void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
         if (monitor.calibration) return;  // shifted, each by its own
-        const auto [first, is_new] = monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &entity);
+        const auto [first, is_new] =
+            monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &entity);
         if (is_new) return;
         c_.report(Code::same_definition, entity.span,
                   fmt::format("'{}' is the same monitor as '{}'", entity.name, first->second->name))

@@ -41,8 +41,8 @@ constexpr std::array kOperators = std::to_array<Correspondence>({
 });
 
 Kind kind_of(ast::Formula::Kind written) {
-    const auto found =
-        std::find_if(kOperators.begin(), kOperators.end(), [&](const auto& row) { return row.written == written; });
+    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
+                                    [&](const auto& row) { return row.written == written; });
     return found->kind;
 }
 
@@ -97,7 +97,8 @@ private:
     }
 
     bool set_interval(Formula& formula, const ast::Formula& written) {
-        if (formula.kind == Kind::next || formula.kind == Kind::previous) formula.low = formula.high = 1;
+        if (formula.kind == Kind::next || formula.kind == Kind::previous)
+            formula.low = formula.high = 1;
         if (!written.interval) return true;
         const auto steps = interval_steps(c_, *written.interval);
         if (!steps) return false;
@@ -109,36 +110,42 @@ private:
     Index named(const ast::Formula& written) {
         const ast::Name name{written.name, written.span};
         const Reference* found =
-            find(c_, name, {NameKind::predicate, NameKind::let, NameKind::input}, "a predicate, a let or a bool input");
+            find(c_, name, {NameKind::predicate, NameKind::let, NameKind::input},
+                 "a predicate, a let or a bool input");
         if (found == nullptr || found->kind == NameKind::unreadable) return kNone;
         const Entity& entity = c_.scope.entity(*found);
         switch (found->kind) {
-            case NameKind::predicate: return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
+            case NameKind::predicate:
+                return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
             case NameKind::let: return entity.broken ? kNone : c_.model.lets[found->index].formula;
             case NameKind::input: return entity.broken ? kNone : input(found->index, written);
             case NameKind::target:
             case NameKind::monitor:
             case NameKind::unreadable: break;
         }
-        auto& error = c_.report(Code::wrong_kind, written.span,
-                                fmt::format("'{}' is {}; expected a predicate, a let or a bool input", written.name,
-                                            word_with_article(found->kind)));
+        auto& error =
+            c_.report(Code::wrong_kind, written.span,
+                      fmt::format("'{}' is {}; expected a predicate, a let or a bool input",
+                                  written.name, word_with_article(found->kind)));
         error.note(entity.span, fmt::format("'{}' is declared here", written.name));
         if (found->kind == NameKind::monitor)
             error.note("a formula that is used more than once is given a name with let");
         if (found->kind == NameKind::target)
-            error.note(fmt::format("a predicate measures a distance to it: min l2(INPUT, {}) <= 0.5", written.name));
+            error.note(fmt::format(
+                "a predicate measures a distance to it: min l2(INPUT, {}) <= 0.5", written.name));
         return kNone;
     }
 
     Index input(Index index, const ast::Formula& written) {
         const Input& input = c_.model.inputs[index];
         if (input.type == InputType::boolean) return leaf(Kind::boolean_input, index, written);
-        auto& error = c_.report(Code::not_a_formula, written.span,
-                                fmt::format("'{}' is {}, which is neither true nor false", written.name,
-                                            input.is_embedding() ? "an embedding" : "a scalar"));
+        auto& error =
+            c_.report(Code::not_a_formula, written.span,
+                      fmt::format("'{}' is {}, which is neither true nor false", written.name,
+                                  input.is_embedding() ? "an embedding" : "a scalar"));
         error.note(input.is_embedding()
-                       ? fmt::format("compare its distance to a target: min l2({}, TARGET) <= 0.5", written.name)
+                       ? fmt::format("compare its distance to a target: min l2({}, TARGET) <= 0.5",
+                                     written.name)
                        : fmt::format("compare it with a number: {} > 0.5", written.name));
         return kNone;
     }
@@ -153,18 +160,19 @@ Index check_formula(Context& context, const ast::Formula& formula) {
 }
 
 std::string_view operator_word(Kind kind) {
-    const auto found =
-        std::find_if(kOperators.begin(), kOperators.end(), [&](const auto& row) { return row.kind == kind; });
+    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
+                                    [&](const auto& row) { return row.kind == kind; });
     return found == kOperators.end() ? "" : found->word;
 }
 
 bool looks_ahead(Kind kind) {
-    return kind == Kind::next || kind == Kind::eventually || kind == Kind::always || kind == Kind::until ||
-           kind == Kind::weak_until || kind == Kind::release;
+    return kind == Kind::next || kind == Kind::eventually || kind == Kind::always ||
+           kind == Kind::until || kind == Kind::weak_until || kind == Kind::release;
 }
 
 bool looks_back(Kind kind) {
-    return kind == Kind::previous || kind == Kind::once || kind == Kind::historically || kind == Kind::since;
+    return kind == Kind::previous || kind == Kind::once || kind == Kind::historically ||
+           kind == Kind::since;
 }
 
 }  // namespace etlc::check

@@ -24,14 +24,17 @@ struct Polarity {
     bool negative = false;
 };
 
-/// Operands with the polarity that they have in the negation normal form; both where an operand has both.
+/// Operands with the polarity that they have in the negation normal form; both where an operand has
+/// both.
 std::vector<Literal> operands_of(const Model& model, Literal literal) {
     const Formula& formula = model.formulas[literal.formula];
     std::vector<Literal> result;
     for (std::size_t i = 0; i < formula.operands.size(); ++i) {
-        const bool flips = formula.kind == Kind::negation || (formula.kind == Kind::implication && i == 0);
+        const bool flips =
+            formula.kind == Kind::negation || (formula.kind == Kind::implication && i == 0);
         result.push_back({formula.operands[i], literal.negated != flips});
-        if (formula.kind == Kind::equivalence) result.push_back({formula.operands[i], literal.negated == flips});
+        if (formula.kind == Kind::equivalence)
+            result.push_back({formula.operands[i], literal.negated == flips});
     }
     return result;
 }
@@ -69,12 +72,14 @@ public:
 
 private:
     void collect(Literal literal) {
-        bool& seen = literal.negated ? seen_[literal.formula].negative : seen_[literal.formula].positive;
+        bool& seen =
+            literal.negated ? seen_[literal.formula].negative : seen_[literal.formula].positive;
         if (seen) return;
         seen = true;
         const Kind kind = model_.formulas[literal.formula].kind;
-        const bool splits = kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
-                            ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
+        const bool splits =
+            kind == Kind::negation || (kind == Kind::conjunction && !literal.negated) ||
+            ((kind == Kind::disjunction || kind == Kind::implication) && literal.negated);
         if (!splits) return conjuncts_.push_back(literal);
         for (const Literal operand : operands_of(model_, literal)) collect(operand);
     }
@@ -90,13 +95,15 @@ std::string sum(const std::vector<std::string>& alphas) {
     std::size_t length = 0;
     for (const std::string& alpha : alphas) {
         const Decimal decimal = Decimal::parse(alpha);
-        digits.push_back(std::string(static_cast<std::size_t>(-decimal.exponent), '0') + decimal.digits);
+        digits.push_back(std::string(static_cast<std::size_t>(-decimal.exponent), '0') +
+                         decimal.digits);
         length = std::max(length, digits.back().size());
     }
     std::string fraction(length, '0');
     std::uint64_t carry = 0;
     for (std::size_t i = length; i-- > 0;) {
-        for (const std::string& one : digits) carry += i < one.size() ? static_cast<std::uint64_t>(one[i] - '0') : 0;
+        for (const std::string& one : digits)
+            carry += i < one.size() ? static_cast<std::uint64_t>(one[i] - '0') : 0;
         fraction[i] = static_cast<char>('0' + carry % 10);
         carry /= 10;
     }
@@ -107,14 +114,16 @@ std::string_view uncovered(const Model& model, Index predicate) {
     switch (model.predicates[predicate].threshold.origin) {
         case ThresholdOrigin::f1: return "is calibrated for F1";
         case ThresholdOrigin::class_conditional: return "covers frames, not episodes";
-        case ThresholdOrigin::adaptive: return "has an adaptive threshold, which bounds a rate of misses, not episodes";
+        case ThresholdOrigin::adaptive:
+            return "has an adaptive threshold, which bounds a rate of misses, not episodes";
         case ThresholdOrigin::conformal: return "";
         case ThresholdOrigin::literal: break;
     }
     return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
 }
 
-/// At its threshold, where robustness is 0 and so satisfied, `<` and `>` say no, and `<=` and `>=` yes: negated, no.
+/// At its threshold, where robustness is 0 and so satisfied, `<` and `>` say no, and `<=` and `>=`
+/// yes: negated, no.
 bool says_no_at_zero(const Predicate& predicate, const Polarity& polarity) {
     return predicate.strict() ? polarity.positive : polarity.negative;
 }
@@ -143,8 +152,9 @@ Claim claim(const Model& model, Literal part, Values values) {
     if (!result.why.empty()) return result;
     result.bound = sum(alphas);
     if (all.positive && all.negative) {
-        result.why = positive == negative ? fmt::format("'{}' stands in it both plain and negated", positive)
-                                          : fmt::format("'{}' stands in it plain, '{}' negated", positive, negative);
+        result.why = positive == negative
+                         ? fmt::format("'{}' stands in it both plain and negated", positive)
+                         : fmt::format("'{}' stands in it plain, '{}' negated", positive, negative);
     } else if (alphas.empty()) {
         result.kind = Claim::Kind::exact;
     } else if (Decimal::parse(result.bound) >= Decimal::parse("1")) {
@@ -152,7 +162,8 @@ Claim claim(const Model& model, Literal part, Values values) {
     } else {
         result.kind = all.positive ? Claim::Kind::missed_success : Claim::Kind::missed_alarm;
     }
-    const bool of_violations = result.kind == Claim::Kind::exact || result.kind == Claim::Kind::missed_alarm;
+    const bool of_violations =
+        result.kind == Claim::Kind::exact || result.kind == Claim::Kind::missed_alarm;
     result.zero_aside = of_violations && no_at_zero && values == Values::robustness;
     return result;
 }
@@ -168,8 +179,9 @@ double binomial_tail(std::uint64_t n, std::uint64_t k, double x) {
     double tail = 0;
     for (std::uint64_t i = k; i <= n; ++i) {
         const auto successes = static_cast<double>(i);
-        tail += std::exp(std::lgamma(count + 1) - std::lgamma(successes + 1) - std::lgamma(count - successes + 1) +
-                         successes * std::log(x) + (count - successes) * std::log1p(-x));
+        tail += std::exp(std::lgamma(count + 1) - std::lgamma(successes + 1) -
+                         std::lgamma(count - successes + 1) + successes * std::log(x) +
+                         (count - successes) * std::log1p(-x));
     }
     return tail;
 }
@@ -177,10 +189,12 @@ double binomial_tail(std::uint64_t n, std::uint64_t k, double x) {
 }  // namespace
 
 bool is_own_truth(const Model& model, Index predicate) {
-    const bool labelled = std::any_of(model.truths.begin(), model.truths.end(),
-                                      [&](const Truth& truth) { return truth.predicate == predicate; });
+    const bool labelled =
+        std::any_of(model.truths.begin(), model.truths.end(),
+                    [&](const Truth& truth) { return truth.predicate == predicate; });
     const Predicate& p = model.predicates[predicate];
-    return p.threshold.origin == ThresholdOrigin::literal && !labelled && !reads_embedding(model, p);
+    return p.threshold.origin == ThresholdOrigin::literal && !labelled &&
+           !reads_embedding(model, p);
 }
 
 std::vector<Claim> claims(const Model& model, const Monitor& monitor, Values values) {
@@ -208,11 +222,15 @@ std::string text(const Claim& claim) {
     const std::string_view aside = claim.zero_aside ? ", robustness 0 aside" : "";
     switch (claim.kind) {
         case Claim::Kind::exact:
-            return fmt::format("exact{}: nothing in it is calibrated, and its predicates are their own truth", aside);
+            return fmt::format(
+                "exact{}: nothing in it is calibrated, and its predicates are their own truth",
+                aside);
         case Claim::Kind::missed_success:
-            return fmt::format("P(some verdict of a new episode misses a success) <= {}", claim.bound);
+            return fmt::format("P(some verdict of a new episode misses a success) <= {}",
+                               claim.bound);
         case Claim::Kind::missed_alarm:
-            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}{}", claim.bound, aside);
+            return fmt::format("P(some verdict of a new episode misses an alarm) <= {}{}",
+                               claim.bound, aside);
         case Claim::Kind::nothing: break;
     }
     return "nothing: " + claim.why;

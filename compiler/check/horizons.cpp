@@ -28,7 +28,8 @@ std::vector<Reach> reaches(const Model& model) {
         for (const Index operand : formula.operands) {
             const Reach& below = result[operand];
             reach.horizon = std::max(reach.horizon, below.horizon);
-            if (looks_back(formula.kind) && below.future != kNone) take_first(reach.past_over_future, i);
+            if (looks_back(formula.kind) && below.future != kNone)
+                take_first(reach.past_over_future, i);
             take_first(reach.future, below.future);
             take_first(reach.unbounded, below.unbounded);
             take_first(reach.past_over_future, below.past_over_future);

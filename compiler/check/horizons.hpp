@@ -1,7 +1,7 @@
 // How far formulas look ahead and back.
-// Takes: the formulas of the model. Gives: horizons, and where the operators stand that a kind of monitor cannot bear.
-// Keeps true: one pass in topological order; a horizon is the sum of the upper bounds along the deepest path as
-// written.
+// Takes: the formulas of the model. Gives: horizons, and where the operators stand that a kind of
+// monitor cannot bear. Keeps true: one pass in topological order; a horizon is the sum of the upper
+// bounds along the deepest path as written.
 #pragma once
 
 #include <vector>

@@ -20,7 +20,8 @@ constexpr std::uint32_t kMaxHold = kMaxBound;
 /// Checks one declaration, whose names share everything but the name.
 class InputCheck {
 public:
-    InputCheck(Context& context, const ast::Input& declaration) : c_(context), declaration_(declaration) {}
+    InputCheck(Context& context, const ast::Input& declaration)
+        : c_(context), declaration_(declaration) {}
 
     Input run() {
         Input input;
@@ -58,7 +59,8 @@ private:
         const auto value = Decimal::parse(number.text).whole(kMaxDimension);
         if (value && *value > 0) return static_cast<std::uint32_t>(*value);
         report(Code::dimension_out_of_range, number.span,
-               fmt::format("the dimension {} is not a whole number from 1 to {}", number.text, kMaxDimension));
+               fmt::format("the dimension {} is not a whole number from 1 to {}", number.text,
+                           kMaxDimension));
         return 1;
     }
 
@@ -67,7 +69,8 @@ private:
         if (type.scale) return positive_scale(*type.scale);
         if (type.kind == ast::Type::Kind::i8)
             report(Code::scale_form, type.span,
-                   "an i8 embedding without a scale; expected i8[D] scale S, where value = S x integer");
+                   "an i8 embedding without a scale; expected i8[D] scale S, where value = S x "
+                   "integer");
         return 1.0F;
     }
 
@@ -81,7 +84,8 @@ private:
         const float value = number32(c_, number);
         if (c_.sink.errors() > errors) broken_ = true;
         if (std::isfinite(value * 128.0F)) return value;
-        report(Code::scale_form, number.span, fmt::format("128 times the scale {} is beyond float32", number.text));
+        report(Code::scale_form, number.span,
+               fmt::format("128 times the scale {} is beyond float32", number.text));
         return 1.0F;
     }
 
@@ -97,12 +101,13 @@ private:
         input.has_range = true;
         const bool low_is_infinite = range.low.text == "inf" || range.low.text == "-inf";
         const bool high_is_infinite = range.high.text == "inf" || range.high.text == "-inf";
-        const bool reversed =
-            range.low.text == "inf" || range.high.text == "-inf" ||
-            (!low_is_infinite && !high_is_infinite && Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
+        const bool reversed = range.low.text == "inf" || range.high.text == "-inf" ||
+                              (!low_is_infinite && !high_is_infinite &&
+                               Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
         if (reversed) {
-            report(Code::range_form, range.span,
-                   fmt::format("the range [{}, {}] holds no number", range.low.text, range.high.text));
+            report(
+                Code::range_form, range.span,
+                fmt::format("the range [{}, {}] holds no number", range.low.text, range.high.text));
             return;
         }
         if (!low_is_infinite) check_size(range.low);
@@ -114,16 +119,18 @@ private:
         float value = 0;
         if (to_float(number.text, value) != Fit::overflow) return;
         report(Code::number_overflow, number.span,
-               fmt::format("{} is beyond the largest float32; an open end is written {}inf", number.text,
-                           number.text.starts_with('-') ? "-" : ""));
+               fmt::format("{} is beyond the largest float32; an open end is written {}inf",
+                           number.text, number.text.starts_with('-') ? "-" : ""));
     }
 
     std::uint32_t hold() {
         if (!declaration_.hold) return 0;
         const ast::Number& number = *declaration_.hold;
-        if (const auto steps = Decimal::parse(number.text).whole(kMaxHold)) return static_cast<std::uint32_t>(*steps);
+        if (const auto steps = Decimal::parse(number.text).whole(kMaxHold))
+            return static_cast<std::uint32_t>(*steps);
         report(Code::hold_out_of_range, number.span,
-               fmt::format("hold {} is not a whole number of steps from 0 to {}", number.text, kMaxHold));
+               fmt::format("hold {} is not a whole number of steps from 0 to {}", number.text,
+                           kMaxHold));
         return 0;
     }
 
@@ -141,7 +148,8 @@ void check_inputs(Context& c) {
         for (const ast::Name& name : declaration.names) {
             input.name = name.text;
             input.span = name.span;
-            c.scope.entity(NameKind::input, static_cast<Index>(c.model.inputs.size())).broken = check.broken();
+            c.scope.entity(NameKind::input, static_cast<Index>(c.model.inputs.size())).broken =
+                check.broken();
             c.model.inputs.push_back(input);
         }
     });

@@ -27,9 +27,11 @@ std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
         for (const ast::FormulaPtr& operand : next.operands) pending.push_back(operand.get());
         if (next.kind != ast::Formula::Kind::name) continue;
         const Reference* found = c.scope.find(next.name);
-        if (found != nullptr && found->kind == NameKind::let) uses.push_back({found->index, next.span});
+        if (found != nullptr && found->kind == NameKind::let)
+            uses.push_back({found->index, next.span});
     }
-    std::sort(uses.begin(), uses.end(), [](const Use& a, const Use& b) { return a.span.begin < b.span.begin; });
+    std::sort(uses.begin(), uses.end(),
+              [](const Use& a, const Use& b) { return a.span.begin < b.span.begin; });
     return uses;
 }
 
@@ -37,8 +39,9 @@ std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
 class LetOrder {
 public:
     explicit LetOrder(Context& context) : c_(context) {
-        for_each_declaration<ast::Let>(c_.spec,
-                                       [&](const ast::Let& let, Index) { uses_.push_back(lets_in(c_, *let.formula)); });
+        for_each_declaration<ast::Let>(c_.spec, [&](const ast::Let& let, Index) {
+            uses_.push_back(lets_in(c_, *let.formula));
+        });
         states_.resize(uses_.size());
     }
 
@@ -85,11 +88,13 @@ private:
         if (std::all_of(begin, path_.end(), [&](Index let) { return entity(let).broken; })) return;
         constexpr std::ptrdiff_t kShown = 20;
         std::string text;
-        for (auto at = begin; at != path_.end() && at - begin < kShown; ++at) text += entity(*at).name + " -> ";
+        for (auto at = begin; at != path_.end() && at - begin < kShown; ++at)
+            text += entity(*at).name + " -> ";
         if (path_.end() - begin > kShown) text += "... -> ";
         text += entity(use.let).name;
-        auto& error = c_.report(Code::let_cycle, entity(use.let).span,
-                                fmt::format("'{}' is defined by itself: {}", entity(use.let).name, text));
+        auto& error =
+            c_.report(Code::let_cycle, entity(use.let).span,
+                      fmt::format("'{}' is defined by itself: {}", entity(use.let).name, text));
         error.note(use.span, "here the circle closes");
         for (auto at = begin; at != path_.end(); ++at) entity(*at).broken = true;
     }

@@ -27,24 +27,29 @@ std::string origin_of(const ast::Load& load) {
 bool has_usable_shape(Context& c, const data::Array& array, const ast::Load& load) {
     const std::string origin = origin_of(load);
     if (array.element == data::Element::boolean) {
-        c.report(Code::matrix_elements, load.span, fmt::format("{} holds bools; expected numbers", origin));
+        c.report(Code::matrix_elements, load.span,
+                 fmt::format("{} holds bools; expected numbers", origin));
         return false;
     }
     if (array.shape.empty() || array.shape.size() > 2) {
-        c.report(Code::matrix_shape, load.span,
-                 fmt::format("{} has shape {}; expected two dimensions (rows, columns), or one for a single row",
-                             origin, array.shape_text()));
+        c.report(
+            Code::matrix_shape, load.span,
+            fmt::format(
+                "{} has shape {}; expected two dimensions (rows, columns), or one for a single row",
+                origin, array.shape_text()));
         return false;
     }
     for (const std::uint64_t extent : array.shape) {
         if (extent == 0) {
-            c.report(Code::empty_matrix, load.span,
-                     fmt::format("{} has shape {}, so it holds no values", origin, array.shape_text()));
+            c.report(
+                Code::empty_matrix, load.span,
+                fmt::format("{} has shape {}, so it holds no values", origin, array.shape_text()));
             return false;
         }
         if (extent > std::numeric_limits<std::uint32_t>::max()) {
-            c.report(Code::matrix_shape, load.span,
-                     fmt::format("{} has shape {}, which is too large", origin, array.shape_text()));
+            c.report(
+                Code::matrix_shape, load.span,
+                fmt::format("{} has shape {}, which is too large", origin, array.shape_text()));
             return false;
         }
     }
@@ -57,9 +62,11 @@ bool round_values(Context& c, const data::Array& array, const ast::Load& load, M
     for (std::size_t i = 0; i < array.values.size(); ++i) {
         matrix.values.push_back(static_cast<float>(array.values[i]));
         if (std::isfinite(matrix.values.back())) continue;
-        c.report(Code::value_not_finite, load.span,
-                 fmt::format("{} has {:g} at row {}, column {} (both from 0), which is not a finite float32",
-                             origin_of(load), array.values[i], i / matrix.columns, i % matrix.columns));
+        c.report(
+            Code::value_not_finite, load.span,
+            fmt::format(
+                "{} has {:g} at row {}, column {} (both from 0), which is not a finite float32",
+                origin_of(load), array.values[i], i / matrix.columns, i % matrix.columns));
         return false;
     }
     return true;
@@ -87,7 +94,8 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     return matrix;
 }
 
-std::optional<Matrix> literal_matrix(Context& c, const std::vector<std::vector<ast::Number>>& rows) {
+std::optional<Matrix> literal_matrix(Context& c,
+                                     const std::vector<std::vector<ast::Number>>& rows) {
     Matrix matrix;
     matrix.rows = static_cast<std::uint32_t>(rows.size());
     matrix.columns = static_cast<std::uint32_t>(rows[0].size());
@@ -118,10 +126,12 @@ std::optional<Matrix> read_matrix(Context& c, const ast::MatrixLiteral& literal)
     for (std::size_t i = 0; i < literal.rows.size(); ++i) {
         const auto& row = literal.rows[i];
         if (row.size() == columns) continue;
-        const Span span = row.empty() ? literal.span : source::join(row.front().span, row.back().span);
+        const Span span =
+            row.empty() ? literal.span : source::join(row.front().span, row.back().span);
         c.report(Code::ragged_matrix, span,
-                 fmt::format("row {} (from 0) has {} value{}, row 0 has {}; the rows of a matrix are equally long", i,
-                             row.size(), row.size() == 1 ? "" : "s", columns));
+                 fmt::format("row {} (from 0) has {} value{}, row 0 has {}; the rows of a matrix "
+                             "are equally long",
+                             i, row.size(), row.size() == 1 ? "" : "s", columns));
         return std::nullopt;
     }
     return literal_matrix(c, literal.rows);

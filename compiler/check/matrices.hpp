@@ -1,7 +1,7 @@
 // Matrices of float32 that a spec loads or spells out: target sets and weights.
 // Takes: load(...) or a literal. Gives: rows, columns and values.
-// Keeps true: rows and columns are at least 1; every value is finite in float32; a file is read once, and reported
-// once.
+// Keeps true: rows and columns are at least 1; every value is finite in float32; a file is read
+// once, and reported once.
 #pragma once
 
 #include <cstdint>
@@ -18,10 +18,11 @@ struct Context;
 struct Matrix {
     std::uint32_t rows = 0;
     std::uint32_t columns = 0;
-    bool one_dimensional = false;  ///< a file's array of one dimension, or a literal [1, 2, 3]; rows is then 1
-    std::vector<float> values;     ///< row-major
-    std::string origin;            ///< "targets/goal_a.npy", "file.npz:key" or "literal"
-    std::string path;              ///< of the file, relative to where etlc runs; empty for a literal
+    bool one_dimensional =
+        false;  ///< a file's array of one dimension, or a literal [1, 2, 3]; rows is then 1
+    std::vector<float> values;  ///< row-major
+    std::string origin;         ///< "targets/goal_a.npy", "file.npz:key" or "literal"
+    std::string path;           ///< of the file, relative to where etlc runs; empty for a literal
     std::string hash;
 };
 

@@ -26,9 +26,9 @@ public:
         }
         if (reach.horizon > kMaxBound) {
             c_.report(Code::horizon_too_large, name,
-                      fmt::format(
-                          "'{}' looks further ahead than {} steps: the sum of the upper bounds along its deepest path",
-                          monitor.name, kMaxBound));
+                      fmt::format("'{}' looks further ahead than {} steps: the sum of the upper "
+                                  "bounds along its deepest path",
+                                  monitor.name, kMaxBound));
             return;
         }
         monitor.horizon = static_cast<std::uint32_t>(reach.horizon);
@@ -44,25 +44,33 @@ public:
         const Index future = reaches_[truth.formula].future;
         if (future == kNone) return;
         const Entity& predicate = c_.scope.entity(NameKind::predicate, truth.predicate);
-        note_use(c_.report(Code::future_in_truth, c_.operator_spans[future],
-                           fmt::format("{} looks ahead; the truth of '{}' may only look at the present and the past",
-                                       word(future), predicate.name)),
-                 truth.span, name, future, fmt::format("the truth of '{}' is here", predicate.name));
+        note_use(
+            c_.report(
+                Code::future_in_truth, c_.operator_spans[future],
+                fmt::format(
+                    "{} looks ahead; the truth of '{}' may only look at the present and the past",
+                    word(future), predicate.name)),
+            truth.span, name, future, fmt::format("the truth of '{}' is here", predicate.name));
     }
 
 private:
-    std::string_view word(Index formula) const { return operator_word(c_.model.formulas[formula].kind); }
+    std::string_view word(Index formula) const {
+        return operator_word(c_.model.formulas[formula].kind);
+    }
 
     /// Where the operator stands in a let, where it is used as well.
-    void note_use(diag::Diagnostic& error, Span user, Span shown, Index at, std::string text) const {
+    void note_use(diag::Diagnostic& error, Span user, Span shown, Index at,
+                  std::string text) const {
         const Span place = c_.operator_spans[at];
         const bool inside = user.begin <= place.begin && place.end <= user.end;
         if (!inside) error.note(shown, std::move(text));
     }
 
-    /// Calls `report` for each node below the monitor that `what` of its own reach names, once in all monitors.
+    /// Calls `report` for each node below the monitor that `what` of its own reach names, once in
+    /// all monitors.
     template <class Report>
-    void report_all(const Monitor& monitor, Index Reach::*what, std::vector<bool>& visited, Report report) {
+    void report_all(const Monitor& monitor, Index Reach::*what, std::vector<bool>& visited,
+                    Report report) {
         visited.resize(c_.model.formulas.size());
         std::vector<Index> pending{monitor.formula};
         while (!pending.empty()) {
@@ -76,11 +84,12 @@ private:
     }
 
     void report_unbounded(const Monitor& monitor, Span name, Index at) {
-        auto& error =
-            c_.report(Code::unbounded_future, c_.operator_spans[at],
-                      fmt::format("{} looks ahead without bound, and a sliding verdict waits for all that it looks at",
-                                  word(at)));
-        note_use(error, monitor.span, name, at, fmt::format("sliding monitor '{}' uses it", monitor.name));
+        auto& error = c_.report(Code::unbounded_future, c_.operator_spans[at],
+                                fmt::format("{} looks ahead without bound, and a sliding verdict "
+                                            "waits for all that it looks at",
+                                            word(at)));
+        note_use(error, monitor.span, name, at,
+                 fmt::format("sliding monitor '{}' uses it", monitor.name));
         error.note(c_.model.formulas[at].kind == Formula::Kind::weak_until
                        ? "W has no bounded form; p W[0, b] q is written (p U[0, b] q) || G[0, b] p"
                        : "give it an interval, such as [0, 20], or leave out 'sliding'");
@@ -92,7 +101,9 @@ private:
             if (future == kNone) future = reaches_[operand].future;
         auto& error = c_.report(
             Code::past_over_future, c_.operator_spans[at],
-            fmt::format("{} looks back over an operand that looks ahead, which a prefix monitor cannot do", word(at)));
+            fmt::format(
+                "{} looks back over an operand that looks ahead, which a prefix monitor cannot do",
+                word(at)));
         error.note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
         note_use(error, monitor.span, name, at, fmt::format("monitor '{}' uses it", monitor.name));
         error.note("a sliding monitor can, where the future is bounded");
@@ -128,7 +139,8 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
     });
     if (at == kNone) return;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of '{}' is adaptive",
+             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of "
+                         "'{}' is adaptive",
                          monitor.name, c.model.predicates[c.model.formulas[at].index].name))
         .note(c.model.formulas[at].span, "it is used here");
 }
@@ -141,11 +153,13 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     if (at == kNone) return;
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
-             fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; '{}' has no name by "
+             fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
+                         "'{}' has no name by "
                          "which a truth could be given",
                          monitor.name, comparison))
         .note(c.model.formulas[at].span, "it is used here")
-        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth near = ...;', or an "
+        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth "
+                          "near = ...;', or an "
                           "array truth.near in the episodes",
                           comparison));
 }
@@ -155,7 +169,8 @@ Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Sp
     const Reference* before = c.scope.find(declaration.predicate.text);
     const bool used = before != nullptr && c.scope.entity(*before).used;
     const Index predicate = resolve(c, declaration.predicate, NameKind::predicate);
-    if (before != nullptr) c.scope.entity(*before).used = used;  // a truth alone is no use of its predicate
+    if (before != nullptr)
+        c.scope.entity(*before).used = used;  // a truth alone is no use of its predicate
     if (before == nullptr || before->kind != NameKind::predicate) return kNone;
     const auto [at, is_new] = first.try_emplace(before->index, declaration.predicate.span);
     if (is_new) return predicate;
@@ -173,7 +188,8 @@ void check_truths(Context& c) {
     for_each_declaration<ast::Truth>(c.spec, [&](const ast::Truth& declaration, Index) {
         const Index predicate = predicate_of(c, declaration, first);
         const Index formula = check_formula(c, *declaration.formula);
-        if (predicate != kNone && formula != kNone) truths.push_back({predicate, formula, declaration.span});
+        if (predicate != kNone && formula != kNone)
+            truths.push_back({predicate, formula, declaration.span});
     });
     MonitorCheck check(c);
     for (const Truth& truth : truths) {
@@ -183,9 +199,10 @@ void check_truths(Context& c) {
         });
         if (calibrated == kNone) continue;
         c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
-                 fmt::format("the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
-                             c.model.predicates[truth.predicate].name,
-                             c.model.predicates[c.model.formulas[calibrated].index].name));
+                 fmt::format(
+                     "the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
+                     c.model.predicates[truth.predicate].name,
+                     c.model.predicates[c.model.formulas[calibrated].index].name));
     }
     c.model.truths = std::move(truths);
 }
@@ -197,7 +214,8 @@ void check_monitors(Context& c) {
         monitor.span = declaration.span;
         monitor.sliding = declaration.sliding;
         monitor.formula = check_formula(c, *declaration.formula);
-        if (declaration.calibrated) monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
+        if (declaration.calibrated)
+            monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
         if (monitor.formula == kNone) c.scope.entity(NameKind::monitor, index).broken = true;
         c.model.monitors.push_back(std::move(monitor));
     });

@@ -1,4 +1,5 @@
-// Canonical text of formulas and expressions: symbols, and parentheses only where the grammar needs them.
+// Canonical text of formulas and expressions: symbols, and parentheses only where the grammar needs
+// them.
 #include <string_view>
 #include <unordered_map>
 
@@ -59,9 +60,11 @@ public:
         const std::string symbol = std::string(op.symbol) + interval(formula);
         Phrase phrase;
         if (op.level < kPrefix) phrase.separator = ' ' + symbol + ' ';
-        if (op.level == kPrefix) phrase.opening = formula.kind == Kind::negation ? symbol : symbol + ' ';
+        if (op.level == kPrefix)
+            phrase.opening = formula.kind == Kind::negation ? symbol : symbol + ' ';
         for (std::size_t i = 0; i < formula.operands.size(); ++i)
-            phrase.operands.push_back({formula.operands[i], level(formula.operands[i]) < weakest(op.level, i == 0)});
+            phrase.operands.push_back(
+                {formula.operands[i], level(formula.operands[i]) < weakest(op.level, i == 0)});
         return phrase;
     }
 
@@ -102,14 +105,15 @@ private:
     std::unordered_map<Index, std::string> let_names_;
 };
 
-// ---- expressions ---------------------------------------------------------------------------------------------------
+// ---- expressions --------------------------------------------------------------------------------
 
 using ExprKind = Expr::Kind;
 enum ExprLevel : int { kSum = 1, kProduct, kNegation, kPrimary };
 
 void write(const Model& model, const Expr& expression, int weakest, std::string& out);
 
-void write_call(const Model& model, const Expr& expression, std::string_view function, std::string& out) {
+void write_call(const Model& model, const Expr& expression, std::string_view function,
+                std::string& out) {
     out += function;
     out += '(';
     for (std::size_t i = 0; i < expression.arguments.size(); ++i) {
@@ -119,8 +123,8 @@ void write_call(const Model& model, const Expr& expression, std::string_view fun
     out += ')';
 }
 
-void write_binary(const Model& model, const Expr& expression, ExprLevel level, std::string_view symbol, int weakest,
-                  std::string& out) {
+void write_binary(const Model& model, const Expr& expression, ExprLevel level,
+                  std::string_view symbol, int weakest, std::string& out) {
     const bool parentheses = level < weakest;
     if (parentheses) out += '(';
     write(model, expression.arguments[0], level, out);
@@ -140,8 +144,12 @@ void write(const Model& model, const Expr& expression, int weakest, std::string&
             return;
         case ExprKind::add: write_binary(model, expression, kSum, " + ", weakest, out); return;
         case ExprKind::subtract: write_binary(model, expression, kSum, " - ", weakest, out); return;
-        case ExprKind::multiply: write_binary(model, expression, kProduct, " * ", weakest, out); return;
-        case ExprKind::divide: write_binary(model, expression, kProduct, " / ", weakest, out); return;
+        case ExprKind::multiply:
+            write_binary(model, expression, kProduct, " * ", weakest, out);
+            return;
+        case ExprKind::divide:
+            write_binary(model, expression, kProduct, " / ", weakest, out);
+            return;
         case ExprKind::abs: write_call(model, expression, "abs", out); return;
         case ExprKind::sqrt: write_call(model, expression, "sqrt", out); return;
         case ExprKind::min: write_call(model, expression, "min", out); return;

@@ -16,7 +16,8 @@ std::string weights_hash(const Distance& distance) {
 
 using Hashes = std::map<std::string, std::string>;
 
-/// Samples that are taken as they are need no hash: what is left of the declaration is in the episode.
+/// Samples that are taken as they are need no hash: what is left of the declaration is in the
+/// episode.
 void add_input(const Input& input, Hashes& hashes) {
     const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
     if (!narrowed && !input.has_range && input.hold == 0) return;
@@ -36,7 +37,8 @@ void add_distances(const Model& model, const Expr& expression, Hashes& hashes) {
 
 void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     add_distances(model, model.predicates[predicate].expression, hashes);
-    for (const Index input : model.predicates[predicate].inputs) add_input(model.inputs[input], hashes);
+    for (const Index input : model.predicates[predicate].inputs)
+        add_input(model.inputs[input], hashes);
 }
 
 std::vector<bool> reachable(const Model& model, Index root) {
@@ -67,12 +69,14 @@ void add_flags(const Model& model, const std::vector<bool>& seen, Hashes& hashes
 }
 
 /// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
-std::string text_with_definitions(const Model& model, Index formula, const std::vector<bool>& seen) {
+std::string text_with_definitions(const Model& model, Index formula,
+                                  const std::vector<bool>& seen) {
     std::string text = print(model, formula);
     std::string_view separator = " where ";
     const auto epsilon = [](const Threshold& threshold) {
         const bool literal = threshold.origin == ThresholdOrigin::literal;
-        return literal ? threshold.text : fmt::format("{:.9g} from {}", threshold.value, threshold.text);
+        return literal ? threshold.text
+                       : fmt::format("{:.9g} from {}", threshold.value, threshold.text);
     };
     const auto define = [&](const std::string& name, const std::string& definition) {
         text += separator;
@@ -81,7 +85,8 @@ std::string text_with_definitions(const Model& model, Index formula, const std::
     };
     for (const Index index : predicates_in(model, seen)) {
         const Predicate& predicate = model.predicates[index];
-        if (!predicate.name.empty()) define(predicate.name, predicate.text + epsilon(predicate.threshold));
+        if (!predicate.name.empty())
+            define(predicate.name, predicate.text + epsilon(predicate.threshold));
     }
     if (lets_are_written_out(model, formula)) return text;
     for (const Let& let : model.lets) {
@@ -112,7 +117,8 @@ Provenance provenance(const Model& model, Index predicate) {
         if (truth.predicate != predicate || truth.formula == kNone) continue;
         const std::vector<bool> seen = reachable(model, truth.formula);
         result.truth = text_with_definitions(model, truth.formula, seen);
-        for (const Index index : predicates_in(model, seen)) add_predicate(model, index, result.truth_targets);
+        for (const Index index : predicates_in(model, seen))
+            add_predicate(model, index, result.truth_targets);
         add_flags(model, seen, result.truth_targets);
     }
     return result;

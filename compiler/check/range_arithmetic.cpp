@@ -45,7 +45,8 @@ Exact product(float a, float b) {
     return {static_cast<double>(a) * static_cast<double>(b)};
 }
 
-/// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound them.
+/// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound
+/// them.
 Exact quotient(float a, float b) {
     if (std::isinf(b)) return {0};
     const double x = a, y = b, q = x / y;
@@ -119,13 +120,15 @@ Range sqrt(const Range& a) {
 
 Range min(const std::vector<Range>& ranges) {
     Range result = ranges.front();
-    for (const Range& range : ranges) result = {std::min(result.low, range.low), std::min(result.high, range.high)};
+    for (const Range& range : ranges)
+        result = {std::min(result.low, range.low), std::min(result.high, range.high)};
     return result;
 }
 
 Range max(const std::vector<Range>& ranges) {
     Range result = ranges.front();
-    for (const Range& range : ranges) result = {std::max(result.low, range.low), std::max(result.high, range.high)};
+    for (const Range& range : ranges)
+        result = {std::max(result.low, range.low), std::max(result.high, range.high)};
     return result;
 }
 

@@ -1,8 +1,8 @@
 // Interval arithmetic on float32 ranges, rounded outward.
-// Takes: the ranges of an operation's operands. Gives: a range that holds every result that the operation can have on
-// them in float32, whether each operation is rounded or two are fused.
-// Keeps true: low <= high, neither is a NaN; an operand outside a function's domain (sqrt of a negative number) gives
-// no result, so only the defined part counts.
+// Takes: the ranges of an operation's operands. Gives: a range that holds every result that the
+// operation can have on them in float32, whether each operation is rounded or two are fused. Keeps
+// true: low <= high, neither is a NaN; an operand outside a function's domain (sqrt of a negative
+// number) gives no result, so only the defined part counts.
 #pragma once
 
 #include <vector>

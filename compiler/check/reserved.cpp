@@ -9,20 +9,37 @@ namespace etlc::check {
 namespace {
 
 constexpr std::array kKeywords = std::to_array<std::string_view>({
-    "alignas",     "alignof",  "and",        "and_eq",    "asm",       "auto",         "bitand",
-    "bitor",       "bool",     "break",      "case",      "catch",     "char",         "char16_t",
-    "char32_t",    "char8_t",  "class",      "co_await",  "co_return", "co_yield",     "compl",
-    "concept",     "const",    "const_cast", "consteval", "constexpr", "constinit",    "continue",
-    "decltype",    "default",  "delete",     "do",        "double",    "dynamic_cast", "else",
-    "enum",        "explicit", "export",     "extern",    "false",     "float",        "for",
-    "friend",      "goto",     "if",         "inline",    "int",       "long",         "mutable",
-    "namespace",   "new",      "noexcept",   "not",       "not_eq",    "nullptr",      "operator",
-    "or",          "or_eq",    "private",    "protected", "public",    "register",     "reinterpret_cast",
-    "requires",    "return",   "short",      "signed",    "sizeof",    "static",       "static_assert",
-    "static_cast", "struct",   "switch",     "template",  "this",      "thread_local", "throw",
-    "true",        "try",      "typedef",    "typeid",    "typename",  "typeof",       "union",
-    "unsigned",    "using",    "virtual",    "void",      "volatile",  "wchar_t",      "while",
-    "xor",         "xor_eq",
+    "alignas",       "alignof",     "and",
+    "and_eq",        "asm",         "auto",
+    "bitand",        "bitor",       "bool",
+    "break",         "case",        "catch",
+    "char",          "char16_t",    "char32_t",
+    "char8_t",       "class",       "co_await",
+    "co_return",     "co_yield",    "compl",
+    "concept",       "const",       "const_cast",
+    "consteval",     "constexpr",   "constinit",
+    "continue",      "decltype",    "default",
+    "delete",        "do",          "double",
+    "dynamic_cast",  "else",        "enum",
+    "explicit",      "export",      "extern",
+    "false",         "float",       "for",
+    "friend",        "goto",        "if",
+    "inline",        "int",         "long",
+    "mutable",       "namespace",   "new",
+    "noexcept",      "not",         "not_eq",
+    "nullptr",       "operator",    "or",
+    "or_eq",         "private",     "protected",
+    "public",        "register",    "reinterpret_cast",
+    "requires",      "return",      "short",
+    "signed",        "sizeof",      "static",
+    "static_assert", "static_cast", "struct",
+    "switch",        "template",    "this",
+    "thread_local",  "throw",       "true",
+    "try",           "typedef",     "typeid",
+    "typename",      "typeof",      "union",
+    "unsigned",      "using",       "virtual",
+    "void",          "volatile",    "wchar_t",
+    "while",         "xor",         "xor_eq",
 });
 
 /// What fields of the generated structs are made of.
@@ -60,8 +77,8 @@ constexpr std::array kMacros = std::to_array<std::string_view>({
     // clang-format on
 });
 
-/// Functions and types at global scope in the C library and POSIX: no namespace may bear their names. Derived from the
-/// headers by tests/spec/library_names_test.sh.
+/// Functions and types at global scope in the C library and POSIX: no namespace may bear their
+/// names. Derived from the headers by tests/spec/library_names_test.sh.
 constexpr std::array kLibrary = std::to_array<std::string_view>({
 #include "check/library_names.inc"
 });
@@ -85,9 +102,11 @@ bool is_lower(char c) {
     return std::islower(static_cast<unsigned char>(c)) != 0;
 }
 
-/// NULL, FLT_MAX, SPI1, but not G1: a firmware's headers have thousands of them, which no list knows.
+/// NULL, FLT_MAX, SPI1, but not G1: a firmware's headers have thousands of them, which no list
+/// knows.
 bool in_capitals(std::string_view name) {
-    return std::count_if(name.begin(), name.end(), is_upper) > 1 && std::none_of(name.begin(), name.end(), is_lower);
+    return std::count_if(name.begin(), name.end(), is_upper) > 1 &&
+           std::none_of(name.begin(), name.end(), is_lower);
 }
 
 /// PRId32 of <inttypes.h>, M_PIf of <math.h>: not in capitals alone.
@@ -118,10 +137,13 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
     if (contains(kKeywords, name)) return "is a C++ keyword";
     if (contains(kGenerated, name)) return "is a name that the generated code needs";
     if (name.starts_with('_') || name.ends_with('_') || name.find("__") != std::string_view::npos)
-        return "has an underscore that does not stand between letters or digits; C++ and the generated code keep those";
+        return "has an underscore that does not stand between letters or digits; C++ and the "
+               "generated code keep those";
     if (in_capitals(name)) return "is in capitals alone, as macros of C are";
-    if (contains(kMacros, name) || macro_family(name)) return "is a macro of common C headers or compilers";
-    if (is_namespace && contains(kLibrary, name)) return "is a name of the C library, so that no namespace can bear it";
+    if (contains(kMacros, name) || macro_family(name))
+        return "is a macro of common C headers or compilers";
+    if (is_namespace && contains(kLibrary, name))
+        return "is a name of the C library, so that no namespace can bear it";
     return std::nullopt;
 }
 

@@ -36,7 +36,8 @@ std::string_view word_with_article(NameKind kind) {
 const Entity* Scope::declare(NameKind kind, const ast::Name& name) {
     std::vector<Entity>& entities = all(kind);
     entities.push_back({name.text, name.span});
-    const auto [at, is_new] = names_.try_emplace(name.text, Reference{kind, static_cast<Index>(entities.size() - 1)});
+    const auto [at, is_new] =
+        names_.try_emplace(name.text, Reference{kind, static_cast<Index>(entities.size() - 1)});
     if (is_new) return nullptr;
     entities.back().duplicate = true;
     return &entity(at->second);

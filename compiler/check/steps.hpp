@@ -1,6 +1,6 @@
 // The steps of check, in the order in which check.cpp runs them.
-// Each takes the context, adds its part to the model, and reports what it finds; none depends on another having
-// succeeded, only on its having run.
+// Each takes the context, adds its part to the model, and reports what it finds; none depends on
+// another having succeeded, only on its having run.
 #pragma once
 
 #include "check/context.hpp"

@@ -12,11 +12,13 @@ using diag::Code;
 
 std::optional<Matrix> target_matrix(Context& c, const ast::Target& declaration) {
     if (const auto* load = std::get_if<ast::Load>(&declaration.value)) return read_matrix(c, *load);
-    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&declaration.value)) return read_matrix(c, *literal);
+    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&declaration.value))
+        return read_matrix(c, *literal);
     const auto& vector = std::get<ast::VectorLiteral>(declaration.value);
     const std::string words{c.file.text(vector.span)};
-    c.report(Code::target_is_vector, vector.span,
-             "a target is a set of embeddings, one a row, so a literal is a matrix; this is a vector")
+    c.report(
+         Code::target_is_vector, vector.span,
+         "a target is a set of embeddings, one a row, so a literal is a matrix; this is a vector")
         .note(words.size() <= 60 ? fmt::format("for a set of one embedding write [{}]", words)
                                  : "for a set of one embedding put it in another pair of brackets");
     return std::nullopt;

@@ -1,4 +1,5 @@
-// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this spec.
+// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this
+// spec.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -32,14 +33,19 @@ std::vector<Index> calibrated_predicates(Context& c) {
 }
 
 /// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
-std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name, const Threshold& first) {
+std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
+                                                const Threshold& first) {
     const bool is_default = c.options.thresholds_path.empty();
-    const std::string path = is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
+    const std::string path =
+        is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
     std::error_code error;
     if (is_default && !std::filesystem::exists(path, error)) {
         c.report(Code::thresholds_missing, first.span,
-                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name, path))
-            .note("'etlc calibrate' makes one from labelled demonstrations; --thresholds names another");
+                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}",
+                             name, path))
+            .note(
+                "'etlc calibrate' makes one from labelled demonstrations; --thresholds names "
+                "another");
         return std::nullopt;
     }
     auto file = thresholds::read(path);
@@ -60,8 +66,8 @@ bool same_number(const std::string& a, const std::string& b) {
 class Differences {
 public:
     /// `what`: predicate or formula.
-    Differences(const Model& model, const Threshold& threshold, std::string_view what, Provenance now,
-                const thresholds::Entry& entry)
+    Differences(const Model& model, const Threshold& threshold, std::string_view what,
+                Provenance now, const thresholds::Entry& entry)
         : model_(model), threshold_(threshold), what_(what), entry_(entry), now_(std::move(now)) {}
 
     std::vector<std::string> find() && {
@@ -83,7 +89,8 @@ public:
 
 private:
     void add(std::string_view what, std::string_view then, std::string_view now) {
-        found_.push_back(fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
+        found_.push_back(
+            fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
     }
 
     static std::string_view trimmed(std::string_view text) {
@@ -94,11 +101,13 @@ private:
     void add_changed(const std::map<std::string, std::string>& hashes) {
         for (const auto& [name, hash] : hashes) {
             const auto then = entry_.targets.find(name);
-            // A target that the entry does not know belongs to a predicate that has changed, which has been said.
+            // A target that the entry does not know belongs to a predicate that has changed, which
+            // has been said.
             if (then == entry_.targets.end() && found_.empty())
                 found_.push_back(is_input(name)
                                      ? fmt::format("the declaration of '{}' changed", name)
-                                     : fmt::format("it does not say for which {} of '{}'", what_is_hashed(name), name));
+                                     : fmt::format("it does not say for which {} of '{}'",
+                                                   what_is_hashed(name), name));
             if (then != entry_.targets.end() && then->second != hash)
                 found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
         }
@@ -109,9 +118,11 @@ private:
         if (!found_.empty()) return;  // which has said so
         for (const auto& [name, hash] : entry_.targets)
             if (!now_.targets.contains(name) && (by_array || !now_.truth_targets.contains(name)))
-                found_.push_back(is_input(name)
-                                     ? fmt::format("the declaration of '{}' changed", name)
-                                     : fmt::format("it was calibrated with '{}', which does not come into it", name));
+                found_.push_back(
+                    is_input(name)
+                        ? fmt::format("the declaration of '{}' changed", name)
+                        : fmt::format("it was calibrated with '{}', which does not come into it",
+                                      name));
     }
 
     bool is_input(const std::string& name) const {
@@ -120,8 +131,9 @@ private:
     }
 
     std::string_view what_is_hashed(const std::string& name) const {
-        const bool target = std::any_of(model_.targets.begin(), model_.targets.end(),
-                                        [&](const Target& declared) { return declared.name == name; });
+        const bool target =
+            std::any_of(model_.targets.begin(), model_.targets.end(),
+                        [&](const Target& declared) { return declared.name == name; });
         return target ? "values" : is_input(name) ? "declaration" : "weights";
     }
 
@@ -135,35 +147,42 @@ private:
 
 constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
 
-/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for something else, which
-/// `differences` finds.
+/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for
+/// something else, which `differences` finds.
 template <class Compare>
 const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
-                                    const std::string& path, const std::map<std::string, thresholds::Entry>& entries,
+                                    const std::string& path,
+                                    const std::map<std::string, thresholds::Entry>& entries,
                                     Compare differences) {
     const auto found = entries.find(name);
     if (found == entries.end()) {
-        c.report(Code::threshold_missing, threshold.span, fmt::format("{} has no threshold for '{}'", path, name))
+        c.report(Code::threshold_missing, threshold.span,
+                 fmt::format("{} has no threshold for '{}'", path, name))
             .note(std::string(kAgain));
         return nullptr;
     }
     const std::vector<std::string> all = differences(found->second);
     if (all.empty()) return &found->second;
-    auto& error = c.report(Code::threshold_stale, threshold.span,
-                           fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
+    auto& error = c.report(
+        Code::threshold_stale, threshold.span,
+        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
     for (const std::string& difference : all) error.note(difference);
     error.note(std::string(kAgain));
     return nullptr;
 }
 
 /// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
-void take(Context& c, const thresholds::Entry& entry, const std::string& place, Threshold& threshold, bool upper_bound,
-          const std::string& path, const std::vector<std::string>& episodes) {
+void take(Context& c, const thresholds::Entry& entry, const std::string& place,
+          Threshold& threshold, bool upper_bound, const std::string& path,
+          const std::vector<std::string>& episodes) {
     if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
-        auto& error = c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
+        auto& error =
+            c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
         error.note(threshold.span, "it is for this");
         if (found->by_hand)
-            error.note("a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) <= 0.35'");
+            error.note(
+                "a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) "
+                "<= 0.35'");
         error.note(std::string(kAgain));
         return;
     }
@@ -176,17 +195,22 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place, 
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
     Predicate& predicate = c.model.predicates[index];
     Threshold& threshold = predicate.threshold;
-    const thresholds::Entry* entry =
-        find_entry(c, predicate.name, threshold, file.path, file.predicates, [&](const thresholds::Entry& found) {
-            return Differences(c.model, threshold, "predicate", provenance(c.model, index), found).find();
+    const thresholds::Entry* entry = find_entry(
+        c, predicate.name, threshold, file.path, file.predicates,
+        [&](const thresholds::Entry& found) {
+            return Differences(c.model, threshold, "predicate", provenance(c.model, index), found)
+                .find();
         });
     if (entry == nullptr) return;
-    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path, file.episodes);
+    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path,
+         file.episodes);
     if (!threshold.adaptation || std::isnan(threshold.value)) return;
     const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
     if (!begin) {
         c.report(Code::start_out_of_range, threshold.span, outside(predicate, threshold.value))
-            .note("give it lo and hi with room on both sides of the threshold; a new calibration is not needed");
+            .note(
+                "give it lo and hi with room on both sides of the threshold; a new calibration is "
+                "not needed");
         return;
     }
     threshold.value = *begin;
@@ -196,11 +220,13 @@ void take_threshold(Context& c, Index index, const thresholds::File& file) {
 void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
     MonitorCalibration& calibration = *monitor.calibration;
     Threshold& shift = calibration.threshold;
-    const thresholds::Entry* entry =
-        find_entry(c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
-            auto found = Differences(c.model, shift, "formula", provenance(c.model, monitor), of).find();
+    const thresholds::Entry* entry = find_entry(
+        c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
+            auto found =
+                Differences(c.model, shift, "formula", provenance(c.model, monitor), of).find();
             if (of.against != word(calibration.against))
-                found.push_back(fmt::format("it was against: {}; it is: {}", of.against, word(calibration.against)));
+                found.push_back(fmt::format("it was against: {}; it is: {}", of.against,
+                                            word(calibration.against)));
             return found;
         });
     if (entry == nullptr) return;
@@ -208,17 +234,20 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
     if (const auto shared = shared_episode(entry->episodes, file.episodes)) {
         c.sink
             .report(data::in_file(
-                {Code::not_disjoint, fmt::format("'{}' has '{}', which is one of 'episodes', those that thresholds of "
-                                                 "predicates were calibrated on",
-                                                 place + ".episodes", *shared)},
+                {Code::not_disjoint,
+                 fmt::format("'{}' has '{}', which is one of 'episodes', those that thresholds of "
+                             "predicates were calibrated on",
+                             place + ".episodes", *shared)},
                 file.path))
             .note(shift.span, "it is for this")
             .note(
-                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better there "
+                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are "
+                "better there "
                 "than they will be");
         return;
     }
-    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path, entry->episodes);
+    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path,
+         entry->episodes);
 }
 
 std::vector<Monitor*> calibrated_monitors(Context& c) {
@@ -243,9 +272,11 @@ void check_thresholds(Context& c) {
     const std::vector<Monitor*> monitors =
         c.options.allow_uncalibrated_monitors ? std::vector<Monitor*>{} : calibrated_monitors(c);
     if (predicates.empty() && monitors.empty()) return;
-    const auto file = predicates.empty() ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration->threshold)
-                                         : read_thresholds(c, c.model.predicates[predicates[0]].name,
-                                                           c.model.predicates[predicates[0]].threshold);
+    const auto file =
+        predicates.empty()
+            ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration->threshold)
+            : read_thresholds(c, c.model.predicates[predicates[0]].name,
+                              c.model.predicates[predicates[0]].threshold);
     if (!file) return;
     const std::size_t errors = c.sink.errors();
     for (const Index index : predicates) take_threshold(c, index, *file);

@@ -23,11 +23,13 @@ bool has_too_many_digits(Context& c, const ast::Number& number) {
     const std::size_t digits = Decimal::parse(number.text).digits.size();
     if (digits <= kMaxTimeDigits) return false;
     c.report(Code::time_too_precise, number.span,
-             fmt::format("a time of {} significant digits; at most {} are computed exactly", digits, kMaxTimeDigits));
+             fmt::format("a time of {} significant digits; at most {} are computed exactly", digits,
+                         kMaxTimeDigits));
     return true;
 }
 
-/// A period between a picosecond and about three years; the length of a step is also kept as a double.
+/// A period between a picosecond and about three years; the length of a step is also kept as a
+/// double.
 bool has_usable_length(Context& c, const ast::Rate& rate) {
     const double length = seconds(quantity(rate));
     if (length >= 1e-12 && length <= 1e8) return true;
@@ -40,13 +42,14 @@ bool is_usable(Context& c, const ast::Rate& rate) {
     if (has_too_many_digits(c, rate.number)) return false;
     if (!Decimal::parse(rate.number.text).is_positive()) {
         c.report(Code::rate_out_of_range, rate.number.span,
-                 fmt::format("the {} is {}; expected a positive number", rate_word(rate), rate.number.text));
+                 fmt::format("the {} is {}; expected a positive number", rate_word(rate),
+                             rate.number.text));
         return false;
     }
     return has_usable_length(c, rate);
 }
 
-// ---- bounds --------------------------------------------------------------------------------------------------------
+// ---- bounds -------------------------------------------------------------------------------------
 
 bool is_infinite(const ast::Bound& bound) {
     return bound.number.text == "inf" || bound.number.text == "-inf";
@@ -54,7 +57,8 @@ bool is_infinite(const ast::Bound& bound) {
 
 /// A bare 0 is zero steps and zero time alike.
 bool has_no_unit_of_its_own(const ast::Bound& bound) {
-    return is_infinite(bound) || (bound.unit.empty() && Decimal::parse(bound.number.text).is_zero());
+    return is_infinite(bound) ||
+           (bound.unit.empty() && Decimal::parse(bound.number.text).is_zero());
 }
 
 std::string bound_text(const ast::Bound& bound) {
@@ -63,15 +67,17 @@ std::string bound_text(const ast::Bound& bound) {
 
 void report_too_large(Context& c, const ast::Bound& bound) {
     c.report(Code::bound_too_large, bound.span,
-             fmt::format("{} is more than {} steps, the largest bound there is", bound_text(bound), kMaxBound))
+             fmt::format("{} is more than {} steps, the largest bound there is", bound_text(bound),
+                         kMaxBound))
         .note("without an upper bound the interval is written [a, inf]");
 }
 
 std::optional<std::uint32_t> whole_steps(Context& c, const ast::Bound& bound) {
     const Decimal value = Decimal::parse(bound.number.text);
     if (value.negative || !value.is_whole()) {
-        auto& error = c.report(Code::bound_not_whole, bound.span,
-                               fmt::format("the bound {} is not a whole number of steps", bound_text(bound)));
+        auto& error =
+            c.report(Code::bound_not_whole, bound.span,
+                     fmt::format("the bound {} is not a whole number of steps", bound_text(bound)));
         if (!value.negative) error.note("a duration has a unit: us, ms, s or min");
         return std::nullopt;
     }
@@ -84,25 +90,29 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
     const ast::Rate& rate = *c.step.rate;
     const Quantity step = quantity(rate);
     const auto name = [&](std::uint64_t steps) {
-        return fmt::format("{} ({} step{})", duration_text(steps, step, bound.unit), steps, steps == 1 ? "" : "s");
+        return fmt::format("{} ({} step{})", duration_text(steps, step, bound.unit), steps,
+                           steps == 1 ? "" : "s");
     };
     c.report(Code::duration_not_whole, bound.span,
-             fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}", bound_text(bound),
-                         name(below), name(below + 1)))
-        .note(rate.span, fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit));
+             fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",
+                         bound_text(bound), name(below), name(below + 1)))
+        .note(rate.span,
+              fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit));
 }
 
 std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound) {
     if (c.step.broken || has_too_many_digits(c, bound.number)) return std::nullopt;
     const Decimal value = Decimal::parse(bound.number.text);
     if (value.negative) {
-        c.report(Code::bound_not_whole, bound.span, fmt::format("the bound {} is negative", bound_text(bound)));
+        c.report(Code::bound_not_whole, bound.span,
+                 fmt::format("the bound {} is negative", bound_text(bound)));
         return std::nullopt;
     }
     if (c.step.rate == nullptr) {
         if (!c.incomplete)
             c.report(Code::no_rate, bound.span,
-                     fmt::format("{} is a duration, but the spec has no rate or period that says how long a step is",
+                     fmt::format("{} is a duration, but the spec has no rate or period that says "
+                                 "how long a step is",
                                  bound_text(bound)))
                 .note("add a line such as 'rate 20 Hz;' or 'period 50 ms;'");
         return std::nullopt;
@@ -149,10 +159,11 @@ std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
                              bound_text(is_infinite(low) ? low : high)));
         return std::nullopt;
     }
-    if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) && low.unit.empty() != high.unit.empty()) {
-        c.report(
-            Code::mixed_interval, interval.span,
-            fmt::format("one bound is in steps and one is a duration: {} and {}", bound_text(low), bound_text(high)));
+    if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
+        low.unit.empty() != high.unit.empty()) {
+        c.report(Code::mixed_interval, interval.span,
+                 fmt::format("one bound is in steps and one is a duration: {} and {}",
+                             bound_text(low), bound_text(high)));
         return std::nullopt;
     }
     const auto low_steps = bound_steps(c, low);
@@ -160,7 +171,8 @@ std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     if (!low_steps || !high_steps) return std::nullopt;
     if (*low_steps > *high_steps) {
         c.report(Code::interval_reversed, interval.span,
-                 fmt::format("the lower bound {} is above the upper bound {}", bound_text(low), bound_text(high)));
+                 fmt::format("the lower bound {} is above the upper bound {}", bound_text(low),
+                             bound_text(high)));
         return std::nullopt;
     }
     return Steps{*low_steps, *high_steps};

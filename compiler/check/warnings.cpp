@@ -15,7 +15,8 @@ namespace {
 using diag::Code;
 
 void warn_of_unused(Context& c) {
-    for (const NameKind kind : {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let}) {
+    for (const NameKind kind :
+         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let}) {
         for (const Entity& entity : c.scope.all(kind)) {
             if (entity.used) continue;
             c.report(Code::unused_declaration, entity.span,
@@ -30,26 +31,36 @@ Outcome outcome(const Predicate& predicate, float epsilon) {
     const auto [low, high] = predicate.delta;
     switch (predicate.comparison) {
         case Comparison::less_equal:
-            return high <= epsilon ? Outcome::always : low > epsilon ? Outcome::never : Outcome::varies;
+            return high <= epsilon ? Outcome::always
+                   : low > epsilon ? Outcome::never
+                                   : Outcome::varies;
         case Comparison::less:
-            return high < epsilon ? Outcome::always : low >= epsilon ? Outcome::never : Outcome::varies;
+            return high < epsilon   ? Outcome::always
+                   : low >= epsilon ? Outcome::never
+                                    : Outcome::varies;
         case Comparison::greater_equal:
-            return low >= epsilon ? Outcome::always : high < epsilon ? Outcome::never : Outcome::varies;
+            return low >= epsilon   ? Outcome::always
+                   : high < epsilon ? Outcome::never
+                                    : Outcome::varies;
         case Comparison::greater:
-            return low > epsilon ? Outcome::always : high <= epsilon ? Outcome::never : Outcome::varies;
+            return low > epsilon     ? Outcome::always
+                   : high <= epsilon ? Outcome::never
+                                     : Outcome::varies;
     }
     return Outcome::varies;
 }
 
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
-        if (predicate.text.empty() || std::isnan(predicate.threshold.value)) continue;  // broken, or not yet calibrated
+        if (predicate.text.empty() || std::isnan(predicate.threshold.value))
+            continue;  // broken, or not yet calibrated
         const Range epsilon = predicate.threshold.range();
         const Outcome found = outcome(predicate, epsilon.low);
         if (found == Outcome::varies || found != outcome(predicate, epsilon.high)) continue;
         const Range& delta = predicate.delta;
-        const std::string values = delta.low == delta.high ? fmt::format("{:.9g}", delta.low)
-                                                           : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
+        const std::string values = delta.low == delta.high
+                                       ? fmt::format("{:.9g}", delta.low)
+                                       : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
         c.report(Code::constant_predicate, predicate.span,
                  fmt::format("the comparison is {} true: its left side is {}",
                              found == Outcome::always ? "always" : "never", values));
@@ -61,12 +72,15 @@ void warn_of_same_predicates(Context& c) {
     for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
         const Predicate& predicate = c.model.predicates[i];
         const Entity& entity = c.scope.entity(NameKind::predicate, i);
-        if (entity.broken || entity.duplicate || predicate.threshold.origin != ThresholdOrigin::literal) continue;
+        if (entity.broken || entity.duplicate ||
+            predicate.threshold.origin != ThresholdOrigin::literal)
+            continue;
         const std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
         const auto [before, is_new] = first.try_emplace(text, &entity);
         if (is_new) continue;
-        c.report(Code::same_definition, entity.span,
-                 fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
+        c.report(
+             Code::same_definition, entity.span,
+             fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
             .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
     }
 }

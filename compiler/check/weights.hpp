@@ -1,6 +1,7 @@
 // The weights of mahalanobis(W): a symmetric positive definite matrix, the inverse of a covariance.
-// Takes: a loaded or literal matrix or diagonal, or a target's name. Gives: float32 weights as Distance keeps them.
-// Keeps true: a full matrix is exactly symmetric and has a Cholesky factor; a diagonal is positive.
+// Takes: a loaded or literal matrix or diagonal, or a target's name. Gives: float32 weights as
+// Distance keeps them. Keeps true: a full matrix is exactly symmetric and has a Cholesky factor; a
+// diagonal is positive.
 #pragma once
 
 #include <optional>
@@ -12,8 +13,8 @@
 
 namespace etlc::check {
 
-/// |W_ij - W_ji| may be this times sqrt(W_ii W_jj): float32 files of a symmetric matrix differ by rounding. The weights
-/// are then the mean of the two.
+/// |W_ij - W_ji| may be this times sqrt(W_ii W_jj): float32 files of a symmetric matrix differ by
+/// rounding. The weights are then the mean of the two.
 inline constexpr double kSymmetryTolerance = 1e-5;
 
 struct Weights {
@@ -24,7 +25,9 @@ struct Weights {
     std::string hash;
 };
 
-/// The weights for points of `dimension` elements; nothing, with a diagnostic, where they do not fit.
-std::optional<Weights> check_weights(Context& context, const ast::Weights& weights, std::uint32_t dimension, Span span);
+/// The weights for points of `dimension` elements; nothing, with a diagnostic, where they do not
+/// fit.
+std::optional<Weights> check_weights(Context& context, const ast::Weights& weights,
+                                     std::uint32_t dimension, Span span);
 
 }  // namespace etlc::check

@@ -24,7 +24,8 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kEnding = ".npy";
-constexpr std::size_t kCandidates = 1000;  ///< for the name that was meant: a distance is computed to each
+constexpr std::size_t kCandidates =
+    1000;  ///< for the name that was meant: a distance is computed to each
 
 Failure malformed(std::string message) {
     return {Code::malformed_archive, std::move(message)};
@@ -38,7 +39,8 @@ std::string words(int code) {
     zip_error_fini(&error);
     const auto capital = [](char c) { return c >= 'A' && c <= 'Z'; };
     const bool abbreviation = result.size() > 1 && capital(result[1]);  // CRC
-    if (!result.empty() && capital(result[0]) && !abbreviation) result[0] = static_cast<char>(result[0] - 'A' + 'a');
+    if (!result.empty() && capital(result[0]) && !abbreviation)
+        result[0] = static_cast<char>(result[0] - 'A' + 'a');
     return result;
 }
 
@@ -103,9 +105,11 @@ diag::Result<std::vector<ZipMember>> layout_of(const std::string& path) {
     const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK));
     struct stat status {};
     if (!file || ::fstat(*file, &status) != 0)
-        return Failure{Code::unreadable_data_file, fmt::format("cannot be read: {}", error_words(errno))};
-    return read_zip_layout(static_cast<std::uint64_t>(status.st_size),
-                           [&](std::uint64_t at, char* to, std::size_t n) { return read_all_at(*file, at, to, n); });
+        return Failure{Code::unreadable_data_file,
+                       fmt::format("cannot be read: {}", error_words(errno))};
+    return read_zip_layout(
+        static_cast<std::uint64_t>(status.st_size),
+        [&](std::uint64_t at, char* to, std::size_t n) { return read_all_at(*file, at, to, n); });
 }
 
 /// Whether libzip, which has rules of its own for where an archive ends, has found these members.
@@ -114,17 +118,21 @@ bool holds(zip_t* archive, const std::vector<ZipMember>& members) {
     for (std::size_t i = 0; i < members.size(); ++i) {
         zip_stat_t status;
         const char* const name = zip_get_name(archive, i, ZIP_FL_ENC_RAW);
-        if (name == nullptr || name != members[i].name || zip_stat_index(archive, i, 0, &status) != 0) return false;
-        if (status.crc != members[i].crc || status.comp_size != members[i].packed_bytes) return false;
+        if (name == nullptr || name != members[i].name ||
+            zip_stat_index(archive, i, 0, &status) != 0)
+            return false;
+        if (status.crc != members[i].crc || status.comp_size != members[i].packed_bytes)
+            return false;
     }
     return true;
 }
 
 std::optional<Failure> check_method(const zip_stat_t& status) {
-    if (status.encryption_method != ZIP_EM_NONE) return malformed("is encrypted, expected plain members");
+    if (status.encryption_method != ZIP_EM_NONE)
+        return malformed("is encrypted, expected plain members");
     if (status.comp_method != ZIP_CM_STORE && status.comp_method != ZIP_CM_DEFLATE)
-        return malformed(
-            fmt::format("is packed by zip method {}, expected 0 (stored) or 8 (deflated)", status.comp_method));
+        return malformed(fmt::format(
+            "is packed by zip method {}, expected 0 (stored) or 8 (deflated)", status.comp_method));
     return {};
 }
 
@@ -146,7 +154,8 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
     const auto layout = place.in_memory ? layout_of(place.bytes) : layout_of(place.path);
     if (!layout) return layout.failure();
     int code = ZIP_ER_OK;
-    zip_t* opened = place.in_memory ? open_memory_archive(place.bytes, code) : open_file_archive(place.path, code);
+    zip_t* opened = place.in_memory ? open_memory_archive(place.bytes, code)
+                                    : open_file_archive(place.path, code);
     if (opened == nullptr) return damaged(code);
     std::shared_ptr<zip> handle(opened, zip_discard);
     if (!holds(opened, *layout)) return malformed("archive can be read in two ways");
@@ -154,8 +163,10 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
 }
 
 Failure Archive::missing(const std::string& key) const {
-    if (keys_.empty()) return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
-    std::string message = fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
+    if (keys_.empty())
+        return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
+    std::string message =
+        fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
     std::vector<std::string> candidates = keys_;
     candidates.resize(std::min(candidates.size(), kCandidates));
     if (auto nearest = diag::nearest_name(key, candidates))
@@ -167,14 +178,16 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
     const auto found = std::find(keys_.begin(), keys_.end(), key);
     if (found == keys_.end()) return missing(key);
     if (std::find(found + 1, keys_.end(), key) != keys_.end())
-        return Failure{Code::no_such_array, fmt::format("holds two arrays named {}", in_quotes(key))};
+        return Failure{Code::no_such_array,
+                       fmt::format("holds two arrays named {}", in_quotes(key))};
     const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
     zip_stat_t status;
     if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
         return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
     if (auto failure = check_method(status)) return in_array(*failure, key);
     zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
-    if (file == nullptr) return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
+    if (file == nullptr)
+        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
     return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
 }
 

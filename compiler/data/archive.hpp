@@ -1,7 +1,8 @@
 // The zip archive around the arrays of an .npz file.
-// Takes: a path, or bytes in memory. Gives: the keys, and each array's bytes as a stream that is unpacked while it is
-// read. Keeps true: members are stored or deflated and not encrypted; sizes are compared before anything is unpacked,
-// checksums at the end of a member; failures have E04 codes and messages that do not name the file.
+// Takes: a path, or bytes in memory. Gives: the keys, and each array's bytes as a stream that is
+// unpacked while it is read. Keeps true: members are stored or deflated and not encrypted; sizes
+// are compared before anything is unpacked, checksums at the end of a member; failures have E04
+// codes and messages that do not name the file.
 #pragma once
 
 #include <memory>
@@ -29,7 +30,8 @@ public:
 
     /// Names of the members that end in .npy, without that ending, in the order of the archive.
     const std::vector<std::string>& keys() const { return keys_; }
-    /// The array `key`. No such key, or two of them, is a failure that names the nearest and lists what there is.
+    /// The array `key`. No such key, or two of them, is a failure that names the nearest and lists
+    /// what there is.
     diag::Result<std::unique_ptr<ByteSource>> member(const std::string& key) const;
 
 private:

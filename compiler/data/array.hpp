@@ -1,7 +1,8 @@
 // Arrays of numbers as read from files.
 // Takes: bytes. Gives: shapes and values in row-major order, whatever the order in the file.
-// Keeps true: the number of values is the product of the shape; a damaged file gives a Failure that names the array,
-// what was found and what was expected, and never takes more memory than its own size justifies.
+// Keeps true: the number of values is the product of the shape; a damaged file gives a Failure that
+// names the array, what was found and what was expected, and never takes more memory than its own
+// size justifies.
 #pragma once
 
 #include <cstdint>
@@ -28,13 +29,15 @@ struct Array {
     std::string shape_text() const;  ///< "(8, 32)"
 };
 
-/// One .npy file. Reads float16/32/64, integers and bool, C and Fortran order, little endian. Failures of this header
-/// are E04; their messages do not repeat the path: `in_file` (data/file.hpp) adds it.
+/// One .npy file. Reads float16/32/64, integers and bool, C and Fortran order, little endian.
+/// Failures of this header are E04; their messages do not repeat the path: `in_file`
+/// (data/file.hpp) adds it.
 diag::Result<Array> read_npy(const std::string& path);
 /// The same from memory.
 diag::Result<Array> parse_npy(std::string_view bytes);
 
-/// One array of an .npz file, stored or deflated. An empty key takes the only array there is, else it is an error.
+/// One array of an .npz file, stored or deflated. An empty key takes the only array there is, else
+/// it is an error.
 diag::Result<Array> read_npz(const std::string& path, const std::string& key);
 /// The same from memory.
 diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key);
@@ -42,8 +45,9 @@ diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key);
 /// .npy or .npz by the file's ending. An .npy file takes no key.
 diag::Result<Array> read_array(const std::string& path, const std::string& key);
 
-/// 64-bit content hash as 16 hex digits over shape and float32 bits: the same on every machine. It is XXH64 with seed 0
-/// of: the rank and the dimensions as 64-bit, then the values' IEEE bits as 32-bit little-endian integers.
+/// 64-bit content hash as 16 hex digits over shape and float32 bits: the same on every machine. It
+/// is XXH64 with seed 0 of: the rank and the dimensions as 64-bit, then the values' IEEE bits as
+/// 32-bit little-endian integers.
 std::string content_hash(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
 
 }  // namespace etlc::data

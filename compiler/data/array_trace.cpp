@@ -19,19 +19,21 @@ using diag::Code;
 using diag::Failure;
 using Kind = Channel::Kind;
 
-/// Without branches or comparisons, several at a time: a billion elements pass here. An exponent of ones alone, to
-/// which one is added, carries into the sign.
+/// Without branches or comparisons, several at a time: a billion elements pass here. An exponent of
+/// ones alone, to which one is added, carries into the sign.
 bool all_finite(const std::vector<double>& values) {
     constexpr std::uint64_t kExponent = 0x7ff0000000000000;
     constexpr std::uint64_t kOne = 0x0010000000000000;
     std::uint64_t found = 0;
-    for (const double value : values) found |= (std::bit_cast<std::uint64_t>(value) & kExponent) + kOne;
+    for (const double value : values)
+        found |= (std::bit_cast<std::uint64_t>(value) & kExponent) + kOne;
     return found >> 63 == 0;
 }
 
 class ArrayTrace final : public Trace {
 public:
-    ArrayTrace(std::vector<Feed> feeds, std::uint64_t length) : feeds_(std::move(feeds)), length_(length) {}
+    ArrayTrace(std::vector<Feed> feeds, std::uint64_t length)
+        : feeds_(std::move(feeds)), length_(length) {}
 
     std::uint64_t length() const override { return length_; }
     bool has(std::size_t channel) const override { return feeds_[channel].rows != nullptr; }
@@ -43,7 +45,8 @@ public:
         for (std::size_t c = 0; c < feeds_.size(); ++c) {
             if (!has(c)) {
                 sample.present[c] = false;
-                sample.values[c].assign(feeds_[c].channel.width, std::numeric_limits<double>::quiet_NaN());
+                sample.values[c].assign(feeds_[c].channel.width,
+                                        std::numeric_limits<double>::quiet_NaN());
                 continue;
             }
             const auto row = feeds_[c].rows->next();
@@ -55,15 +58,17 @@ public:
     }
 
 private:
-    std::optional<Failure> copy(const double* row, const Channel& channel, std::vector<double>& values) const {
+    std::optional<Failure> copy(const double* row, const Channel& channel,
+                                std::vector<double>& values) const {
         values.assign(row, row + channel.width);
         const bool sound = channel.kind != Kind::boolean && all_finite(values);
         for (double& value : sound ? std::span<double>() : std::span(values)) {
             if (!std::isfinite(value)) {
                 value = std::numeric_limits<double>::quiet_NaN();
             } else if (channel.kind == Kind::boolean && value != 0 && value != 1) {
-                return Failure{Code::trace_elements, fmt::format("array {}: holds {} in step {}, expected 0 or 1",
-                                                                 in_quotes(channel.name), value, step_)};
+                return Failure{Code::trace_elements,
+                               fmt::format("array {}: holds {} in step {}, expected 0 or 1",
+                                           in_quotes(channel.name), value, step_)};
             }
         }
         return {};
@@ -76,17 +81,21 @@ private:
 
 }  // namespace
 
-std::optional<Failure> check_array(const std::vector<std::uint64_t>& shape, bool has_bools, const Channel& channel) {
+std::optional<Failure> check_array(const std::vector<std::uint64_t>& shape, bool has_bools,
+                                   const Channel& channel) {
     if (has_bools && channel.kind != Kind::boolean)
-        return in_array({Code::trace_elements, "has bool elements, expected numbers: the input is no bool"},
-                        channel.name);
+        return in_array(
+            {Code::trace_elements, "has bool elements, expected numbers: the input is no bool"},
+            channel.name);
     const bool flat = shape.size() == 1 && channel.width == 1;
     const bool table = shape.size() == 2 && shape[1] == channel.width;
     if (flat || table) return {};
-    const std::string expected =
-        channel.kind == Kind::vector ? fmt::format("(steps, {})", channel.width) : "(steps,) or (steps, 1)";
-    return in_array({Code::trace_shape, fmt::format("has shape {}, expected {}", shape_text(shape), expected)},
-                    channel.name);
+    const std::string expected = channel.kind == Kind::vector
+                                     ? fmt::format("(steps, {})", channel.width)
+                                     : "(steps,) or (steps, 1)";
+    return in_array(
+        {Code::trace_shape, fmt::format("has shape {}, expected {}", shape_text(shape), expected)},
+        channel.name);
 }
 
 diag::Result<std::unique_ptr<Trace>> open_array_trace(std::vector<Feed> feeds) {
@@ -95,13 +104,15 @@ diag::Result<std::unique_ptr<Trace>> open_array_trace(std::vector<Feed> feeds) {
         if (feed.rows == nullptr) continue;
         if (first == nullptr) first = &feed;
         if (feed.steps != first->steps)
-            return Failure{Code::trace_shape, fmt::format("arrays differ in length: {} has {} steps, {} has {}",
-                                                          in_quotes(first->channel.name), first->steps,
-                                                          in_quotes(feed.channel.name), feed.steps)};
+            return Failure{Code::trace_shape,
+                           fmt::format("arrays differ in length: {} has {} steps, {} has {}",
+                                       in_quotes(first->channel.name), first->steps,
+                                       in_quotes(feed.channel.name), feed.steps)};
     }
     if (first == nullptr)
-        return Failure{Code::trace_shape,
-                       "the spec reads no input, so the arrays do not tell how many steps there are"};
+        return Failure{
+            Code::trace_shape,
+            "the spec reads no input, so the arrays do not tell how many steps there are"};
     const std::uint64_t length = first->steps;
     return std::unique_ptr<Trace>(std::make_unique<ArrayTrace>(std::move(feeds), length));
 }

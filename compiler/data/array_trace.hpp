@@ -1,6 +1,7 @@
 // A trace made of one array a channel: what .npz and .h5 files have in common.
-// Takes: for every channel the shape of its array and its rows. Gives: the trace. Keeps true: shapes and element types
-// fit the channels, all arrays have as many steps; failures have E08 codes and name the array.
+// Takes: for every channel the shape of its array and its rows. Gives: the trace. Keeps true:
+// shapes and element types fit the channels, all arrays have as many steps; failures have E08 codes
+// and name the array.
 #pragma once
 
 #include <memory>
@@ -19,8 +20,8 @@ struct Feed {
     std::unique_ptr<Rows> rows;  ///< null: an optional channel that the file lacks
 };
 
-/// What of the array cannot feed the channel: T or T x 1 for scalars and bools, T x D for vectors, and T where D is 1;
-/// bools for bools only.
+/// What of the array cannot feed the channel: T or T x 1 for scalars and bools, T x D for vectors,
+/// and T where D is 1; bools for bools only.
 std::optional<diag::Failure> check_array(const std::vector<std::uint64_t>& shape, bool has_bools,
                                          const Channel& channel);
 

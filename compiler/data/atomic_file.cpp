@@ -19,9 +19,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr unsigned kMostNames = 1000;  ///< of temporary files, before the folder counts as full of them
-constexpr int kMostLinks = 40;         ///< in a chain of symbolic links, as in Linux
-constexpr int kMostTurns = 200;        ///< that a commit waits for others, kTurnMicroseconds each
+constexpr unsigned kMostNames =
+    1000;                        ///< of temporary files, before the folder counts as full of them
+constexpr int kMostLinks = 40;   ///< in a chain of symbolic links, as in Linux
+constexpr int kMostTurns = 200;  ///< that a commit waits for others, kTurnMicroseconds each
 constexpr unsigned kTurnMicroseconds = 5000;
 
 /// The file that a chain of symbolic links ends at, whether it exists or not; empty where the chain
@@ -52,9 +53,12 @@ public:
     /// Waits for a second at most: the lock keeps files of two calls apart, but nothing hangs on
     /// it.
     explicit Turn(int folder)
-        : folder_(uninterrupted([&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
+        : folder_(uninterrupted(
+              [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
         for (int i = 0; folder_ && i < kMostTurns; ++i) {
-            if (::flock(*folder_, LOCK_EX | LOCK_NB) == 0 || (errno != EWOULDBLOCK && errno != EINTR)) return;
+            if (::flock(*folder_, LOCK_EX | LOCK_NB) == 0 ||
+                (errno != EWOULDBLOCK && errno != EINTR))
+                return;
             ::usleep(kTurnMicroseconds);
         }
     }
@@ -84,16 +88,18 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
     const auto refuse = [&](int error) {
         // A missing file is no obstacle to writing; ENOENT is about its folder.
         const bool no_folder = error == ENOENT || error == ENOTDIR;
-        return diag::Failure{code,
-                             fmt::format("cannot be written: {}", no_folder ? "no such folder" : error_words(error))};
+        return diag::Failure{code, fmt::format("cannot be written: {}",
+                                               no_folder ? "no such folder" : error_words(error))};
     };
     const auto directly = [&](int descriptor) -> diag::Result<AtomicFile> {
         if (descriptor < 0) return refuse(errno);
         return AtomicFile({}, Descriptor(), Descriptor(descriptor), code);
     };
     // They are written where they stand: behind them may be a file that others write to as well.
-    if (path == "/dev/stdout") return directly(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
-    if (path == "/dev/stderr") return directly(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    if (path == "/dev/stdout")
+        return directly(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    if (path == "/dev/stderr")
+        return directly(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
     struct stat status {};
     const bool exists = ::stat(path.c_str(), &status) == 0;
     if (exists && S_ISDIR(status.st_mode)) return refuse(EISDIR);
@@ -105,7 +111,8 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
     if (target.empty()) return refuse(ELOOP);
     if (names_no_file(target)) return refuse(ENOENT);
     const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
-    Descriptor folder(uninterrupted([&] { return ::open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
+    Descriptor folder(
+        uninterrupted([&] { return ::open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
     if (!folder) return refuse(errno);
     AtomicFile file(target.filename().string(), std::move(folder), Descriptor(), code);
     if (!file.open_temporary(exists ? 0600 : 0666)) return refuse(errno);
@@ -115,7 +122,8 @@ diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code 
 
 bool AtomicFile::open_temporary(mode_t mode) {
     const auto open = [&](const char* name, int flags) {
-        return uninterrupted([&] { return ::openat(*folder_, name, O_WRONLY | O_CLOEXEC | flags, mode); });
+        return uninterrupted(
+            [&] { return ::openat(*folder_, name, O_WRONLY | O_CLOEXEC | flags, mode); });
     };
     // A nameless file gets its name by way of /proc.
     if (::access("/proc/self/fd", X_OK) == 0) file_ = Descriptor(open(".", O_TMPFILE));
@@ -138,9 +146,11 @@ void AtomicFile::copy_permissions(const struct stat& of) {
     mode_t mode = of.st_mode & 0777;
     // Where the group cannot be kept, the group that the new file has instead may do no more than
     // everybody.
-    if (::fchown(*file_, of.st_uid, of.st_gid) != 0 && ::fchown(*file_, static_cast<uid_t>(-1), of.st_gid) != 0)
+    if (::fchown(*file_, of.st_uid, of.st_gid) != 0 &&
+        ::fchown(*file_, static_cast<uid_t>(-1), of.st_gid) != 0)
         mode &= ~static_cast<mode_t>(S_IRWXG) | (mode & S_IRWXO) << 3U;
-    static_cast<void>(::fchmod(*file_, mode));  // it stays 0600: less than what was there may, never more
+    static_cast<void>(
+        ::fchmod(*file_, mode));  // it stays 0600: less than what was there may, never more
 }
 
 std::optional<diag::Failure> AtomicFile::failed(int error) const {
@@ -185,13 +195,15 @@ std::optional<diag::Failure> AtomicFile::place() {
     if (state_ == State::nameless && (errno != EEXIST || !name_temporarily())) return failed(errno);
     struct stat status {};
     const bool exists = ::fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
-    if (exists && S_ISDIR(status.st_mode)) return failed(EISDIR);  // with which a name could be exchanged, too
+    if (exists && S_ISDIR(status.st_mode))
+        return failed(EISDIR);  // with which a name could be exchanged, too
     if (::renameat2(*folder_, temporary_.c_str(), *folder_, name_.c_str(), RENAME_EXCHANGE) == 0) {
         state_ = State::exchanged;
         return {};
     }
     // There is nothing under the name, or the file system cannot exchange names.
-    if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0) return failed(errno);
+    if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0)
+        return failed(errno);
     state_ = exists ? State::kept : State::made;
     return {};
 }
@@ -232,7 +244,8 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
     return {};
 }
 
-std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes, diag::Code code) {
+std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
+                                                   diag::Code code) {
     auto file = AtomicFile::create(path, code);
     if (!file) return file.failure();
     if (auto failure = file->write(bytes)) return failure;

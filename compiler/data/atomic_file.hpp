@@ -83,6 +83,7 @@ private:
 std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files);
 
 /// The whole of `bytes` as the content of `path`.
-std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes, diag::Code code);
+std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
+                                                   diag::Code code);
 
 }  // namespace etlc::data

@@ -58,10 +58,12 @@ private:
 }  // namespace
 
 diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path) {
-    if (auto why = why_unreadable(path)) return diag::Failure{diag::Code::unreadable_data_file, *why};
+    if (auto why = why_unreadable(path))
+        return diag::Failure{diag::Code::unreadable_data_file, *why};
     std::FILE* file = std::fopen(path.c_str(), "rbe");
     if (file == nullptr)
-        return diag::Failure{diag::Code::unreadable_data_file, fmt::format("cannot be read: {}", std::strerror(errno))};
+        return diag::Failure{diag::Code::unreadable_data_file,
+                             fmt::format("cannot be read: {}", std::strerror(errno))};
     return std::unique_ptr<ByteSource>(std::make_unique<FileBytes>(file));
 }
 

@@ -1,7 +1,7 @@
 // Where bytes come from: a file, memory, or a member of an archive.
 // Takes: a path or bytes. Gives: them in order, a buffer at a time.
-// Keeps true: `read` gives less than asked for only at the end; `size` is what the container says, known before
-// reading.
+// Keeps true: `read` gives less than asked for only at the end; `size` is what the container says,
+// known before reading.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace etlc::data {
 class ByteSource {
 public:
     virtual ~ByteSource() = default;
-    /// Up to `n` bytes; fewer only at the end. A source that keeps a checksum fails here where it does not match.
+    /// Up to `n` bytes; fewer only at the end. A source that keeps a checksum fails here where it
+    /// does not match.
     virtual diag::Result<std::size_t> read(char* to, std::size_t n) = 0;
     virtual std::uint64_t size() const = 0;
 };

@@ -33,7 +33,8 @@ std::vector<char*> pointers(std::vector<std::string>& words) {
 
 }  // namespace
 
-std::unique_ptr<Child> Child::start(const std::string& program, const std::vector<std::string>& arguments,
+std::unique_ptr<Child> Child::start(const std::string& program,
+                                    const std::vector<std::string>& arguments,
                                     int max_silence_seconds) {
     std::array<int, 2> ends{};
     if (::pipe2(ends.data(), O_CLOEXEC) != 0) return nullptr;
@@ -46,11 +47,12 @@ std::unique_ptr<Child> Child::start(const std::string& program, const std::vecto
     words.insert(words.end(), arguments.begin(), arguments.end());
     std::vector<std::string> settings = environment();
     pid_t process = 0;
-    const int status =
-        ::posix_spawn(&process, program.c_str(), &actions, nullptr, pointers(words).data(), pointers(settings).data());
+    const int status = ::posix_spawn(&process, program.c_str(), &actions, nullptr,
+                                     pointers(words).data(), pointers(settings).data());
     ::posix_spawn_file_actions_destroy(&actions);
     ::close(ends[1]);
-    if (status == 0) return std::unique_ptr<Child>(new Child(process, ends[0], max_silence_seconds));
+    if (status == 0)
+        return std::unique_ptr<Child>(new Child(process, ends[0], max_silence_seconds));
     ::close(ends[0]);
     return nullptr;
 }
@@ -95,8 +97,10 @@ std::string Child::ending() {
     }
     process_ = 0;
     if (ended > 0 && WIFSIGNALED(status))
-        return fmt::format("was stopped by signal {} ({})", WTERMSIG(status), ::strsignal(WTERMSIG(status)));
-    return fmt::format("ended too soon, with exit status {}", WIFEXITED(status) ? WEXITSTATUS(status) : -1);
+        return fmt::format("was stopped by signal {} ({})", WTERMSIG(status),
+                           ::strsignal(WTERMSIG(status)));
+    return fmt::format("ended too soon, with exit status {}",
+                       WIFEXITED(status) ? WEXITSTATUS(status) : -1);
 }
 
 }  // namespace etlc::data

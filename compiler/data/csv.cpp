@@ -99,7 +99,9 @@ void CsvReader::read_quoted() {
     for (;;) {
         const int c = peek();
         if (c == kError) return;
-        if (c == kEnd) return fail("quote that is not closed before the end of the file", cell.line, cell.column);
+        if (c == kEnd)
+            return fail("quote that is not closed before the end of the file", cell.line,
+                        cell.column);
         advance();
         if (c == '"') {
             if (peek() != '"') break;
@@ -113,7 +115,8 @@ void CsvReader::read_quoted() {
     const int c = peek();
     if (c != ',' && c != '\r' && c != '\n' && c >= 0) {
         const char byte = static_cast<char>(c);
-        fail(fmt::format("{} after a closing quote, expected a comma or the end of the line", in_quotes({&byte, 1})),
+        fail(fmt::format("{} after a closing quote, expected a comma or the end of the line",
+                         in_quotes({&byte, 1})),
              line_, column_);
     }
 }
@@ -130,7 +133,8 @@ void CsvReader::read_plain() {
         check_length();
         if (failure_) return;
     }
-    if (peek() == '"') return fail("quote within a cell that does not begin with one", line_, column_);
+    if (peek() == '"')
+        return fail("quote within a cell that does not begin with one", line_, column_);
     const auto blank = [&](std::size_t i) { return row_[i] == ' ' || row_[i] == '\t'; };
     cell.end = row_.size();
     while (cell.begin < cell.end && blank(cell.begin)) {
@@ -143,7 +147,8 @@ void CsvReader::read_plain() {
 /// Cells count too: a row of nothing but commas holds no text.
 void CsvReader::check_length() {
     if (row_.size() + cells_.size() > kMaxRowBytes)
-        fail(fmt::format("row is longer than {} bytes, the most that is read", kMaxRowBytes), row_line_, 1);
+        fail(fmt::format("row is longer than {} bytes, the most that is read", kMaxRowBytes),
+             row_line_, 1);
 }
 
 void CsvReader::skip_byte_order_mark() {

@@ -1,7 +1,7 @@
-// Rows of a .csv file, one at a time: RFC 4180, with LF or CRLF line ends and an optional UTF-8 byte order mark.
-// Takes: a stream of bytes. Gives: the cells of a row with their line and column. Blanks around unquoted cells are
-// dropped. Keeps true: memory is one row, at most kMaxRowBytes; nothing is guessed: a stray quote or a lone CR is an
-// error.
+// Rows of a .csv file, one at a time: RFC 4180, with LF or CRLF line ends and an optional UTF-8
+// byte order mark. Takes: a stream of bytes. Gives: the cells of a row with their line and column.
+// Blanks around unquoted cells are dropped. Keeps true: memory is one row, at most kMaxRowBytes;
+// nothing is guessed: a stray quote or a lone CR is an error.
 #pragma once
 
 #include <array>

@@ -18,7 +18,8 @@ using diag::Code;
 using diag::Failure;
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr std::size_t kCandidates = 1000;  ///< for the name that was meant: a distance is computed to each
+constexpr std::size_t kCandidates =
+    1000;  ///< for the name that was meant: a distance is computed to each
 
 /// What a column of the file feeds: element `element` of channel `channel`.
 struct Slot {
@@ -28,10 +29,12 @@ struct Slot {
 };
 
 std::string column_name(const Channel& channel, std::size_t element) {
-    return channel.kind == Channel::Kind::vector ? fmt::format("{}[{}]", channel.name, element) : channel.name;
+    return channel.kind == Channel::Kind::vector ? fmt::format("{}[{}]", channel.name, element)
+                                                 : channel.name;
 }
 
-/// The columns of a header by name: where each stands, the second one too where a name stands twice.
+/// The columns of a header by name: where each stands, the second one too where a name stands
+/// twice.
 class Header {
 public:
     explicit Header(const CsvReader& row) {
@@ -54,12 +57,15 @@ public:
                 if (found == columns_.end()) return absent(name, channels[c]);
                 if (found->second.count > 1)
                     return Failure{Code::no_such_channel,
-                                   fmt::format("{} columns are named {}", found->second.count, in_quotes(name)), 1, 1};
+                                   fmt::format("{} columns are named {}", found->second.count,
+                                               in_quotes(name)),
+                                   1, 1};
                 result.push_back({found->second.column, c, e});
             }
             if (auto failure = beyond(channels[c])) return *failure;
         }
-        std::sort(result.begin(), result.end(), [](const Slot& a, const Slot& b) { return a.column < b.column; });
+        std::sort(result.begin(), result.end(),
+                  [](const Slot& a, const Slot& b) { return a.column < b.column; });
         return result;
     }
 
@@ -72,24 +78,29 @@ private:
     Failure absent(const std::string& name, const Channel& channel) const {
         std::string message = fmt::format("no column {}", in_quotes(name));
         const bool vector = channel.kind == Channel::Kind::vector;
-        if (vector) message += fmt::format(", needed by input '{}' of {} elements", channel.name, channel.width);
+        if (vector)
+            message +=
+                fmt::format(", needed by input '{}' of {} elements", channel.name, channel.width);
         std::vector<std::string> candidates = names_;
         candidates.resize(std::min(candidates.size(), kCandidates));
-        // z[15] is no misspelling of z[16]: where the vector is merely shorter, its neighbours are no suggestion.
+        // z[15] is no misspelling of z[16]: where the vector is merely shorter, its neighbours are
+        // no suggestion.
         const bool shorter = vector && columns_.contains(column_name(channel, 0));
         const auto nearest = shorter ? std::nullopt : diag::nearest_name(name, candidates);
-        message += nearest ? fmt::format("; did you mean {}?", in_quotes(*nearest)) : "; there are " + listed(names_);
+        message += nearest ? fmt::format("; did you mean {}?", in_quotes(*nearest))
+                           : "; there are " + listed(names_);
         return {Code::no_such_channel, message, 1, 1};
     }
 
-    /// A column for an element that the vector does not have: then the file was made for another width.
+    /// A column for an element that the vector does not have: then the file was made for another
+    /// width.
     std::optional<Failure> beyond(const Channel& channel) const {
         if (channel.kind != Channel::Kind::vector) return {};
         const std::string next = column_name(channel, channel.width);
         if (!columns_.contains(next)) return {};
         return Failure{Code::trace_shape,
-                       fmt::format("has a column {}, but input '{}' has {} elements", in_quotes(next), channel.name,
-                                   channel.width),
+                       fmt::format("has a column {}, but input '{}' has {} elements",
+                                   in_quotes(next), channel.name, channel.width),
                        1, 1};
     }
 
@@ -99,9 +110,12 @@ private:
 
 class CsvTrace final : public Trace {
 public:
-    CsvTrace(std::unique_ptr<CsvReader> rows, std::vector<Channel> channels, std::vector<Slot> slots,
-             std::size_t columns)
-        : rows_(std::move(rows)), channels_(std::move(channels)), slots_(std::move(slots)), columns_(columns) {
+    CsvTrace(std::unique_ptr<CsvReader> rows, std::vector<Channel> channels,
+             std::vector<Slot> slots, std::size_t columns)
+        : rows_(std::move(rows)),
+          channels_(std::move(channels)),
+          slots_(std::move(slots)),
+          columns_(columns) {
         has_.resize(channels_.size());
         for (const Slot& slot : slots_) has_[slot.channel] = true;
     }
@@ -119,7 +133,8 @@ public:
                            rows_->row_line(), 1};
         sample.values.resize(channels_.size());
         sample.present = has_;
-        for (std::size_t c = 0; c < channels_.size(); ++c) sample.values[c].resize(channels_[c].width);
+        for (std::size_t c = 0; c < channels_.size(); ++c)
+            sample.values[c].resize(channels_[c].width);
         for (const Slot& slot : slots_)
             if (auto failure = read_cell(slot, sample)) return *failure;
         for (std::size_t c = 0; c < channels_.size(); ++c)
@@ -135,13 +150,15 @@ private:
         }
         const bool boolean = channels_[slot.channel].kind == Channel::Kind::boolean;
         const auto value = parse_number(rows_->cell(slot.column));
-        const bool sound = value && (!boolean || !std::isfinite(*value) || *value == 0 || *value == 1);
+        const bool sound =
+            value && (!boolean || !std::isfinite(*value) || *value == 0 || *value == 1);
         if (!sound)
-            return Failure{Code::not_a_number,
-                           fmt::format("column {} holds {}, expected {}",
-                                       in_quotes(column_name(channels_[slot.channel], slot.element)),
-                                       in_quotes(rows_->cell(slot.column)), boolean ? "0 or 1" : "a number"),
-                           rows_->line(slot.column), rows_->column(slot.column)};
+            return Failure{
+                Code::not_a_number,
+                fmt::format("column {} holds {}, expected {}",
+                            in_quotes(column_name(channels_[slot.channel], slot.element)),
+                            in_quotes(rows_->cell(slot.column)), boolean ? "0 or 1" : "a number"),
+                rows_->line(slot.column), rows_->column(slot.column)};
         sample.values[slot.channel][slot.element] = std::isfinite(*value) ? *value : kNaN;
         return {};
     }
@@ -160,11 +177,14 @@ diag::Result<std::unique_ptr<Trace>> open_csv_trace(std::unique_ptr<ByteSource> 
     auto rows = std::make_unique<CsvReader>(std::move(source));
     const auto header = rows->next();
     if (!header) return of_trace(header.failure());
-    if (!*header) return Failure{Code::malformed_csv, "is empty, expected a row with the names of the columns"};
+    if (!*header)
+        return Failure{Code::malformed_csv,
+                       "is empty, expected a row with the names of the columns"};
     const std::size_t columns = rows->cells();
     auto slots = Header(*rows).slots(channels);
     if (!slots) return slots.failure();
-    return std::unique_ptr<Trace>(std::make_unique<CsvTrace>(std::move(rows), channels, std::move(*slots), columns));
+    return std::unique_ptr<Trace>(
+        std::make_unique<CsvTrace>(std::move(rows), channels, std::move(*slots), columns));
 }
 
 }  // namespace etlc::data

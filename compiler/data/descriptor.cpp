@@ -19,7 +19,8 @@ Descriptor::~Descriptor() {
 
 bool write_all(int descriptor, std::string_view bytes) {
     while (!bytes.empty()) {
-        const ssize_t n = uninterrupted([&] { return ::write(descriptor, bytes.data(), bytes.size()); });
+        const ssize_t n =
+            uninterrupted([&] { return ::write(descriptor, bytes.data(), bytes.size()); });
         if (n == 0) errno = EIO;
         if (n <= 0) return false;
         bytes.remove_prefix(static_cast<std::size_t>(n));
@@ -29,7 +30,8 @@ bool write_all(int descriptor, std::string_view bytes) {
 
 bool read_all_at(int descriptor, std::uint64_t at, char* to, std::size_t n) {
     while (n > 0) {
-        const ssize_t got = uninterrupted([&] { return ::pread(descriptor, to, n, static_cast<off_t>(at)); });
+        const ssize_t got =
+            uninterrupted([&] { return ::pread(descriptor, to, n, static_cast<off_t>(at)); });
         if (got == 0) errno = EIO;
         if (got <= 0) return false;
         at += static_cast<std::uint64_t>(got);

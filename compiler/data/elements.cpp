@@ -34,20 +34,24 @@ Bits load(const char* bytes) {
         return result;
     }
     for (std::size_t i = 0; i < sizeof(Bits); ++i)
-        result = static_cast<Bits>(result | (static_cast<Bits>(static_cast<unsigned char>(bytes[i])) << (8 * i)));
+        result = static_cast<Bits>(
+            result | (static_cast<Bits>(static_cast<unsigned char>(bytes[i])) << (8 * i)));
     return result;
 }
 
-/// `convert` takes the bits of one element. Restrict: a billion elements pass here, several at a time.
+/// `convert` takes the bits of one element. Restrict: a billion elements pass here, several at a
+/// time.
 template <class Bits, class Convert>
-std::size_t decode_each(const char* __restrict bytes, std::size_t n, double* __restrict to, Convert convert) {
+std::size_t decode_each(const char* __restrict bytes, std::size_t n, double* __restrict to,
+                        Convert convert) {
     for (std::size_t i = 0; i < n; ++i) to[i] = convert(load<Bits>(bytes + i * sizeof(Bits)));
     return n;
 }
 
 template <class Bits, class Number>
 std::size_t decode_as(const char* bytes, std::size_t n, double* to) {
-    return decode_each<Bits>(bytes, n, to, [](Bits b) { return static_cast<double>(std::bit_cast<Number>(b)); });
+    return decode_each<Bits>(bytes, n, to,
+                             [](Bits b) { return static_cast<double>(std::bit_cast<Number>(b)); });
 }
 
 std::size_t decode_booleans(const char* bytes, std::size_t n, double* to) {
@@ -61,7 +65,8 @@ std::size_t decode_booleans(const char* bytes, std::size_t n, double* to) {
 }  // namespace
 
 const ElementInfo& info(Element element) {
-    return *std::find_if(kElements.begin(), kElements.end(), [&](const auto& row) { return row.element == element; });
+    return *std::find_if(kElements.begin(), kElements.end(),
+                         [&](const auto& row) { return row.element == element; });
 }
 
 std::string_view name(Element element) {
@@ -83,7 +88,8 @@ double half_to_double(std::uint16_t bits) {
     else if (exponent < 0x1f)
         magnitude = std::ldexp(0x400 + mantissa, exponent - 25);
     else
-        magnitude = mantissa == 0 ? std::numeric_limits<double>::infinity() : std::numeric_limits<double>::quiet_NaN();
+        magnitude = mantissa == 0 ? std::numeric_limits<double>::infinity()
+                                  : std::numeric_limits<double>::quiet_NaN();
     return (bits & 0x8000) != 0 ? -magnitude : magnitude;
 }
 

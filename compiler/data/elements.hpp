@@ -25,7 +25,8 @@ std::optional<Element> element_of_code(std::string_view code);
 /// IEEE 754 binary16 to double, exactly; NaN and infinities included.
 double half_to_double(std::uint16_t bits);
 
-/// Converts `n` elements. Gives how many are sound: fewer than `n` where a boolean byte is neither 0 nor 1.
+/// Converts `n` elements. Gives how many are sound: fewer than `n` where a boolean byte is neither
+/// 0 nor 1.
 std::size_t decode(Element element, const char* bytes, std::size_t n, double* to);
 
 }  // namespace etlc::data

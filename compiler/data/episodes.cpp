@@ -35,8 +35,12 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
         const std::string path = it->path().string();
         if (is_trace(path) && !is_directory(path)) files.push_back(path);
     }
-    if (error) return diag::Failure{Code::unreadable_trace, fmt::format("cannot be read: {}", error.message())};
-    if (files.empty()) return diag::Failure{Code::unreadable_trace, fmt::format("holds no episodes, {}", kExpected)};
+    if (error)
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("cannot be read: {}", error.message())};
+    if (files.empty())
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("holds no episodes, {}", kExpected)};
     return files;
 }
 
@@ -46,8 +50,10 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
     const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
     std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
     ::globfree(&found);
-    if (status == GLOB_NOMATCH) return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
-    if (status != 0) return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
+    if (status == GLOB_NOMATCH)
+        return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
+    if (status != 0)
+        return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
     std::vector<std::string> files;
     for (const std::string& path : paths) {
         if (!is_directory(path)) {
@@ -74,8 +80,8 @@ diag::Result<std::vector<std::string>> expand(const std::string& argument) {
 
 }  // namespace
 
-std::vector<std::string> find_episodes(const std::vector<std::string>& arguments, const std::string& groups,
-                                       diag::Sink& sink) {
+std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
+                                       const std::string& groups, diag::Sink& sink) {
     std::vector<std::string> episodes;
     std::set<std::string> seen;
     for (const std::string& argument : arguments) {

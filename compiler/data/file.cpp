@@ -51,11 +51,13 @@ diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit
     for (;;) {
         const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get());
         if (bytes.size() + n > limit)
-            return diag::Failure{code, fmt::format("is larger than {} bytes, the most that is read", limit)};
+            return diag::Failure{
+                code, fmt::format("is larger than {} bytes, the most that is read", limit)};
         bytes.append(buffer.data(), n);
         if (n < buffer.size()) break;
     }
-    if (std::ferror(file.get()) != 0) return diag::Failure{code, fmt::format("cannot be read: {}", error_words(errno))};
+    if (std::ferror(file.get()) != 0)
+        return diag::Failure{code, fmt::format("cannot be read: {}", error_words(errno))};
     return bytes;
 }
 

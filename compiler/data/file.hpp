@@ -1,6 +1,6 @@
 // Whole files of bytes.
-// Takes: a path. Gives: its bytes. Keeps true: a Failure carries the code that the caller names and a message that does
-// not repeat the path: `in_file` puts both together.
+// Takes: a path. Gives: its bytes. Keeps true: a Failure carries the code that the caller names and
+// a message that does not repeat the path: `in_file` puts both together.
 #pragma once
 
 #include <cstdint>

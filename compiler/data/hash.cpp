@@ -16,7 +16,8 @@ using namespace etlmon::detail;
 
 std::uint64_t little_endian(const char* bytes, int n) {
     std::uint64_t result = 0;
-    for (int i = 0; i < n; ++i) result |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+    for (int i = 0; i < n; ++i)
+        result |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
     return result;
 }
 
@@ -32,9 +33,11 @@ std::uint64_t stripes(std::string_view& bytes, std::uint64_t seed) {
 /// What is left after the stripes, fewer than 32 bytes, and the mixing at the end.
 std::uint64_t finish(std::uint64_t hash, std::string_view bytes) {
     for (; bytes.size() >= 8; bytes.remove_prefix(8))
-        hash = rotated(hash ^ xxh_round(0, little_endian(bytes.data(), 8)), 27) * kXxhPrime1 + kXxhPrime4;
+        hash = rotated(hash ^ xxh_round(0, little_endian(bytes.data(), 8)), 27) * kXxhPrime1 +
+               kXxhPrime4;
     if (bytes.size() >= 4) {
-        hash = rotated(hash ^ (little_endian(bytes.data(), 4) * kXxhPrime1), 23) * kXxhPrime2 + kXxhPrime3;
+        hash = rotated(hash ^ (little_endian(bytes.data(), 4) * kXxhPrime1), 23) * kXxhPrime2 +
+               kXxhPrime3;
         bytes.remove_prefix(4);
     }
     for (; !bytes.empty(); bytes.remove_prefix(1))
@@ -54,7 +57,8 @@ std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed) {
     return finish(hash + length, bytes);
 }
 
-std::string content_hash(const std::vector<std::uint64_t>& shape, const std::vector<float>& values) {
+std::string content_hash(const std::vector<std::uint64_t>& shape,
+                         const std::vector<float>& values) {
     constexpr std::size_t kPieceBytes = 1U << 16U;
     std::string bytes;
     append(bytes, shape.size(), 8);

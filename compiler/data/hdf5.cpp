@@ -60,8 +60,9 @@ public:
         const std::string reader = find_reader();
         auto child = Child::start(reader, arguments, hdf5::kMaxSilenceSeconds);
         if (!child)
-            return Failure{Code::unreadable_trace,
-                           fmt::format("{} cannot be run, which reads HDF5 files", in_quotes(reader))};
+            return Failure{
+                Code::unreadable_trace,
+                fmt::format("{} cannot be run, which reads HDF5 files", in_quotes(reader))};
         return std::shared_ptr<Records>(new Records(std::move(child)));
     }
 
@@ -85,7 +86,8 @@ public:
     const std::string& bytes() const { return bytes_; }
 
     static Failure nonsense() {
-        return {Code::malformed_trace_array, "is damaged: what came back from reading it makes no sense"};
+        return {Code::malformed_trace_array,
+                "is damaged: what came back from reading it makes no sense"};
     }
 
 private:
@@ -93,10 +95,12 @@ private:
 
     Failure stopped() {
         return {Code::malformed_trace_array,
-                fmt::format("is damaged or too much to read: the process that read it {}", child_->ending())};
+                fmt::format("is damaged or too much to read: the process that read it {}",
+                            child_->ending())};
     }
 
-    /// The reader's own words; a name from the file in them has been escaped there, yet it may be under its control.
+    /// The reader's own words; a name from the file in them has been escaped there, yet it may be
+    /// under its control.
     static std::string escaped(std::string_view text) {
         std::string result;
         for (const char c : text.substr(0, 1000)) result += c >= 0x20 && c < 0x7f ? c : '?';
@@ -161,7 +165,8 @@ public:
         if (at_ == records_->bytes().size() || taken_ == 0) {
             const auto tag = records_->next();
             if (!tag) return tag.failure();
-            if (*tag != Tag::rows || records_->bytes().empty() || records_->bytes().size() % bytes != 0)
+            if (*tag != Tag::rows || records_->bytes().empty() ||
+                records_->bytes().size() % bytes != 0)
                 return Records::nonsense();
             at_ = 0;
         }
@@ -184,7 +189,8 @@ private:
 
 class ChannelRows final : public Rows {
 public:
-    ChannelRows(std::shared_ptr<JointRows> joint, std::size_t offset) : joint_(std::move(joint)), offset_(offset) {}
+    ChannelRows(std::shared_ptr<JointRows> joint, std::size_t offset)
+        : joint_(std::move(joint)), offset_(offset) {}
 
     diag::Result<const double*> next() override {
         const auto row = joint_->row(step_++);
@@ -204,7 +210,8 @@ bool is_hdf5(const std::string& path) {
     return path.ends_with(".h5") || path.ends_with(".hdf5");
 }
 
-diag::Result<std::vector<std::string>> list_hdf5(const std::string& path, const std::string& pattern) {
+diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
+                                                 const std::string& pattern) {
     auto records = Records::start(path, {"list", path, pattern});
     if (!records) return records.failure();
     std::vector<std::string> names;
@@ -217,20 +224,24 @@ diag::Result<std::vector<std::string>> list_hdf5(const std::string& path, const 
         if (in_quotes(name) != "'" + name + "'")
             return Failure{
                 Code::malformed_trace_array,
-                fmt::format("has a group with a name that cannot be printed or is too long: {}", in_quotes(name))};
+                fmt::format("has a group with a name that cannot be printed or is too long: {}",
+                            in_quotes(name))};
         names.push_back(name);
     }
     if (names.empty())
-        return Failure{Code::unreadable_trace, fmt::format("no group of it matches {}", in_quotes(pattern))};
+        return Failure{Code::unreadable_trace,
+                       fmt::format("no group of it matches {}", in_quotes(pattern))};
     return names;
 }
 
-diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path, const std::string& group,
+diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
+                                                     const std::string& group,
                                                      const std::vector<Channel>& channels) {
     std::vector<std::string> arguments = {"read", path, group};
     for (const Channel& channel : channels)
-        arguments.insert(arguments.end(), {std::to_string(channel.width), channel.name,
-                                           std::string(channel.optional ? hdf5::kOptional : hdf5::kNeeded)});
+        arguments.insert(arguments.end(),
+                         {std::to_string(channel.width), channel.name,
+                          std::string(channel.optional ? hdf5::kOptional : hdf5::kNeeded)});
     auto records = Records::start(path, arguments);
     if (!records) return records.failure();
     const auto tag = (*records)->next();

@@ -1,6 +1,7 @@
 // etlc-read-hdf5: the only program of ours that links libhdf5, which hostile files can crash.
-// Takes: arguments as hdf5_protocol.hpp says. Gives: records on standard output. Keeps true: its own memory, files and
-// time are limited before a file is opened; no plugin is loaded; no link leads to another file.
+// Takes: arguments as hdf5_protocol.hpp says. Gives: records on standard output. Keeps true: its
+// own memory, files and time are limited before a file is opened; no plugin is loaded; no link
+// leads to another file.
 #include <fnmatch.h>
 #include <hdf5.h>
 #include <sys/prctl.h>
@@ -26,7 +27,7 @@ using namespace etlc::data::hdf5;
 constexpr std::size_t kChunkCacheBytes = 64U << 20U;  ///< of each dataset
 constexpr std::size_t kMaxListed = 8;                 ///< names in a message
 
-// ---- what goes out -------------------------------------------------------------------------------------------------
+// ---- what goes out ------------------------------------------------------------------------------
 
 [[noreturn]] void quit(int status) {
     ::_exit(status);  // what a damaged file did to the library's own tidying up is of no interest
@@ -42,7 +43,8 @@ void write_all(const char* bytes, std::size_t n) {
     }
 }
 
-/// Each record may take its share of processor time, so that long files may and endless loops may not.
+/// Each record may take its share of processor time, so that long files may and endless loops may
+/// not.
 void allow_time() {
     rusage used{};
     ::getrusage(RUSAGE_SELF, &used);
@@ -74,7 +76,7 @@ void send(Tag tag, const std::string& text) {
     quit(0);
 }
 
-// ---- files and links -----------------------------------------------------------------------------------------------
+// ---- files and links ----------------------------------------------------------------------------
 
 void limit_resources() {
     const rlimit memory{kMaxMemoryBytes, kMaxMemoryBytes};
@@ -85,7 +87,8 @@ void limit_resources() {
     ::setrlimit(RLIMIT_FSIZE, &nothing);
     ::setrlimit(RLIMIT_NOFILE, &files);
     ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE", 1);  // file systems that are read-only, or that cannot lock
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE",
+             1);  // file systems that are read-only, or that cannot lock
     allow_time();
 }
 
@@ -114,7 +117,8 @@ std::vector<std::string> parts_of(const std::string& path) {
     return parts;
 }
 
-/// The object of that name in a group; negative where there is none. Links to other files are not followed.
+/// The object of that name in a group; negative where there is none. Links to other files are not
+/// followed.
 hid_t open_member(hid_t group, const std::string& name) {
     H5L_info_t info{};
     if (H5Lexists(group, name.c_str(), H5P_DEFAULT) <= 0) return -1;
@@ -155,13 +159,16 @@ std::string listed(hid_t group) {
     if (H5Iget_type(group) != H5I_GROUP && H5Iget_type(group) != H5I_FILE) return "";
     const std::vector<std::string> names = members(group);
     std::string text;
-    for (std::size_t i = 0; i < std::min(names.size(), kMaxListed); ++i) text += (i > 0 ? ", '" : "'") + names[i] + "'";
-    if (names.size() > kMaxListed) text += " and " + std::to_string(names.size() - kMaxListed) + " more";
+    for (std::size_t i = 0; i < std::min(names.size(), kMaxListed); ++i)
+        text += (i > 0 ? ", '" : "'") + names[i] + "'";
+    if (names.size() > kMaxListed)
+        text += " and " + std::to_string(names.size() - kMaxListed) + " more";
     return text.empty() ? "" : "; there are " + text;
 }
 
 /// Sends the groups below `group` that match the rest of the pattern.
-void list(hid_t group, const std::string& prefix, const std::vector<std::string>& pattern, std::size_t at) {
+void list(hid_t group, const std::string& prefix, const std::vector<std::string>& pattern,
+          std::size_t at) {
     if (at == pattern.size()) return send(Tag::name, prefix);
     for (const std::string& name : members(group)) {
         if (::fnmatch(pattern[at].c_str(), name.c_str(), 0) != 0) continue;
@@ -173,7 +180,7 @@ void list(hid_t group, const std::string& prefix, const std::vector<std::string>
     }
 }
 
-// ---- datasets ------------------------------------------------------------------------------------------------------
+// ---- datasets -----------------------------------------------------------------------------------
 
 struct Channel {
     std::string name;
@@ -195,14 +202,17 @@ void find_type(Channel& channel) {
     channel.bools = kind == H5T_ENUM && H5Tget_size(type) == 1 && H5Tget_nmembers(type) == 2;
     const bool number = (kind == H5T_INTEGER || kind == H5T_FLOAT) && H5Tget_size(type) <= 8;
     if (!number && !channel.bools)
-        fail(Cause::elements, "dataset " + channel.quoted() + " has elements that are neither numbers nor bools");
-    channel.memory_type = channel.bools ? H5Tget_native_type(type, H5T_DIR_ASCEND) : H5T_NATIVE_DOUBLE;
+        fail(Cause::elements,
+             "dataset " + channel.quoted() + " has elements that are neither numbers nor bools");
+    channel.memory_type =
+        channel.bools ? H5Tget_native_type(type, H5T_DIR_ASCEND) : H5T_NATIVE_DOUBLE;
 }
 
 void find_shape(Channel& channel) {
     const hid_t space = H5Dget_space(channel.dataset);
     const int rank = H5Sget_simple_extent_ndims(space);
-    if (rank < 0 || rank > H5S_MAX_RANK) fail(Cause::array, "dataset " + channel.quoted() + " has a damaged shape");
+    if (rank < 0 || rank > H5S_MAX_RANK)
+        fail(Cause::array, "dataset " + channel.quoted() + " has a damaged shape");
     channel.shape.resize(static_cast<std::size_t>(rank));
     if (rank > 0) H5Sget_simple_extent_dims(space, channel.shape.data(), nullptr);
 }
@@ -211,16 +221,19 @@ void find_shape(Channel& channel) {
 void refuse_foreign_data(const Channel& channel) {
     const hid_t properties = H5Dget_create_plist(channel.dataset);
     if (H5Pget_external_count(properties) != 0 || H5Pget_layout(properties) == H5D_VIRTUAL)
-        fail(Cause::array, "dataset " + channel.quoted() + " keeps its data in other files, which are not read");
+        fail(Cause::array,
+             "dataset " + channel.quoted() + " keeps its data in other files, which are not read");
 }
 
 void open_channel(hid_t group, Channel& channel) {
     channel.dataset = open_object(group, channel.name);
     if (!channel.present()) {
-        if (!channel.optional) fail(Cause::channel, "no dataset " + channel.quoted() + listed(group));
+        if (!channel.optional)
+            fail(Cause::channel, "no dataset " + channel.quoted() + listed(group));
         return;
     }
-    if (H5Iget_type(channel.dataset) != H5I_DATASET) fail(Cause::channel, channel.quoted() + " is no dataset");
+    if (H5Iget_type(channel.dataset) != H5I_DATASET)
+        fail(Cause::channel, channel.quoted() + " is no dataset");
     refuse_foreign_data(channel);
     find_type(channel);
     find_shape(channel);
@@ -239,7 +252,8 @@ bool fits(const Channel& channel) {
 }
 
 /// `count` steps from `first` on, into their places in rows of `stride` doubles.
-void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to, std::size_t stride) {
+void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to,
+                std::size_t stride) {
     const std::size_t n = count * channel.width;
     const hid_t file_space = H5Dget_space(channel.dataset);
     const hsize_t start[2] = {first, 0};
@@ -250,15 +264,16 @@ void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to
     std::vector<signed char> bools(channel.bools ? n : 0);
     void* const buffer = channel.bools ? static_cast<void*>(bools.data()) : values.data();
     if (H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, size, nullptr) < 0 ||
-        H5Dread(channel.dataset, channel.memory_type, memory_space, file_space, H5P_DEFAULT, buffer) < 0)
-        fail(Cause::array,
-             "dataset " + channel.quoted() + " cannot be read: it is damaged, or packed in an unknown way");
+        H5Dread(channel.dataset, channel.memory_type, memory_space, file_space, H5P_DEFAULT,
+                buffer) < 0)
+        fail(Cause::array, "dataset " + channel.quoted() +
+                               " cannot be read: it is damaged, or packed in an unknown way");
     H5Sclose(memory_space);
     H5Sclose(file_space);
     std::copy(bools.begin(), bools.end(), values.begin());
     for (hsize_t row = 0; row < count; ++row)
-        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * channel.width), channel.width,
-                    to + row * stride);
+        std::copy_n(values.begin() + static_cast<std::ptrdiff_t>(row * channel.width),
+                    channel.width, to + row * stride);
 }
 
 void send_rows(const std::vector<Channel>& channels, hsize_t steps, std::size_t width) {
@@ -289,7 +304,8 @@ void read(hid_t file, const std::string& path, std::vector<Channel>& channels) {
     std::size_t width = 0;
     for (const Channel& channel : channels) {
         if (!channel.present()) continue;
-        if (!fits(channel) || (some != nullptr && some->shape[0] != channel.shape[0])) quit(0);  // etlc says why
+        if (!fits(channel) || (some != nullptr && some->shape[0] != channel.shape[0]))
+            quit(0);  // etlc says why
         some = &channel;
         width += channel.width;
     }

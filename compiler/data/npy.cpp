@@ -22,10 +22,12 @@ diag::Result<std::vector<double>> read_values(ByteSource& source, const NpyHeade
     std::vector<double> values;
     std::vector<char> bytes(kChunk * width);
     while (values.size() < header.count) {
-        const auto n = static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, header.count - values.size()));
+        const auto n =
+            static_cast<std::size_t>(std::min<std::uint64_t>(kChunk, header.count - values.size()));
         const auto got = source.read(bytes.data(), n * width);
         if (!got) return got.failure();
-        if (*got < n * width) return *check_size(header, header.header_bytes + values.size() * width + *got);
+        if (*got < n * width)
+            return *check_size(header, header.header_bytes + values.size() * width + *got);
         const std::size_t before = values.size();
         values.resize(before + n);
         const std::size_t sound = decode(header.element, bytes.data(), n, values.data() + before);
@@ -42,7 +44,8 @@ diag::Result<std::vector<double>> read_values(ByteSource& source, const NpyHeade
 }
 
 /// Column-major to row-major, any rank.
-std::vector<double> row_major(const std::vector<double>& values, const std::vector<std::uint64_t>& shape) {
+std::vector<double> row_major(const std::vector<double>& values,
+                              const std::vector<std::uint64_t>& shape) {
     std::vector<std::uint64_t> strides(shape.size(), 1);
     for (std::size_t d = 1; d < shape.size(); ++d) strides[d] = strides[d - 1] * shape[d - 1];
     std::vector<std::uint64_t> index(shape.size(), 0);
@@ -68,17 +71,20 @@ diag::Result<Array> read_npy_from(ByteSource& source) {
     if (!header) return header.failure();
     if (auto failure = check_size(*header, source.size())) return *failure;
     if (header->count > kMaxArrayElements)
-        return Failure{Code::array_too_large, fmt::format("shape {} has {} elements, at most {} are read",
-                                                          shape_text(header->shape), header->count, kMaxArrayElements)};
+        return Failure{Code::array_too_large,
+                       fmt::format("shape {} has {} elements, at most {} are read",
+                                   shape_text(header->shape), header->count, kMaxArrayElements)};
     auto values = read_values(source, *header);
     if (!values) return values.failure();
     Array array{header->shape, header->element, std::move(*values)};
-    if (header->fortran_order && array.shape.size() > 1) array.values = row_major(array.values, array.shape);
+    if (header->fortran_order && array.shape.size() > 1)
+        array.values = row_major(array.values, array.shape);
     return array;
 }
 
 diag::Failure in_array(const Failure& failure, const std::string& key) {
-    return {failure.code, fmt::format("array {}: {}", in_quotes(key), failure.message), failure.line, failure.column};
+    return {failure.code, fmt::format("array {}: {}", in_quotes(key), failure.message),
+            failure.line, failure.column};
 }
 
 std::string Array::shape_text() const {

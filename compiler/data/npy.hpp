@@ -1,6 +1,7 @@
 // One .npy array from any source of bytes.
-// Takes: bytes and how many there are. Gives: the array. Keeps true: memory grows with the bytes that have come, not
-// with what the header promises; failures have E04 codes and messages that name neither file nor array.
+// Takes: bytes and how many there are. Gives: the array. Keeps true: memory grows with the bytes
+// that have come, not with what the header promises; failures have E04 codes and messages that name
+// neither file nor array.
 #pragma once
 
 #include "data/array.hpp"

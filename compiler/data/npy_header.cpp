@@ -24,7 +24,8 @@ Failure malformed(std::string message) {
     return {Code::malformed_array, std::move(message)};
 }
 
-/// Reads the dictionary literal. The first thing wrong stays in `failure`; every later step then does nothing.
+/// Reads the dictionary literal. The first thing wrong stays in `failure`; every later step then
+/// does nothing.
 class Literal {
 public:
     explicit Literal(std::string_view text) : text_(text) {}
@@ -60,7 +61,8 @@ private:
             key.seen = true;
             return (this->*key.value)(header);
         }
-        fail(fmt::format("header has the key {}, expected 'descr', 'fortran_order' and 'shape'", in_quotes(name)));
+        fail(fmt::format("header has the key {}, expected 'descr', 'fortran_order' and 'shape'",
+                         in_quotes(name)));
     }
 
     void descr(NpyHeader& header) {
@@ -73,7 +75,8 @@ private:
         if (element && order == '>' && info(*element).bytes > 1)
             return fail_elements(fmt::format("big-endian elements, '{}'", text));
         if (!element || (order != '<' && order != '|' && order != '>'))
-            return fail_elements(fmt::format("elements of type {}{}", in_quotes(text), kind_of(code)));
+            return fail_elements(
+                fmt::format("elements of type {}{}", in_quotes(text), kind_of(code)));
         header.element = *element;
     }
 
@@ -96,8 +99,8 @@ private:
         const std::string_view rest = text_.substr(at_);
         header.fortran_order = rest.starts_with("True");
         if (!header.fortran_order && !rest.starts_with("False"))
-            return fail(
-                fmt::format("header's 'fortran_order' is {}, expected True or False", in_quotes(rest.substr(0, 10))));
+            return fail(fmt::format("header's 'fortran_order' is {}, expected True or False",
+                                    in_quotes(rest.substr(0, 10))));
         at_ += header.fortran_order ? 4 : 5;
     }
 
@@ -105,7 +108,8 @@ private:
         expect('(');
         while (!failure_ && peek() != ')') {
             header.shape.push_back(dimension());
-            if (header.shape.size() > kMaxRank) return fail(fmt::format("has more than {} dimensions", kMaxRank));
+            if (header.shape.size() > kMaxRank)
+                return fail(fmt::format("has more than {} dimensions", kMaxRank));
             // A tuple of one needs its comma: (3) is not a shape.
             if (peek() != ')' || header.shape.size() == 1) expect(',');
         }
@@ -115,13 +119,15 @@ private:
     std::uint64_t dimension() {
         peek();
         std::uint64_t value = 0;
-        const auto [end, error] = std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
+        const auto [end, error] =
+            std::from_chars(text_.data() + at_, text_.data() + text_.size(), value);
         if (error == std::errc::result_out_of_range || value > kMaxBytes) {
             failure_ = Failure{Code::array_too_large, "has a dimension above 2^63 - 1"};
             return 0;
         }
         if (error != std::errc()) {
-            fail(fmt::format("header's 'shape' holds {}, expected a dimension", in_quotes(text_.substr(at_, 10))));
+            fail(fmt::format("header's 'shape' holds {}, expected a dimension",
+                             in_quotes(text_.substr(at_, 10))));
             return 0;
         }
         at_ = static_cast<std::size_t>(end - text_.data());
@@ -154,13 +160,15 @@ private:
 
     /// The next character that is not white space; NUL at the end.
     char peek() {
-        while (at_ < text_.size() &&
-               (text_[at_] == ' ' || text_[at_] == '\n' || text_[at_] == '\t' || text_[at_] == '\r'))
+        while (at_ < text_.size() && (text_[at_] == ' ' || text_[at_] == '\n' ||
+                                      text_[at_] == '\t' || text_[at_] == '\r'))
             ++at_;
         return at_ < text_.size() ? text_[at_] : '\0';
     }
 
-    std::string found() const { return at_ < text_.size() ? in_quotes(text_.substr(at_, 1)) : "its end"; }
+    std::string found() const {
+        return at_ < text_.size() ? in_quotes(text_.substr(at_, 1)) : "its end";
+    }
 
     void fail(std::string message) {
         if (!failure_) failure_ = malformed(std::move(message));
@@ -169,14 +177,17 @@ private:
         if (!failure_)
             failure_ = Failure{
                 Code::unsupported_elements,
-                fmt::format("has {}, expected little-endian float16, float32, float64, integers or bool", what)};
+                fmt::format(
+                    "has {}, expected little-endian float16, float32, float64, integers or bool",
+                    what)};
     }
 
     std::string_view text_;
     std::size_t at_ = 0;
     std::optional<Failure> failure_;
-    std::array<Key, 3> keys_{
-        {{"descr", &Literal::descr}, {"fortran_order", &Literal::fortran_order}, {"shape", &Literal::shape}}};
+    std::array<Key, 3> keys_{{{"descr", &Literal::descr},
+                              {"fortran_order", &Literal::fortran_order},
+                              {"shape", &Literal::shape}}};
 };
 
 /// The product of the shape; a Failure where the bytes it takes cannot be counted.
@@ -189,7 +200,8 @@ std::optional<Failure> count_elements(NpyHeader& header) {
         if (header.count == 0) break;
         if (n > most / header.count)
             return Failure{Code::array_too_large,
-                           fmt::format("shape {} has more elements than can be counted", shape_text(header.shape))};
+                           fmt::format("shape {} has more elements than can be counted",
+                                       shape_text(header.shape))};
         header.count *= n;
     }
     return {};
@@ -200,7 +212,8 @@ diag::Result<std::string> read_exactly(ByteSource& source, std::size_t n, std::s
     std::string bytes(n, '\0');
     const auto got = source.read(bytes.data(), n);
     if (!got) return got.failure();
-    if (*got < n) return malformed(fmt::format("ends within the {}: {} bytes of {}", what, *got, n));
+    if (*got < n)
+        return malformed(fmt::format("ends within the {}: {} bytes of {}", what, *got, n));
     return bytes;
 }
 
@@ -219,18 +232,22 @@ diag::Result<NpyHeader> read_npy_header(ByteSource& source) {
     if (!start) return start.failure();
     if (!start->starts_with(kMagic))
         return malformed(fmt::format("is no .npy array: begins with {}, expected {}",
-                                     in_quotes(std::string_view(*start).substr(0, kMagic.size())), in_quotes(kMagic)));
+                                     in_quotes(std::string_view(*start).substr(0, kMagic.size())),
+                                     in_quotes(kMagic)));
     const int major = static_cast<unsigned char>((*start)[6]);
     const int minor = static_cast<unsigned char>((*start)[7]);
     if (major < 1 || major > 3 || minor != 0)
-        return malformed(fmt::format("has .npy version {}.{}, expected 1.0, 2.0 or 3.0", major, minor));
+        return malformed(
+            fmt::format("has .npy version {}.{}, expected 1.0, 2.0 or 3.0", major, minor));
     auto length_bytes = read_exactly(source, major == 1 ? 2 : 4, "length of the header");
     if (!length_bytes) return length_bytes.failure();
     std::uint32_t length = 0;
     for (std::size_t i = 0; i < length_bytes->size(); ++i)
-        length |= static_cast<std::uint32_t>(static_cast<unsigned char>((*length_bytes)[i])) << (8 * i);
+        length |= static_cast<std::uint32_t>(static_cast<unsigned char>((*length_bytes)[i]))
+                  << (8 * i);
     if (length > kMaxHeaderBytes)
-        return malformed(fmt::format("has a header of {} bytes, at most {} are read", length, kMaxHeaderBytes));
+        return malformed(
+            fmt::format("has a header of {} bytes, at most {} are read", length, kMaxHeaderBytes));
     auto text = read_exactly(source, length, "header");
     if (!text) return text.failure();
     NpyHeader header;
@@ -243,10 +260,11 @@ diag::Result<NpyHeader> read_npy_header(ByteSource& source) {
 std::optional<Failure> check_size(const NpyHeader& header, std::uint64_t total) {
     const std::uint64_t there = total < header.header_bytes ? 0 : total - header.header_bytes;
     if (there == header.data_bytes()) return {};
-    return Failure{Code::wrong_array_size,
-                   fmt::format("{}: {} of shape {} takes {} bytes, {} are there",
-                               there < header.data_bytes() ? "is cut short" : "has bytes left over",
-                               name(header.element), shape_text(header.shape), header.data_bytes(), there)};
+    return Failure{
+        Code::wrong_array_size,
+        fmt::format("{}: {} of shape {} takes {} bytes, {} are there",
+                    there < header.data_bytes() ? "is cut short" : "has bytes left over",
+                    name(header.element), shape_text(header.shape), header.data_bytes(), there)};
 }
 
 }  // namespace etlc::data

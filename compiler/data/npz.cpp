@@ -17,8 +17,9 @@ diag::Result<std::string> choose(const Archive& archive, const std::string& key)
     if (!key.empty()) return key;
     if (archive.keys().empty()) return Failure{Code::no_such_array, "holds no arrays"};
     if (archive.keys().size() > 1)
-        return Failure{Code::no_such_array, fmt::format("holds {} arrays, {}; expected the key of one of them",
-                                                        archive.keys().size(), listed(archive.keys()))};
+        return Failure{Code::no_such_array,
+                       fmt::format("holds {} arrays, {}; expected the key of one of them",
+                                   archive.keys().size(), listed(archive.keys()))};
     return archive.keys().front();
 }
 
@@ -47,11 +48,13 @@ diag::Result<Array> parse_npz(std::string_view bytes, const std::string& key) {
 diag::Result<Array> read_array(const std::string& path, const std::string& key) {
     if (path.ends_with(".npz")) return within_memory([&] { return read_npz(path, key); });
     if (!path.ends_with(".npy"))
-        return Failure{Code::unknown_data_format, "unknown kind of data file, expected .npy or .npz"};
+        return Failure{Code::unknown_data_format,
+                       "unknown kind of data file, expected .npy or .npz"};
     if (!key.empty())
         return Failure{
             Code::key_without_archive,
-            fmt::format("an .npy file holds one array without a name, so the key {} has no meaning", in_quotes(key))};
+            fmt::format("an .npy file holds one array without a name, so the key {} has no meaning",
+                        in_quotes(key))};
     return within_memory([&] { return read_npy(path); });
 }
 

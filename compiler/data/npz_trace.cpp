@@ -49,7 +49,8 @@ diag::Failure of_trace(Failure failure) {
     return failure;
 }
 
-diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place, const std::vector<Channel>& channels) {
+diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place,
+                                                    const std::vector<Channel>& channels) {
     std::vector<Feed> feeds;
     for (const Channel& channel : channels) {
         auto feed = open_feed(place, channel);

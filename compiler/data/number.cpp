@@ -8,10 +8,11 @@
 namespace etlc::data {
 namespace {
 
-/// True where a decimal number, known to be out of double's range, is too large rather than too small.
+/// True where a decimal number, known to be out of double's range, is too large rather than too
+/// small.
 bool too_large(std::string_view digits) {
-    // Scientific notation of the first digit that is not zero: its place before (or after) the point, plus the
-    // exponent.
+    // Scientific notation of the first digit that is not zero: its place before (or after) the
+    // point, plus the exponent.
     const std::size_t e = digits.find_first_of("eE");
     const std::string_view mantissa = digits.substr(0, e);
     const std::size_t point = std::min(mantissa.find('.'), mantissa.size());
@@ -22,7 +23,8 @@ bool too_large(std::string_view digits) {
     const bool negative = exponent.starts_with('-');
     if (negative || exponent.starts_with('+')) exponent.remove_prefix(1);
     long value = 0;
-    const auto [end, error] = std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
+    const auto [end, error] =
+        std::from_chars(exponent.data(), exponent.data() + exponent.size(), value);
     if (error != std::errc()) value = std::numeric_limits<long>::max();
     return place + static_cast<double>(negative ? -value : value) > 0;
 }
@@ -39,7 +41,8 @@ std::optional<double> parse_number(std::string_view text) {
     if (error == std::errc::invalid_argument || end != text.data() + text.size()) return {};
     if (error == std::errc()) return value;
     const bool negative = text.starts_with('-');
-    const double magnitude = too_large(text.substr(negative ? 1 : 0)) ? std::numeric_limits<double>::infinity() : 0.0;
+    const double magnitude =
+        too_large(text.substr(negative ? 1 : 0)) ? std::numeric_limits<double>::infinity() : 0.0;
     return negative ? -magnitude : magnitude;
 }
 

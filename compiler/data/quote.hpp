@@ -1,6 +1,7 @@
 // Words from files, fit to stand in a message.
-// Takes: any bytes. Gives: 'text' in quotes, control characters and broken UTF-8 escaped, long text cut short with an
-// ellipsis. Keeps true: a hostile file cannot send terminal escapes or megabytes through a diagnostic.
+// Takes: any bytes. Gives: 'text' in quotes, control characters and broken UTF-8 escaped, long text
+// cut short with an ellipsis. Keeps true: a hostile file cannot send terminal escapes or megabytes
+// through a diagnostic.
 #pragma once
 
 #include <string>

@@ -1,8 +1,8 @@
 // The rows of one .npy array, in order, in constant memory.
-// Takes: the bytes of the array. Gives: `width` doubles a row, `rows` times, then checks that nothing is left over.
-// Keeps true: C order is read straight through. Of a Fortran-ordered array the first row is complete only near the end
-// of its bytes, so it is unpacked once to an unnamed temporary file and read from there, a block of rows of every
-// column.
+// Takes: the bytes of the array. Gives: `width` doubles a row, `rows` times, then checks that
+// nothing is left over. Keeps true: C order is read straight through. Of a Fortran-ordered array
+// the first row is complete only near the end of its bytes, so it is unpacked once to an unnamed
+// temporary file and read from there, a block of rows of every column.
 #pragma once
 
 #include <cstdint>
@@ -22,7 +22,8 @@ public:
 };
 
 /// `header` has been read from `source`; its data are `rows` x `width`. Failures have E04 codes.
-diag::Result<std::unique_ptr<Rows>> open_rows(std::unique_ptr<ByteSource> source, const NpyHeader& header,
-                                              std::uint64_t rows, std::uint32_t width);
+diag::Result<std::unique_ptr<Rows>> open_rows(std::unique_ptr<ByteSource> source,
+                                              const NpyHeader& header, std::uint64_t rows,
+                                              std::uint32_t width);
 
 }  // namespace etlc::data

@@ -22,7 +22,8 @@ std::size_t group_mark(const std::string& path) {
 
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
     for (Channel& channel : channels)
-        if (const auto found = names.find(channel.name); found != names.end()) channel.name = found->second;
+        if (const auto found = names.find(channel.name); found != names.end())
+            channel.name = found->second;
     return channels;
 }
 
@@ -34,13 +35,16 @@ std::string trace_file(const std::string& path) {
     return path.substr(0, group_mark(path));
 }
 
-diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels) {
+diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
+                                                const std::vector<Channel>& channels) {
     if (path.ends_with(".npz")) return open_npz_trace({path, {}, false}, channels);
     const std::size_t mark = group_mark(path);
-    if (mark != std::string::npos) return open_hdf5_trace(path.substr(0, mark), path.substr(mark + 1), channels);
+    if (mark != std::string::npos)
+        return open_hdf5_trace(path.substr(0, mark), path.substr(mark + 1), channels);
     if (is_hdf5(path)) return open_hdf5_trace(path, "", channels);
     if (!path.ends_with(".csv"))
-        return diag::Failure{diag::Code::unknown_trace_format, "unknown kind of trace, expected .csv, .npz or .h5"};
+        return diag::Failure{diag::Code::unknown_trace_format,
+                             "unknown kind of trace, expected .csv, .npz or .h5"};
     auto source = open_file(path);
     if (!source) return of_trace(source.failure());
     return open_csv_trace(std::move(*source), channels);

@@ -1,8 +1,9 @@
 // Recorded traces and episodes, read a step at a time.
-// Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group of it). Gives: one
-// sample a step, missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed; of
-// an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an unnamed temporary file in
-// $TMPDIR or /tmp; .h5 is read by a process of its own, data/hdf5.hpp).
+// Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group
+// of it). Gives: one sample a step, missing ones marked. Keeps true: memory does not grow with the
+// number of steps (.csv is streamed; of an .npz member only a buffer is held, a Fortran-ordered T x
+// D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a
+// process of its own, data/hdf5.hpp).
 #pragma once
 
 #include <cstdint>
@@ -15,20 +16,23 @@
 
 namespace etlc::data {
 
-/// One column group of a trace: a scalar (`width` 1, written `name`), an embedding (`name[0]`, `name[1]`, ... in CSV,
-/// an array T x width in NPZ and HDF5) or a bool (0/1, or a bool array).
+/// One column group of a trace: a scalar (`width` 1, written `name`), an embedding (`name[0]`,
+/// `name[1]`, ... in CSV, an array T x width in NPZ and HDF5) or a bool (0/1, or a bool array).
 struct Channel {
     enum class Kind : std::uint8_t { scalar, boolean, vector };
     std::string name;
     Kind kind = Kind::scalar;
     std::uint32_t width = 1;
-    bool optional = false;  ///< where the file lacks it, it is missing at every step, and `Trace::has` says so
+    bool optional =
+        false;  ///< where the file lacks it, it is missing at every step, and `Trace::has` says so
 };
 
-/// One step of all channels. Values keep the file's precision; narrowing them is the reader's user's business.
+/// One step of all channels. Values keep the file's precision; narrowing them is the reader's
+/// user's business.
 struct Sample {
-    std::vector<std::vector<double>> values;  ///< per channel, `width` numbers; NaN where the cell was not finite
-    std::vector<bool> present;                ///< per channel: false for an empty cell or a partly empty vector
+    std::vector<std::vector<double>>
+        values;                 ///< per channel, `width` numbers; NaN where the cell was not finite
+    std::vector<bool> present;  ///< per channel: false for an empty cell or a partly empty vector
 };
 
 class Trace {
@@ -52,10 +56,11 @@ bool is_trace(const std::string& path);
 /// Of FILE.h5:GROUP the file, of any other path the path itself.
 std::string trace_file(const std::string& path);
 
-/// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are ignored, but not
-/// elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for scalars and bools, T x D for vectors
-/// (T too where D is 1). Failures, here and in `next`, are E08; their messages do not repeat the path: `in_file`
-/// (data/file.hpp) adds it.
-diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path, const std::vector<Channel>& channels);
+/// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are
+/// ignored, but not elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for
+/// scalars and bools, T x D for vectors (T too where D is 1). Failures, here and in `next`, are
+/// E08; their messages do not repeat the path: `in_file` (data/file.hpp) adds it.
+diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
+                                                const std::vector<Channel>& channels);
 
 }  // namespace etlc::data

@@ -15,7 +15,8 @@ diag::Result<std::unique_ptr<Trace>> open_csv_trace(std::unique_ptr<ByteSource> 
                                                     const std::vector<Channel>& channels);
 
 /// The archive is opened once per channel, so that every array is unpacked in step with the others.
-diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place, const std::vector<Channel>& channels);
+diag::Result<std::unique_ptr<Trace>> open_npz_trace(const ArchivePlace& place,
+                                                    const std::vector<Channel>& channels);
 
 /// The same finding about a trace: E04 codes of archives and arrays become their E08 counterparts.
 diag::Failure of_trace(diag::Failure failure);

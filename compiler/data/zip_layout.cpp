@@ -26,7 +26,8 @@ constexpr std::size_t kEnd64Bytes = 56;
 constexpr std::size_t kLocatorBytes = 20;
 constexpr std::size_t kMostComment = 0xffff;
 constexpr std::uint64_t kMostDirectoryBytes = 64U << 20U;  ///< of half a million members
-constexpr std::uint64_t kIn64 = 0xffffffff;                ///< a field of 32 bits whose value stands elsewhere, in 64
+constexpr std::uint64_t kIn64 =
+    0xffffffff;  ///< a field of 32 bits whose value stands elsewhere, in 64
 constexpr std::uint64_t kCountIn64 = 0xffff;
 
 Failure malformed(std::string message) {
@@ -48,7 +49,8 @@ Failure not_one_archive(std::string_view where) {
 /// The little-endian number of `n` bytes at `at`, which are there.
 std::uint64_t number(std::string_view bytes, std::size_t at, std::size_t n) {
     std::uint64_t value = 0;
-    for (std::size_t i = n; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+    for (std::size_t i = n; i-- > 0;)
+        value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
     return value;
 }
 
@@ -76,30 +78,38 @@ private:
         const std::uint64_t end = size_ - searched + at;
         if (searched - at < kEndBytes) return not_one_archive("behind its end");
         const std::string_view record = std::string_view(*tail).substr(at);
-        if (record.size() != kEndBytes + number(record, 20, 2)) return not_one_archive("behind its end");
-        if (number(record, 4, 4) != 0 || number(record, 8, 2) != number(record, 10, 2)) return damaged();
+        if (record.size() != kEndBytes + number(record, 20, 2))
+            return not_one_archive("behind its end");
+        if (number(record, 4, 4) != 0 || number(record, 8, 2) != number(record, 10, 2))
+            return damaged();
         entries_ = number(record, 10, 2);
         directory_bytes_ = number(record, 12, 4);
         directory_ = number(record, 16, 4);
         directory_end_ = end;
         if (auto failure = find_directory64(end)) return failure;
         if (directory_ > directory_end_ || directory_bytes_ > directory_end_) return damaged();
-        if (directory_bytes_ > kMostDirectoryBytes) return malformed("has a directory that is too large");
-        if (directory_ + directory_bytes_ != directory_end_) return not_one_archive("around its directory");
+        if (directory_bytes_ > kMostDirectoryBytes)
+            return malformed("has a directory that is too large");
+        if (directory_ + directory_bytes_ != directory_end_)
+            return not_one_archive("around its directory");
         return {};
     }
 
     /// The same in 64 bits, which is there where a locator stands before the record.
     std::optional<Failure> find_directory64(std::uint64_t end) {
-        const bool needed = entries_ == kCountIn64 || directory_bytes_ == kIn64 || directory_ == kIn64;
-        const auto locator = end < kLocatorBytes ? std::string() : read(end - kLocatorBytes, kLocatorBytes);
+        const bool needed =
+            entries_ == kCountIn64 || directory_bytes_ == kIn64 || directory_ == kIn64;
+        const auto locator =
+            end < kLocatorBytes ? std::string() : read(end - kLocatorBytes, kLocatorBytes);
         if (!locator) return unreadable();
-        if (!locator->starts_with(kLocator64)) return needed ? std::optional(damaged()) : std::nullopt;
+        if (!locator->starts_with(kLocator64))
+            return needed ? std::optional(damaged()) : std::nullopt;
         const std::uint64_t at = number(*locator, 8, 8);
         if (at > end - kLocatorBytes || end - kLocatorBytes - at != kEnd64Bytes) return damaged();
         const auto record = read(at, kEnd64Bytes);
         if (!record) return unreadable();
-        if (!record->starts_with(kEnd64) || number(*record, 4, 8) != kEnd64Bytes - 12) return damaged();
+        if (!record->starts_with(kEnd64) || number(*record, 4, 8) != kEnd64Bytes - 12)
+            return damaged();
         const auto agrees = [&](std::uint64_t& value, std::uint64_t in64, std::uint64_t mark) {
             const bool same = value == in64 || value == mark;
             value = in64;
@@ -128,7 +138,8 @@ private:
             member.crc = static_cast<std::uint32_t>(number(rest, 16, 4));
             member.packed_bytes = number(rest, 20, 4);
             member.offset = number(rest, 42, 4);
-            if (!widen(rest.substr(kEntryBytes + name, extra), number(rest, 24, 4), member)) return damaged();
+            if (!widen(rest.substr(kEntryBytes + name, extra), number(rest, 24, 4), member))
+                return damaged();
             members_.push_back(std::move(member));
             rest.remove_prefix(length);
         }
@@ -157,10 +168,13 @@ private:
     std::optional<Failure> check_places() const {
         std::vector<const ZipMember*> in_file;
         for (const ZipMember& member : members_) in_file.push_back(&member);
-        std::sort(in_file.begin(), in_file.end(), [](const auto* a, const auto* b) { return a->offset < b->offset; });
-        if ((in_file.empty() ? directory_ : in_file[0]->offset) != 0) return not_one_archive("before its first member");
+        std::sort(in_file.begin(), in_file.end(),
+                  [](const auto* a, const auto* b) { return a->offset < b->offset; });
+        if ((in_file.empty() ? directory_ : in_file[0]->offset) != 0)
+            return not_one_archive("before its first member");
         for (std::size_t i = 0; i < in_file.size(); ++i)
-            if (auto failure = check_place(*in_file[i], i + 1 < in_file.size() ? in_file[i + 1]->offset : directory_))
+            if (auto failure = check_place(
+                    *in_file[i], i + 1 < in_file.size() ? in_file[i + 1]->offset : directory_))
                 return failure;
         return {};
     }
@@ -173,16 +187,18 @@ private:
         const std::uint64_t name = number(*head, 26, 2);
         const std::uint64_t before = kLocalBytes + name + number(*head, 28, 2);
         const std::uint64_t room = next - member.offset;
-        if (!head->starts_with(kLocal) || room < before || room - before < member.packed_bytes) return damaged();
+        if (!head->starts_with(kLocal) || room < before || room - before < member.packed_bytes)
+            return damaged();
         const auto again = read(member.offset + kLocalBytes, name);
         if (!again) return unreadable();
         if (*again != member.name)
-            return malformed(fmt::format("has a member that is {} in one place and {} in another", in_quotes(*again),
-                                         in_quotes(member.name)));
+            return malformed(fmt::format("has a member that is {} in one place and {} in another",
+                                         in_quotes(*again), in_quotes(member.name)));
         // Behind the data its checksum and sizes, in 32 or 64 bits, with or without a signature.
         const std::uint64_t behind = room - before - member.packed_bytes;
         const bool descriptor = behind == 12 || behind == 16 || behind == 20 || behind == 24;
-        if (behind != 0 && !(member.sizes_follow && descriptor)) return not_one_archive("between its members");
+        if (behind != 0 && !(member.sizes_follow && descriptor))
+            return not_one_archive("between its members");
         return {};
     }
 

@@ -7,7 +7,8 @@ namespace etlc::diag {
 
 const std::vector<CodeInfo>& all_codes() {
     static const std::vector<CodeInfo> codes{
-#define DIAGNOSTIC(code, severity, name, summary) CodeInfo{#code, Severity::severity, #name, summary},
+#define DIAGNOSTIC(code, severity, name, summary) \
+    CodeInfo{#code, Severity::severity, #name, summary},
 #include "diag/codes.def"
 #undef DIAGNOSTIC
     };
@@ -29,14 +30,14 @@ Diagnostic& Sink::report(Diagnostic diagnostic) {
 
 std::vector<Diagnostic> Sink::sorted() const {
     std::vector<Diagnostic> result = diagnostics_;
-    // Stable, so that what a stage found at one place stays in the order in which it was found. A finding about the
-    // whole spec has no span and comes first.
+    // Stable, so that what a stage found at one place stays in the order in which it was found. A
+    // finding about the whole spec has no span and comes first.
     std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
         // The spec's own findings have no file name, which sorts before every name.
         const auto place = [](const Diagnostic& d) {
             const std::uint32_t begin = d.span && d.file.empty() ? d.span->begin : 0;
-            return std::tuple<const std::string&, std::uint32_t, std::uint32_t, std::uint32_t>(d.file, d.line, d.column,
-                                                                                               begin);
+            return std::tuple<const std::string&, std::uint32_t, std::uint32_t, std::uint32_t>(
+                d.file, d.line, d.column, begin);
         };
         return place(a) < place(b);
     });

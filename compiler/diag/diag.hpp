@@ -1,6 +1,7 @@
 // Diagnostics: collecting them. Rendering is in render.hpp.
 // Takes: a code, a place, words. Gives: the list, in the order of their places.
-// Keeps true: each cause is reported once; nothing is printed before a stage has reported all it finds.
+// Keeps true: each cause is reported once; nothing is printed before a stage has reported all it
+// finds.
 #pragma once
 
 #include <cstdint>
@@ -38,7 +39,8 @@ struct Note {
     std::string text;
 };
 
-/// One finding. Its place is a span of the spec, or another file (with line and column where they are known).
+/// One finding. Its place is a span of the spec, or another file (with line and column where they
+/// are known).
 struct Diagnostic {
     Code code;
     std::string message;
@@ -71,7 +73,8 @@ public:
     Severity severity(const Diagnostic& found) const {
         return warnings_are_errors_ ? Severity::error : found.severity();
     }
-    /// Whether nothing may come of the spec. Stages stop at errors, so that the warnings of all of them are told.
+    /// Whether nothing may come of the spec. Stages stop at errors, so that the warnings of all of
+    /// them are told.
     bool refused() const { return has_errors() || (warnings_are_errors_ && warnings() > 0); }
     std::size_t errors() const { return errors_; }
     std::size_t warnings() const { return diagnostics_.size() - errors_; }
@@ -84,11 +87,12 @@ private:
     bool warnings_are_errors_;
 };
 
-/// What went wrong with a file other than the spec, found by a stage that does not know why the file was read.
+/// What went wrong with a file other than the spec, found by a stage that does not know why the
+/// file was read.
 struct Failure {
     Code code;
-    std::string
-        message;  ///< names the array, what was found and what was expected; not the file (data::in_file adds it)
+    std::string message;  ///< names the array, what was found and what was expected; not the file
+                          ///< (data::in_file adds it)
     std::uint32_t line = 0;
     std::uint32_t column = 0;
 };
@@ -97,8 +101,9 @@ struct Failure {
 template <class T>
 class Result {
 public:
-    Result(T value) : content_(std::move(value)) {}            // NOLINT(google-explicit-constructor)
-    Result(Failure failure) : content_(std::move(failure)) {}  // NOLINT(google-explicit-constructor)
+    Result(T value) : content_(std::move(value)) {}  // NOLINT(google-explicit-constructor)
+    Result(Failure failure)
+        : content_(std::move(failure)) {}  // NOLINT(google-explicit-constructor)
 
     explicit operator bool() const { return content_.index() == 0; }
     T& operator*() { return std::get<0>(content_); }
@@ -112,6 +117,7 @@ private:
 };
 
 /// The candidate nearest to `name` by edit distance, where one is near enough to be meant.
-std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& candidates);
+std::optional<std::string> nearest_name(std::string_view name,
+                                        const std::vector<std::string>& candidates);
 
 }  // namespace etlc::diag

@@ -20,7 +20,8 @@ int substitution(char a, char b) {
     return lower(a) == lower(b) ? kCase : kEdit;
 }
 
-/// Damerau-Levenshtein distance with adjacent transpositions (optimal string alignment), in half edits.
+/// Damerau-Levenshtein distance with adjacent transpositions (optimal string alignment), in half
+/// edits.
 int distance(std::string_view a, std::string_view b) {
     std::array<std::array<int, kLongest + 1>, 3> rows{};
     for (std::size_t j = 0; j <= b.size(); ++j) rows[0][j] = kEdit * static_cast<int>(j);
@@ -30,7 +31,8 @@ int distance(std::string_view a, std::string_view b) {
         const auto& two_above = rows[(i + 1) % 3];
         row[0] = kEdit * static_cast<int>(i);
         for (std::size_t j = 1; j <= b.size(); ++j) {
-            row[j] = std::min({above[j] + kEdit, row[j - 1] + kEdit, above[j - 1] + substitution(a[i - 1], b[j - 1])});
+            row[j] = std::min({above[j] + kEdit, row[j - 1] + kEdit,
+                               above[j - 1] + substitution(a[i - 1], b[j - 1])});
             const bool swapped = i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1];
             if (swapped) row[j] = std::min(row[j], two_above[j - 2] + kEdit);
         }
@@ -40,13 +42,15 @@ int distance(std::string_view a, std::string_view b) {
 
 }  // namespace
 
-std::optional<std::string> nearest_name(std::string_view name, const std::vector<std::string>& candidates) {
+std::optional<std::string> nearest_name(std::string_view name,
+                                        const std::vector<std::string>& candidates) {
     if (name.empty() || name.size() > kLongest) return std::nullopt;
     const std::string* best = nullptr;
     int best_distance = 0;
     for (const std::string& candidate : candidates) {
         if (candidate.empty() || candidate.size() > kLongest) continue;
-        // One edit in three letters, rounded up from two letters on: `p1` may mean `p2`, but `a` does not mean `b`.
+        // One edit in three letters, rounded up from two letters on: `p1` may mean `p2`, but `a`
+        // does not mean `b`.
         const auto longer = static_cast<int>(std::max(name.size(), candidate.size()));
         const int allowed = std::max(kCase, kEdit * ((longer + 1) / 3));
         const int difference = static_cast<int>(name.size()) - static_cast<int>(candidate.size());

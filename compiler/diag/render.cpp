@@ -18,7 +18,8 @@ struct Palette {
     std::string_view bold, error, warning, note, caret, reset;
 };
 constexpr Palette kPlain{};
-constexpr Palette kColours{"\x1b[1m", "\x1b[1;31m", "\x1b[1;35m", "\x1b[1;36m", "\x1b[1;32m", "\x1b[0m"};
+constexpr Palette kColours{"\x1b[1m",    "\x1b[1;31m", "\x1b[1;35m",
+                           "\x1b[1;36m", "\x1b[1;32m", "\x1b[0m"};
 
 class TextRenderer {
 public:
@@ -29,8 +30,10 @@ public:
         const bool is_error = severity == Severity::error;
         const std::string_view colour = is_error ? palette_.error : palette_.warning;
         const bool in_spec = diagnostic.file.empty();
-        headline(in_spec ? place(diagnostic.span) : place(diagnostic), is_error ? "error" : "warning", colour,
-                 fmt::format("{} [{}]", source::visible(diagnostic.message), info(diagnostic.code).code));
+        headline(in_spec ? place(diagnostic.span) : place(diagnostic),
+                 is_error ? "error" : "warning", colour,
+                 fmt::format("{} [{}]", source::visible(diagnostic.message),
+                             info(diagnostic.code).code));
         if (in_spec && diagnostic.span) source_lines(*diagnostic.span);
         if (!in_spec && diagnostic.span) note({diagnostic.span, "named here"});
         for (const Note& n : diagnostic.notes) note(n);
@@ -60,13 +63,15 @@ private:
     static std::string place(const Diagnostic& diagnostic) {
         std::string result = source::visible(diagnostic.file);
         if (diagnostic.line > 0) result += fmt::format(":{}", diagnostic.line);
-        if (diagnostic.line > 0 && diagnostic.column > 0) result += fmt::format(":{}", diagnostic.column);
+        if (diagnostic.line > 0 && diagnostic.column > 0)
+            result += fmt::format(":{}", diagnostic.column);
         return result;
     }
 
-    void headline(const std::string& where, std::string_view kind, std::string_view colour, const std::string& words) {
-        text_ +=
-            fmt::format("{0}{1}:{5} {2}{3}:{5} {0}{4}{5}\n", palette_.bold, where, colour, kind, words, palette_.reset);
+    void headline(const std::string& where, std::string_view kind, std::string_view colour,
+                  const std::string& words) {
+        text_ += fmt::format("{0}{1}:{5} {2}{3}:{5} {0}{4}{5}\n", palette_.bold, where, colour,
+                             kind, words, palette_.reset);
     }
 
     void source_lines(source::Span span) {
@@ -79,7 +84,8 @@ private:
 
     void note(const Note& n) {
         if (!n.span) {
-            text_ += fmt::format("      = {}note:{} {}\n", palette_.note, palette_.reset, source::visible(n.text));
+            text_ += fmt::format("      = {}note:{} {}\n", palette_.note, palette_.reset,
+                                 source::visible(n.text));
             return;
         }
         headline(place(n.span), "note", palette_.note, source::visible(n.text));
@@ -100,7 +106,8 @@ std::string render_text(const source::File& spec, const Sink& sink, Colour colou
     const std::size_t shown = std::min(all.size(), kMaxShown);
     for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i], sink.severity(all[i]));
     const auto errors = static_cast<std::size_t>(std::count_if(
-        all.begin(), all.end(), [&](const Diagnostic& found) { return sink.severity(found) == Severity::error; }));
+        all.begin(), all.end(),
+        [&](const Diagnostic& found) { return sink.severity(found) == Severity::error; }));
     renderer.add_summary(errors, all.size() - errors, all.size() - shown);
     return renderer.take();
 }

@@ -1,6 +1,7 @@
 // Diagnostics as text with carets, and as JSON.
-// Takes: the spec's file and a sink. Gives: `spec.etl:12:24: error: ... [E0204]`, the source line, a caret under the
-// span, then notes; or one JSON array. Keeps true: the same findings give the same bytes.
+// Takes: the spec's file and a sink. Gives: `spec.etl:12:24: error: ... [E0204]`, the source line,
+// a caret under the span, then notes; or one JSON array. Keeps true: the same findings give the
+// same bytes.
 #pragma once
 
 #include <string>
@@ -12,7 +13,8 @@ namespace etlc::diag {
 enum class Colour { none, ansi };
 
 std::string render_text(const source::File& spec, const Sink& sink, Colour colour = Colour::none);
-/// {"diagnostics": [{"code", "severity", "message", "file", "line", "column", "end_line", "end_column", "notes"}]}
+/// {"diagnostics": [{"code", "severity", "message", "file", "line", "column", "end_line",
+/// "end_column", "notes"}]}
 std::string render_json(const source::File& spec, const Sink& sink);
 
 }  // namespace etlc::diag

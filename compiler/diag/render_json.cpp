@@ -9,7 +9,8 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// file, line, column, end_line, end_column; null where unknown. The end is the position just after the span.
+/// file, line, column, end_line, end_column; null where unknown. The end is the position just after
+/// the span.
 void add_place(Json& to, const source::File& spec, const std::optional<source::Span>& span) {
     to["file"] = spec.path();
     for (const char* key : {"line", "column", "end_line", "end_column"}) to[key] = nullptr;
@@ -48,7 +49,8 @@ Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, Sever
     else
         add_place(result, diagnostic);
     result["notes"] = Json::array();
-    if (!in_spec && diagnostic.span) result["notes"].push_back(note_of(spec, {diagnostic.span, "named here"}));
+    if (!in_spec && diagnostic.span)
+        result["notes"].push_back(note_of(spec, {diagnostic.span, "named here"}));
     for (const Note& n : diagnostic.notes) result["notes"].push_back(note_of(spec, n));
     return result;
 }

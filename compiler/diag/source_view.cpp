@@ -30,10 +30,12 @@ struct CodePointRange {
 
 template <std::size_t N>
 bool is_in(const std::array<CodePointRange, N>& ranges, char32_t c) {
-    return std::any_of(ranges.begin(), ranges.end(), [c](CodePointRange r) { return r.first <= c && c <= r.last; });
+    return std::any_of(ranges.begin(), ranges.end(),
+                       [c](CodePointRange r) { return r.first <= c && c <= r.last; });
 }
 
-/// Columns of a code point, after Unicode's East Asian Width and general categories Mn and Cf, by their main blocks.
+/// Columns of a code point, after Unicode's East Asian Width and general categories Mn and Cf, by
+/// their main blocks.
 std::uint8_t width_of(char32_t c) {
     static constexpr std::array<CodePointRange, 8> kZero{{{0x300, 0x36F},
                                                           {0x483, 0x489},
@@ -64,7 +66,8 @@ std::vector<Cell> cells_of(std::string_view line, std::size_t offset) {
         const std::string_view bytes = line.substr(i, length == 0 ? 1 : length);
         const char32_t value = length == 0 ? U'\0' : source::code_point(bytes);
         const bool shown = value == U'\t' || !source::is_hidden(value);
-        cells.push_back({shown ? bytes : kReplacement, offset + i, shown ? width_of(value) : std::uint8_t{1}});
+        cells.push_back(
+            {shown ? bytes : kReplacement, offset + i, shown ? width_of(value) : std::uint8_t{1}});
         i += bytes.size();
     }
     return cells;
@@ -80,7 +83,8 @@ bool is_continuation(char c) {
     return (static_cast<unsigned char>(c) & 0xC0U) == 0x80U;
 }
 
-/// Moves back to the first byte of a character; at most three bytes, since the text need not be UTF-8.
+/// Moves back to the first byte of a character; at most three bytes, since the text need not be
+/// UTF-8.
 std::size_t character_begin(std::string_view line, std::size_t at) {
     for (int i = 0; i < 3 && at > 0 && at < line.size() && is_continuation(line[at]); ++i) --at;
     return at;
@@ -99,9 +103,11 @@ Part part_around(std::string_view line, std::size_t at) {
 SourceView view(const source::File& file, source::Span span) {
     const std::uint32_t line_number = file.position(span.begin).line;
     const std::string_view line = file.line_text(line_number);
-    const std::size_t begin = std::min<std::size_t>(span.begin - file.line_begin(line_number), line.size());
+    const std::size_t begin =
+        std::min<std::size_t>(span.begin - file.line_begin(line_number), line.size());
     const std::size_t past = std::max(span.begin, span.end) - file.line_begin(line_number);
-    const std::size_t end = std::clamp<std::size_t>(past, begin, line.size());  // a span of many lines: the first
+    const std::size_t end =
+        std::clamp<std::size_t>(past, begin, line.size());  // a span of many lines: the first
 
     const Part part = part_around(line, begin);
     SourceView result;

@@ -1,6 +1,7 @@
 // A source line and its carets, as a terminal shows them.
-// Takes: a file and a span. Gives: two lines of text. Keeps true: the carets stand under the span whatever the line
-// holds (tabs, wide and combining characters, bytes that are not UTF-8), and both lines have a bounded width.
+// Takes: a file and a span. Gives: two lines of text. Keeps true: the carets stand under the span
+// whatever the line holds (tabs, wide and combining characters, bytes that are not UTF-8), and both
+// lines have a bounded width.
 #pragma once
 
 #include <string>
@@ -11,7 +12,8 @@
 namespace etlc::diag {
 
 struct SourceView {
-    std::string text;    ///< the line, or a part of it around the span between "..." where it is very long
+    std::string
+        text;  ///< the line, or a part of it around the span between "..." where it is very long
     std::string carets;  ///< blanks (tabs where the line has them), then ^~~~
 };
 

@@ -20,34 +20,41 @@ using calibrate::Calibration;
 
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const calibrate::Request& request, diag::Sink& sink) {
-    const auto labelled = calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model), request, sink);
+    const auto labelled =
+        calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model), request, sink);
     if (!labelled) return std::nullopt;
     const check::Model unshifted = calibrate::unshifted(model);
     const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, *labelled);
     const auto monitors = compile(unshifted, {}, sink);
-    const auto truths = compile(truth.model, {}, sink, check::Values::boolean);  // what is true is not a matter of rho
+    const auto truths = compile(truth.model, {}, sink,
+                                check::Values::boolean);  // what is true is not a matter of rho
     if (!monitors || !truths) return std::nullopt;
-    return calibrate::calibrate_monitors(model, {monitors->plan, truths->plan, truth}, std::move(before), request,
-                                         sink);
+    return calibrate::calibrate_monitors(model, {monitors->plan, truths->plan, truth},
+                                         std::move(before), request, sink);
 }
 
 /// Predicates first; then, on other episodes, the monitors with these thresholds in them.
-std::optional<Calibration> calibrate_model(const check::Model& model, const CalibrateRequest& request,
-                                           const calibrate::Request& calibration, diag::Sink& sink) {
+std::optional<Calibration> calibrate_model(const check::Model& model,
+                                           const CalibrateRequest& request,
+                                           const calibrate::Request& calibration,
+                                           diag::Sink& sink) {
     const bool has_monitors = !calibrate::calibrated_monitors(model).empty();
     const bool has_predicates = !calibrate::calibrated_predicates(model).empty();
     if (request.thresholds.empty()) {
-        if (has_monitors && !has_predicates) return calibrate_monitors(model, {}, calibration, sink);
+        if (has_monitors && !has_predicates)
+            return calibrate_monitors(model, {}, calibration, sink);
         auto result = calibrate::calibrate(model, calibration, sink);
         if (result && has_monitors)
             result->report +=
-                "\nMonitors that are calibrated as a whole come next, on other episodes: etlc calibrate --thresholds "
+                "\nMonitors that are calibrated as a whole come next, on other episodes: etlc "
+                "calibrate --thresholds "
                 "FILE\n";
         return result;
     }
     if (!has_monitors) {
-        sink.report(diag::Code::nothing_to_calibrate, model.monitors.front().span,
-                    "no monitor of this spec is calibrated as a whole, which is what --thresholds is for");
+        sink.report(
+            diag::Code::nothing_to_calibrate, model.monitors.front().span,
+            "no monitor of this spec is calibrated as a whole, which is what --thresholds is for");
         return std::nullopt;
     }
     auto before = thresholds::read(request.thresholds);
@@ -58,8 +65,10 @@ std::optional<Calibration> calibrate_model(const check::Model& model, const Cali
     return calibrate_monitors(model, std::move(*before), calibration, sink);
 }
 
-/// What may not be written over. Thresholds may: those of the monitors come to those of the predicates.
-std::vector<std::string> inputs(const check::Model& model, const source::File& file, const CalibrateRequest& request) {
+/// What may not be written over. Thresholds may: those of the monitors come to those of the
+/// predicates.
+std::vector<std::string> inputs(const check::Model& model, const source::File& file,
+                                const CalibrateRequest& request) {
     diag::Sink told_later;
     std::vector<std::string> paths = data::find_episodes(request.calibration.data, "", told_later);
     paths.push_back(file.path());
@@ -83,12 +92,14 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     if (!check_names(*model, calibration.names, sink)) return false;
     calibration.version = kVersion;
     calibration.progress = episodes_progress();
-    const std::string output = request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
+    const std::string output =
+        request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
     if (!check_outputs({output}, inputs(*model, file, request), sink)) return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
     if (!result) return false;
 
-    // The report comes before the file takes its name: where a part of it is lost, nothing has changed.
+    // The report comes before the file takes its name: where a part of it is lost, nothing has
+    // changed.
     OutputFiles files(sink);
     return files.add(output, thresholds::write(result->file)) &&
            files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),

@@ -1,6 +1,6 @@
 // `etlc calibrate`: spec and demonstrations in, thresholds file out.
-// Takes: the spec's text. Gives: the file, and a report on standard output, or on standard error where the file goes to
-// standard output. Keeps true: the file appears whole or not at all.
+// Takes: the spec's text. Gives: the file, and a report on standard output, or on standard error
+// where the file goes to standard output. Keeps true: the file appears whole or not at all.
 #pragma once
 
 #include <string>

@@ -12,15 +12,16 @@
 
 namespace etlc::driver {
 
-std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink) {
+std::optional<Compiled> compile(const source::File& file, const Request& request,
+                                diag::Sink& sink) {
     const ast::Spec spec = parse::parse(file, sink);
     auto model = check::check(spec, file, request.check, sink);
     if (!model || sink.has_errors()) return std::nullopt;
     return compile(std::move(*model), request.limits, sink, request.values, request.targets_as);
 }
 
-std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink, check::Values values,
-                                plan::Storage targets_as) {
+std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink,
+                                check::Values values, plan::Storage targets_as) {
     Compiled result;
     result.model = std::make_unique<check::Model>(std::move(model));
     result.program = std::make_unique<ir::Program>(ir::lower(*result.model));
@@ -35,11 +36,13 @@ namespace {
 
 std::optional<std::string> text_of(const Compiled& compiled, const Request& request) {
     if (request.emit == "graph") return source::visible_lines(ir::print(*compiled.program));
-    if (request.emit == "plan") return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
+    if (request.emit == "plan")
+        return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
-            return backend.emit(compiled.plan, compiled.program->graph,
-                                {request.name_space, kVersion, request.standalone, request.targets_file});
+            return backend.emit(
+                compiled.plan, compiled.program->graph,
+                {request.name_space, kVersion, request.standalone, request.targets_file});
     return std::nullopt;
 }
 
@@ -50,10 +53,12 @@ void refuse_stored_targets(const Compiled& compiled, diag::Sink& sink) {
         const check::Target& target = compiled.model->targets[set.target];
         if (!seen.insert(set.target).second) continue;
         sink.report(diag::Code::no_file_for_targets, target.span,
-                    fmt::format("'{}' takes {} bytes, too many to be spelled out, and a header on standard output has "
+                    fmt::format("'{}' takes {} bytes, too many to be spelled out, and a header on "
+                                "standard output has "
                                 "no file beside it",
                                 target.name, target.values.size() * sizeof(float)))
-            .note("name the header with -o, the file with --targets-file, or raise --inline-targets");
+            .note(
+                "name the header with -o, the file with --targets-file, or raise --inline-targets");
     }
 }
 
@@ -69,7 +74,8 @@ std::optional<Output> emit(const source::File& file, const Request& request, dia
     }
     auto compiled = compile(file, request, sink);
     if (!compiled) return std::nullopt;
-    if (request.emit == "hpp" && request.targets_file.empty()) refuse_stored_targets(*compiled, sink);
+    if (request.emit == "hpp" && request.targets_file.empty())
+        refuse_stored_targets(*compiled, sink);
     if (sink.has_errors()) return std::nullopt;
     auto text = text_of(*compiled, request);
     if (!text) return std::nullopt;
@@ -85,7 +91,8 @@ std::vector<std::pair<std::string, std::string>> emittable() {
         {"graph", "the formulas in negation normal form, equal ones once"},
         {"plan", "what is computed at every step, in order"},
     };
-    for (const emit::Backend& backend : emit::backends()) result.emplace_back(backend.name, backend.summary);
+    for (const emit::Backend& backend : emit::backends())
+        result.emplace_back(backend.name, backend.summary);
     return result;
 }
 

@@ -1,6 +1,6 @@
 // The pipeline: .etl text -> tree -> model -> graph -> plan -> text.
-// Takes: a request. Gives: the text asked for, or findings in the sink. Keeps true: each stage is a function from value
-// to value; the pipeline stops after the first stage that found an error.
+// Takes: a request. Gives: the text asked for, or findings in the sink. Keeps true: each stage is a
+// function from value to value; the pipeline stops after the first stage that found an error.
 #pragma once
 
 #include <memory>
@@ -37,7 +37,7 @@ struct Request {
 struct Output {
     std::string text;                       ///< of request.emit
     std::vector<std::string> dependencies;  ///< every file that the spec loads
-    Compiled compiled;                      ///< of the header: its plan says what goes to the file of targets
+    Compiled compiled;  ///< of the header: its plan says what goes to the file of targets
 };
 
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);

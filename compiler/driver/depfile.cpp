@@ -11,8 +11,9 @@ namespace {
 
 diag::Failure unreadable(const std::string& path) {
     return {diag::Code::unwritable_output,
-            fmt::format("cannot name {}: make and ninja do not both read that name, however it is written",
-                        data::in_quotes(path))};
+            fmt::format(
+                "cannot name {}: make and ninja do not both read that name, however it is written",
+                data::in_quotes(path))};
 }
 
 }  // namespace

@@ -30,7 +30,8 @@ namespace {
 using namespace etlc;
 
 constexpr char kExitStatus[] =
-    "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the call is wrong; 3, "
+    "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the "
+    "call is wrong; 3, "
     "a\n"
     "fault of etlc itself.";
 
@@ -50,7 +51,8 @@ struct Call {
 int conclude(const Call& call, const source::File& file, const diag::Sink& sink) {
     const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
     const bool json = call.diagnostics == "json";
-    const bool told = driver::print_error(json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
+    const bool told = driver::print_error(json ? diag::render_json(file, sink)
+                                               : diag::render_text(file, sink, colour));
     return sink.refused() || !told ? driver::kFailed : driver::kDone;
 }
 
@@ -71,7 +73,8 @@ int with_spec(const Call& call, const Work& work) {
     source::File file;
     // What was found so far is told as well.
     const auto report_lack = [&] {
-        sink.report(data::in_file({diag::Code::out_of_memory, "there is not enough memory for this"}, call.spec));
+        sink.report(data::in_file(
+            {diag::Code::out_of_memory, "there is not enough memory for this"}, call.spec));
     };
     try {
         if (read_spec(call.spec, file, sink)) work(file, sink);
@@ -95,27 +98,34 @@ void add_spec_options(CLI::App& app, Call& call) {
 
 void add_common_options(CLI::App& app, Call& call) {
     add_spec_options(app, call);
-    app.add_option("--thresholds", call.request.check.thresholds_path,
-                   "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
+    app.add_option(
+           "--thresholds", call.request.check.thresholds_path,
+           "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
     app.add_option("--values", call.request.values,
-                   "what monitors compute with; boolean: truth values, and only what can still change a verdict")
-        ->transform(
-            CLI::CheckedTransformer(std::map<std::string, check::Values>{{"robustness", check::Values::robustness},
-                                                                         {"boolean", check::Values::boolean}})
-                .description("robustness|boolean"))
+                   "what monitors compute with; boolean: truth values, and only what can still "
+                   "change a verdict")
+        ->transform(CLI::CheckedTransformer(std::map<std::string, check::Values>{
+                                                {"robustness", check::Values::robustness},
+                                                {"boolean", check::Values::boolean}})
+                        .description("robustness|boolean"))
         ->default_str("robustness");
     app.add_option("--targets-as", call.request.targets_as,
-                   "how target sets are stored for measuring; what that leaves open is measured in float32 as well")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, plan::Storage>{{"f32", plan::Storage::f32},
-                                                                                 {"f16", plan::Storage::f16},
-                                                                                 {"i8", plan::Storage::i8}})
+                   "how target sets are stored for measuring; what that leaves open is measured in "
+                   "float32 as well")
+        ->transform(CLI::CheckedTransformer(
+                        std::map<std::string, plan::Storage>{{"f32", plan::Storage::f32},
+                                                             {"f16", plan::Storage::f16},
+                                                             {"i8", plan::Storage::i8}})
                         .description("f32|f16|i8"))
         ->default_str("f32");
-    app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")->capture_default_str();
-    app.add_option("--max-code", call.request.limits.code_bytes, "most bytes of code, estimated, targets aside")
+    app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")
         ->capture_default_str();
-    app.add_option("--max-work", call.request.limits.operations, "most operations of the temporal part a step")
+    app.add_option("--max-code", call.request.limits.code_bytes,
+                   "most bytes of code, estimated, targets aside")
+        ->capture_default_str();
+    app.add_option("--max-work", call.request.limits.operations,
+                   "most operations of the temporal part a step")
         ->capture_default_str();
 }
 
@@ -127,7 +137,8 @@ std::string mistake_in_namespace(const std::string& name) {
         const std::string part = name.substr(begin, end - begin);
         begin = end == std::string::npos ? end : end + 2;
         const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-        const bool is_name = !part.empty() && std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
+        const bool is_name = !part.empty() &&
+                             std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
                              std::all_of(part.begin(), part.end(), in_names);
         if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
         if (const auto why = check::why_forbidden(part, is_outermost))
@@ -139,30 +150,40 @@ std::string mistake_in_namespace(const std::string& name) {
 
 std::string emit_help() {
     std::string text = "print a stage instead of the header:";
-    for (const auto& [name, summary] : driver::emittable()) text += fmt::format("\n{:>30} {}", name + ":", summary);
+    for (const auto& [name, summary] : driver::emittable())
+        text += fmt::format("\n{:>30} {}", name + ":", summary);
     return text;
 }
 
 void add_compile_options(CLI::App& app, Call& call) {
     std::vector<std::string> stages;
     for (const auto& [name, summary] : driver::emittable()) stages.push_back(name);
-    app.add_option("-o,--output", call.output.result, "where to write the result; - is standard output")
+    app.add_option("-o,--output", call.output.result,
+                   "where to write the result; - is standard output")
         ->type_name("FILE");
     app.add_flag("--check", call.check_only, "diagnostics only");
-    app.add_option("--emit", call.request.emit, emit_help())->check(CLI::IsMember(stages))->type_name("STAGE");
-    app.add_flag("--standalone", call.request.standalone, "paste the runtime in: one file to copy into firmware");
-    app.add_option("--namespace", call.request.name_space, "of the generated code (default: the spec's name)")
+    app.add_option("--emit", call.request.emit, emit_help())
+        ->check(CLI::IsMember(stages))
+        ->type_name("STAGE");
+    app.add_flag("--standalone", call.request.standalone,
+                 "paste the runtime in: one file to copy into firmware");
+    app.add_option("--namespace", call.request.name_space,
+                   "of the generated code (default: the spec's name)")
         ->type_name("NAME")
-        ->check(CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
+        ->check(
+            CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
     app.add_option("--inline-targets", call.request.limits.inline_target_bytes,
-                   "target sets of more bytes are not spelled out in the header, but go to a file beside it")
+                   "target sets of more bytes are not spelled out in the header, but go to a file "
+                   "beside it")
         ->type_name("BYTES")
         ->capture_default_str();
     app.add_option("--targets-file", call.output.targets,
-                   "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to it); named, it is "
+                   "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to "
+                   "it); named, it is "
                    "always written, perhaps empty")
         ->type_name("FILE");
-    app.add_option("--depfile", call.output.depfile, "also write what the output depends on, for make and ninja")
+    app.add_option("--depfile", call.output.depfile,
+                   "also write what the output depends on, for make and ninja")
         ->type_name("FILE");
 }
 
@@ -176,8 +197,8 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
     if (!call.output.depfile.empty() && (call.output.result.empty() || call.output.result == "-"))
         return "--depfile needs -o FILE";
     if (app.count("--targets-file") > 0 &&
-        (call.output.targets.empty() || call.output.targets == "-" || call.output.targets == call.output.result ||
-         call.output.targets == call.output.depfile))
+        (call.output.targets.empty() || call.output.targets == "-" ||
+         call.output.targets == call.output.result || call.output.targets == call.output.depfile))
         return "--targets-file needs a file of its own";
     if (app.count("--targets-file") > 0 && prints_stage && call.request.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
@@ -185,8 +206,8 @@ std::string mistake_in(const Call& call, const CLI::App& app) {
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
-    driver::print_error(
-        fmt::format("etlc: {}\nRun {} --help for more information.\n", source::visible_lines(mistake), app.get_name()));
+    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
+                                    source::visible_lines(mistake), app.get_name()));
     return driver::kWrongCall;
 }
 
@@ -219,28 +240,31 @@ void add_map_option(CLI::App& app, data::NamesInFile& names) {
         if (!parsed) throw CLI::ValidationError(mistake);
         names = std::move(*parsed);
     };
-    app.add_option_function<std::vector<std::string>>("--map", read,
-                                                      "what an input is called in the files: --map z=obs/z")
+    app.add_option_function<std::vector<std::string>>(
+           "--map", read, "what an input is called in the files: --map z=obs/z")
         ->type_name("NAME=OTHER");
 }
 
-void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups, unsigned& jobs) {
+void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups,
+                         unsigned& jobs) {
     app.add_option("--data", data, "episodes: .npz, .csv and .h5 files, folders, 'patterns'")
         ->type_name("FILE...")
         ->required();
-    app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")->type_name("PATTERN");
+    app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")
+        ->type_name("PATTERN");
     app.add_option("-j,--jobs", jobs, "threads (default: as many as the machine has)")
         ->type_name("N")
         ->check(CLI::Range(1U, 1024U));
 }
 
-/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check writes nothing, so any
-/// name does.
+/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check
+/// writes nothing, so any name does.
 void name_targets_file(Call& call) {
     call.output.targets_named = !call.output.targets.empty();
     const std::filesystem::path header = call.check_only ? call.spec : call.output.result;
     if (!call.output.targets_named && header != "-")
-        call.output.targets = (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
+        call.output.targets =
+            (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
     call.request.targets_file = std::filesystem::path(call.output.targets).filename().string();
 }
 
@@ -256,29 +280,35 @@ int compile_command(int argc, char** argv) {
     add_common_options(app, call);
     add_compile_options(app, call);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    if (const std::string mistake = mistake_in(call, app); !mistake.empty()) return complain(app, mistake);
+    if (const std::string mistake = mistake_in(call, app); !mistake.empty())
+        return complain(app, mistake);
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         const auto output = driver::emit(file, call.request, sink);
-        if (output && !sink.refused() && !call.check_only) driver::write_output(call.output, file, *output, sink);
+        if (output && !sink.refused() && !call.check_only)
+            driver::write_output(call.output, file, *output, sink);
     });
 }
 
 int run_command(int argc, char** argv) {
     Call call;
-    CLI::App app("Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.",
-                 "etlc run");
+    CLI::App app(
+        "Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant "
+        "memory.",
+        "etlc run");
     add_common_options(app, call);
     app.add_option("--trace", call.run.trace,
                    "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
         ->type_name("FILE")
         ->required();
     add_map_option(app, call.run.names);
-    app.add_option("-o,--output", call.run.output, "where to write the verdicts, as CSV; - is standard output")
+    app.add_option("-o,--output", call.run.output,
+                   "where to write the verdicts, as CSV; - is standard output")
         ->type_name("FILE")
         ->capture_default_str();
-    app.add_flag("--finish", call.run.finish, "after the trace, also report the last positions of sliding monitors");
+    app.add_flag("--finish", call.run.finish,
+                 "after the trace, also report the last positions of sliding monitors");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
@@ -289,19 +319,21 @@ int run_command(int argc, char** argv) {
 int calibrate_command(int argc, char** argv) {
     Call call;
     calibrate::Request& calibration = call.calibrate.calibration;
-    CLI::App app("Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file.",
-                 "etlc calibrate");
+    CLI::App app(
+        "Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a "
+        "file.",
+        "etlc calibrate");
     add_spec_options(app, call);
     add_episode_options(app, calibration.data, calibration.groups, calibration.jobs);
     add_map_option(app, calibration.names);
-    app.add_option(
-           "-o,--output", call.calibrate.output,
-           "where to write the thresholds (default: SPEC.thresholds.json beside the spec); - is standard output")
+    app.add_option("-o,--output", call.calibrate.output,
+                   "where to write the thresholds (default: SPEC.thresholds.json beside the spec); "
+                   "- is standard output")
         ->type_name("FILE");
-    app.add_option(
-           "--thresholds", call.calibrate.thresholds,
-           "the thresholds of the predicates: then the monitors that are calibrated as a whole are, on episodes "
-           "that these thresholds have not seen")
+    app.add_option("--thresholds", call.calibrate.thresholds,
+                   "the thresholds of the predicates: then the monitors that are calibrated as a "
+                   "whole are, on episodes "
+                   "that these thresholds have not seen")
         ->type_name("FILE");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {  //
@@ -311,13 +343,18 @@ int calibrate_command(int argc, char** argv) {
 
 int evaluate_command(int argc, char** argv) {
     Call call;
-    CLI::App app("Compares a spec's predicates and monitors with ground truth on recorded episodes.", "etlc evaluate");
+    CLI::App app(
+        "Compares a spec's predicates and monitors with ground truth on recorded episodes.",
+        "etlc evaluate");
     add_common_options(app, call);
-    add_episode_options(app, call.evaluate.data, call.evaluate.groups, call.evaluate.evaluation.jobs);
+    add_episode_options(app, call.evaluate.data, call.evaluate.groups,
+                        call.evaluate.evaluation.jobs);
     add_map_option(app, call.evaluate.evaluation.names);
-    app.add_option("--json", call.evaluate.json, "also write the result as JSON; - is standard output")
+    app.add_option("--json", call.evaluate.json,
+                   "also write the result as JSON; - is standard output")
         ->type_name("FILE");
-    app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")->type_name("FILE");
+    app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")
+        ->type_name("FILE");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
         driver::evaluate(file, call.request, call.evaluate, sink);

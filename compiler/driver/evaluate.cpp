@@ -19,7 +19,8 @@ std::optional<thresholds::File> thresholds_of(const check::Model& model, const s
                                               const Request& request) {
     const std::string& given = request.check.thresholds_path;
     const std::string path = given.empty() ? check::default_thresholds_path(spec) : given;
-    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) == model.dependencies.end())
+    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) ==
+        model.dependencies.end())
         return std::nullopt;
     auto file = thresholds::read(path);
     if (!file) return std::nullopt;  // check/ has read it, and would have said so
@@ -36,7 +37,8 @@ std::vector<std::string> inputs(const check::Model& model, const source::File& f
 
 }  // namespace
 
-bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation, diag::Sink& sink) {
+bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation,
+              diag::Sink& sink) {
     const auto compiled = compile(file, request, sink);
     if (!compiled || sink.refused()) return false;
     const check::Model& model = *compiled->model;
@@ -44,23 +46,28 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
     if (!check_names(model, asked.names, sink)) return false;
     asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
     if (sink.has_errors()) return false;
-    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(model, file, asked.episodes), sink)) return false;
+    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(model, file, asked.episodes),
+                       sink))
+        return false;
     asked.progress = episodes_progress();
 
     auto labelled = evaluate::find_labelled(model, asked, sink);
     if (!labelled) return false;
     evaluate::Subject subject = evaluate::subject(model, std::move(*labelled));
-    const auto truth = compile(std::move(subject.truth.model), request.limits, sink, check::Values::boolean);
+    const auto truth =
+        compile(std::move(subject.truth.model), request.limits, sink, check::Values::boolean);
     if (!truth) return false;
     const auto result = evaluate::evaluate(compiled->plan, truth->plan, subject, asked,
                                            thresholds_of(model, file.path(), request), sink);
     if (!result) return false;
-    // What is printed comes before the files take their names: where a part of it is lost, nothing has changed.
+    // What is printed comes before the files take their names: where a part of it is lost, nothing
+    // has changed.
     OutputFiles files(sink);
     const bool prints = evaluation.json != kStandardOutput && evaluation.csv != kStandardOutput;
     return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(*result))) &&
            (evaluation.csv.empty() || files.add(evaluation.csv, evaluate::csv(*result))) &&
-           (!prints || files.add(std::string(kStandardOutput), source::visible_lines(evaluate::table(*result)))) &&
+           (!prints || files.add(std::string(kStandardOutput),
+                                 source::visible_lines(evaluate::table(*result)))) &&
            files.commit();
 }
 

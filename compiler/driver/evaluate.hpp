@@ -1,6 +1,7 @@
 // `etlc evaluate`: spec, thresholds and labelled episodes in, tables out.
-// Takes: the spec's text. Gives: a table on standard output, unless another form goes there, and the files asked for.
-// Keeps true: files appear whole or not at all; nothing is written where an episode was wrong.
+// Takes: the spec's text. Gives: a table on standard output, unless another form goes there, and
+// the files asked for. Keeps true: files appear whole or not at all; nothing is written where an
+// episode was wrong.
 #pragma once
 
 #include <string>
@@ -21,6 +22,7 @@ struct EvaluateRequest {
 };
 
 /// False where the sink now says why not.
-bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation, diag::Sink& sink);
+bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation,
+              diag::Sink& sink);
 
 }  // namespace etlc::driver

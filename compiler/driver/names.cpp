@@ -9,7 +9,8 @@
 
 namespace etlc::driver {
 
-std::optional<data::NamesInFile> parse_names(const std::vector<std::string>& words, std::string& why) {
+std::optional<data::NamesInFile> parse_names(const std::vector<std::string>& words,
+                                             std::string& why) {
     data::NamesInFile names;
     for (const std::string& word : words) {
         const std::size_t sign = word.find('=');
@@ -33,7 +34,8 @@ bool check_names(const check::Model& model, const data::NamesInFile& names, diag
         std::string message = fmt::format("the spec has no input {}", data::in_quotes(name));
         if (const auto meant = diag::nearest_name(name, known))
             message += fmt::format("; did you mean {}?", data::in_quotes(*meant));
-        sink.report(data::in_file({diag::Code::no_such_channel, message}, fmt::format("--map {}={}", name, in_file)));
+        sink.report(data::in_file({diag::Code::no_such_channel, message},
+                                  fmt::format("--map {}={}", name, in_file)));
         sound = false;
     }
     return sound;

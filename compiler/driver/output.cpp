@@ -9,7 +9,8 @@
 
 namespace etlc::driver {
 
-void write_output(const OutputPaths& paths, const source::File& spec, const Output& output, diag::Sink& sink) {
+void write_output(const OutputPaths& paths, const source::File& spec, const Output& output,
+                  diag::Sink& sink) {
     std::string rule;
     if (!paths.depfile.empty()) {
         auto made = dependency_rule(paths.result, spec.path(), output.dependencies);
@@ -23,7 +24,9 @@ void write_output(const OutputPaths& paths, const source::File& spec, const Outp
     const bool has_targets = paths.targets_named || !plan.stored.empty();
     std::vector<std::string> inputs = output.dependencies;
     inputs.push_back(spec.path());
-    if (!check_outputs({has_targets ? paths.targets : "", paths.depfile, paths.result}, inputs, sink)) return;
+    if (!check_outputs({has_targets ? paths.targets : "", paths.depfile, paths.result}, inputs,
+                       sink))
+        return;
     OutputFiles files(sink);
     if (has_targets) {
         const auto write = [&](const std::uint8_t* bytes, std::size_t size) {
@@ -32,7 +35,8 @@ void write_output(const OutputPaths& paths, const source::File& spec, const Outp
         if (!files.begin(paths.targets) || !plan::store(plan, write)) return;
     }
     if (!paths.depfile.empty() && !files.add(paths.depfile, rule)) return;
-    // The result is the last to appear: a build that is stopped in between finds it older than the spec.
+    // The result is the last to appear: a build that is stopped in between finds it older than the
+    // spec.
     if (files.add(paths.result, output.text)) files.commit();
 }
 

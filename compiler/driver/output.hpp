@@ -1,5 +1,5 @@
-// What a call of etlc writes: the header or another stage, the file of large target sets, what they depend on.
-// Takes: what driver::emit gave. Keeps true: all of the files appear or none, whole.
+// What a call of etlc writes: the header or another stage, the file of large target sets, what they
+// depend on. Takes: what driver::emit gave. Keeps true: all of the files appear or none, whole.
 #pragma once
 
 #include <string>
@@ -10,13 +10,15 @@
 namespace etlc::driver {
 
 struct OutputPaths {
-    std::string result;          ///< of what --emit names; - is standard output
-    std::string depfile;         ///< empty: not asked for
-    std::string targets;         ///< where large target sets go; empty: nowhere
-    bool targets_named = false;  ///< by the call, which then expects the file even where nothing goes to it
+    std::string result;   ///< of what --emit names; - is standard output
+    std::string depfile;  ///< empty: not asked for
+    std::string targets;  ///< where large target sets go; empty: nowhere
+    bool targets_named =
+        false;  ///< by the call, which then expects the file even where nothing goes to it
 };
 
 /// Whatever cannot be written is reported.
-void write_output(const OutputPaths& paths, const source::File& spec, const Output& output, diag::Sink& sink);
+void write_output(const OutputPaths& paths, const source::File& spec, const Output& output,
+                  diag::Sink& sink);
 
 }  // namespace etlc::driver

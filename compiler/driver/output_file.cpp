@@ -40,13 +40,16 @@ std::optional<Identity> identity(const std::string& path) {
         return Identity{status.st_dev, status.st_ino, {}};
     }
     const fs::path file(path);
-    if (is_standard || ::stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &status) != 0) return {};
+    if (is_standard ||
+        ::stat(file.has_parent_path() ? file.parent_path().c_str() : ".", &status) != 0)
+        return {};
     return Identity{status.st_dev, status.st_ino, file.filename().string()};
 }
 
 }  // namespace
 
-bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, diag::Sink& sink) {
+bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   diag::Sink& sink) {
     struct Use {
         std::string path;
         bool is_input;
@@ -61,13 +64,16 @@ bool check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         std::optional<Use> other;
         if (path == kStandardOutput && std::exchange(prints, true)) other = Use{path, false};
         if (file)
-            if (const auto [at, is_new] = known.try_emplace(*file, Use{path, false}); !is_new) other = at->second;
+            if (const auto [at, is_new] = known.try_emplace(*file, Use{path, false}); !is_new)
+                other = at->second;
         if (!other) continue;
         sound = false;
-        const std::string same = other->path == path ? "" : fmt::format(", as {}", words(other->path));
+        const std::string same =
+            other->path == path ? "" : fmt::format(", as {}", words(other->path));
         sink.report(data::in_file(
-            {Code::output_clash, other->is_input ? fmt::format("is read by this call{}: it would be lost", same)
-                                                 : fmt::format("is another output of this call{}", same)},
+            {Code::output_clash, other->is_input
+                                     ? fmt::format("is read by this call{}: it would be lost", same)
+                                     : fmt::format("is another output of this call{}", same)},
             words(path)));
     }
     return sound;
@@ -79,7 +85,8 @@ bool OutputFiles::report(const diag::Failure& failure, const std::string& path) 
 }
 
 bool OutputFiles::begin(const std::string& path) {
-    auto file = data::AtomicFile::create(path == kStandardOutput ? "/dev/stdout" : path, Code::unwritable_output);
+    auto file = data::AtomicFile::create(path == kStandardOutput ? "/dev/stdout" : path,
+                                         Code::unwritable_output);
     if (!file) return report(file.failure(), path);
     files_.push_back({path, std::move(*file)});
     return true;
@@ -95,7 +102,8 @@ bool OutputFiles::commit() {
     for (File& file : files_) files.push_back(&file.file);
     const auto uncommitted = data::commit_all(files);
     if (!uncommitted) return true;
-    return report(uncommitted->failure, std::next(files_.begin(), static_cast<long>(uncommitted->file))->path);
+    return report(uncommitted->failure,
+                  std::next(files_.begin(), static_cast<long>(uncommitted->file))->path);
 }
 
 bool print(std::string_view text, diag::Sink& sink) {

@@ -20,7 +20,8 @@ inline constexpr std::string_view kStandardOutput = "-";
 /// Reports outputs that are the same file as an input or as each other; empty paths are none. Only
 /// what is stored counts: terminals, pipes and devices may be given twice. False where it has
 /// reported something.
-bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs, diag::Sink& sink);
+bool check_outputs(const std::vector<std::string>& outputs, const std::vector<std::string>& inputs,
+                   diag::Sink& sink);
 
 class OutputFiles {
 public:
@@ -30,7 +31,9 @@ public:
     /// once. These return false, and have reported why, where something cannot be written.
     bool begin(const std::string& path);
     bool write(std::string_view bytes);
-    bool add(const std::string& path, std::string_view bytes) { return begin(path) && write(bytes); }
+    bool add(const std::string& path, std::string_view bytes) {
+        return begin(path) && write(bytes);
+    }
     /// All files take their names, in the order of their beginnings, or none.
     bool commit();
 

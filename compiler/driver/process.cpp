@@ -25,7 +25,8 @@ int say_what_failed() noexcept {
         print_error(kNoMemory);
         return kFailed;
     } catch (const std::exception& error) {
-        for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"}) print_error(part);
+        for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"})
+            print_error(part);
     } catch (...) {
         print_error("etlc: internal error\n");
     }

@@ -10,7 +10,8 @@ namespace etlc::driver {
 
 // The exit statuses of etlc.
 inline constexpr int kDone = 0;
-inline constexpr int kFailed = 1;  ///< a diagnostic says why: a wrong spec, or what a process can lack
+inline constexpr int kFailed =
+    1;  ///< a diagnostic says why: a wrong spec, or what a process can lack
 inline constexpr int kWrongCall = 2;
 inline constexpr int kOwnFault = 3;  ///< of etlc
 

@@ -1,5 +1,6 @@
 // How far a long command is, on the terminal.
-// Keeps true: nothing is shown where standard error is not a terminal, and what was shown is wiped at the end.
+// Keeps true: nothing is shown where standard error is not a terminal, and what was shown is wiped
+// at the end.
 #pragma once
 
 #include <fmt/format.h>

@@ -36,7 +36,8 @@ const char* status(const Verdict& verdict) {
 
 class Run {
 public:
-    Run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink)
+    Run(const source::File& spec, const Compiled& compiled, const RunRequest& request,
+        diag::Sink& sink)
         : spec_(spec.path()),
           plan_(compiled.plan),
           request_(request),
@@ -48,7 +49,8 @@ public:
         if (!check_names(*plan_.model, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
         inputs.insert(inputs.end(), {spec_, data::trace_file(request_.trace)});
-        if (!check_outputs({request_.output}, inputs, sink_) || !output_.begin(request_.output)) return false;
+        if (!check_outputs({request_.output}, inputs, sink_) || !output_.begin(request_.output))
+            return false;
         text_ = "step,monitor,lower,robustness,upper,status,final\n";
         return step_through_trace() && flush() && output_.commit();
     }
@@ -80,8 +82,10 @@ private:
         for (std::size_t c = 0; c < plan_.inputs.size(); ++c) {
             const check::Index input = plan_.inputs[c];
             std::string why;
-            auto narrowed = plan::narrow(plan_.model->inputs[input], sample.present[c], sample.values[c], why);
-            if (!narrowed) return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
+            auto narrowed =
+                plan::narrow(plan_.model->inputs[input], sample.present[c], sample.values[c], why);
+            if (!narrowed)
+                return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
             samples[input] = std::move(*narrowed);
         }
         return true;
@@ -89,7 +93,8 @@ private:
 
     bool finish() {
         std::uint32_t horizon = 0;
-        for (const plan::Monitor& monitor : plan_.monitors) horizon = std::max(horizon, monitor.horizon);
+        for (const plan::Monitor& monitor : plan_.monitors)
+            horizon = std::max(horizon, monitor.horizon);
         for (std::uint32_t call = 0; call < horizon; ++call)
             if (!report(evaluator_.finish())) return false;
         return true;
@@ -101,8 +106,8 @@ private:
             const Verdict& v = verdicts[m];
             const std::string& name = plan_.monitors[m].name;
             if (v.decided())
-                fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{}\n", step_, name, v.lower, v.robustness, v.upper,
-                               status(v), v.final() ? 1 : 0);
+                fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{}\n", step_, name, v.lower,
+                               v.robustness, v.upper, status(v), v.final() ? 1 : 0);
             else
                 fmt::format_to(out, "{},{},,,,undecided,0\n", step_, name);
         }
@@ -135,7 +140,8 @@ private:
 
 }  // namespace
 
-bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink) {
+bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request,
+         diag::Sink& sink) {
     return Run(spec, compiled, request, sink).execute();
 }
 

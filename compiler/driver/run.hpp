@@ -15,10 +15,12 @@ struct RunRequest {
     std::string trace;
     data::NamesInFile names;
     std::string output = "-";
-    bool finish = false;  ///< also the positions that sliding monitors report after the end of the trace
+    bool finish =
+        false;  ///< also the positions that sliding monitors report after the end of the trace
 };
 
 /// False where the sink now says why not.
-bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request, diag::Sink& sink);
+bool run(const source::File& spec, const Compiled& compiled, const RunRequest& request,
+         diag::Sink& sink);
 
 }  // namespace etlc::driver

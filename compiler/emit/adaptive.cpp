@@ -8,10 +8,12 @@ namespace {
 
 std::string constant(const Context& context, check::Index p) {
     const check::Predicate& predicate = context.model.predicates[p];
-    const etlmon::Adaptation by = plan::runtime_adaptation(*predicate.threshold.adaptation, predicate.upper_bound());
+    const etlmon::Adaptation by =
+        plan::runtime_adaptation(*predicate.threshold.adaptation, predicate.upper_bound());
     return fmt::format("static constexpr etlmon::Adaptation {} = {{{}, {}, {}, {}, {}}};",
-                       context.names.adaptation_constant.at(p), float_literal(by.lo), float_literal(by.hi),
-                       float_literal(by.on_miss), float_literal(by.on_hit), float_literal(by.grid));
+                       context.names.adaptation_constant.at(p), float_literal(by.lo),
+                       float_literal(by.hi), float_literal(by.on_miss), float_literal(by.on_hit),
+                       float_literal(by.grid));
 }
 
 }  // namespace
@@ -32,27 +34,33 @@ std::vector<Member> threshold_members(const Context& context) {
 void print_adaptive_interface(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
     out.line(
-        "/// Adaptive thresholds. observe_P takes the label of a step when it comes, at any later time: the "
+        "/// Adaptive thresholds. observe_P takes the label of a step when it comes, at any later "
+        "time: the "
         "distance_P()");
     out.line(
-        "/// of that step, and whether P was true. Of steps where it was, the threshold of the steps to come learns: a "
+        "/// of that step, and whether P was true. Of steps where it was, the threshold of the "
+        "steps to come learns: a "
         "miss");
     out.line(
-        "/// widens it, a hit tightens it. A NaN distance changes nothing. reset() keeps what was learnt; after a "
+        "/// widens it, a hit tightens it. A NaN distance changes nothing. reset() keeps what was "
+        "learnt; after a "
         "reboot");
-    out.line("/// set_threshold_P goes on from a threshold_P() that was kept, and NaN changes nothing;");
+    out.line(
+        "/// set_threshold_P goes on from a threshold_P() that was kept, and NaN changes nothing;");
     out.line("/// set_threshold_P(initial_threshold_P()) goes back to the calibrated one.");
     for (const auto& [p, member] : context.names.threshold_member) {
         const check::Predicate& predicate = context.model.predicates[p];
-        out.open(fmt::format("void observe_{}(const float& distance, bool truth) noexcept {{", predicate.name));
+        out.open(fmt::format("void observe_{}(const float& distance, bool truth) noexcept {{",
+                             predicate.name));
         print_wrapped(out, fmt::format("const etlmon::Truth found = etlmon::{}(distance, {});",
                                        comparison_name(predicate), member));
         print_wrapped(out, fmt::format("if (truth) {0} = etlmon::adapted({0}, found, {1});", member,
                                        context.names.adaptation_constant.at(p)));
         out.close();
-        out.line("static constexpr float initial_threshold_{}() noexcept {{ return {}; }}", predicate.name,
-                 float_literal(predicate.threshold.value));
-        out.open(fmt::format("void set_threshold_{}(const float& threshold) noexcept {{", predicate.name));
+        out.line("static constexpr float initial_threshold_{}() noexcept {{ return {}; }}",
+                 predicate.name, float_literal(predicate.threshold.value));
+        out.open(fmt::format("void set_threshold_{}(const float& threshold) noexcept {{",
+                             predicate.name));
         print_wrapped(out, fmt::format("{0} = etlmon::restored(threshold, {0}, {1});", member,
                                        context.names.adaptation_constant.at(p)));
         out.close();
@@ -63,8 +71,10 @@ void print_adaptive_interface(Printer& out, const Context& context) {
 void print_adaptation_constants(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
     out.line(
-        "/// Adaptive thresholds: least, greatest, what a miss adds, what a hit adds, and what all are multiples of.");
-    for (const auto& [p, member] : context.names.threshold_member) print_wrapped(out, constant(context, p));
+        "/// Adaptive thresholds: least, greatest, what a miss adds, what a hit adds, and what all "
+        "are multiples of.");
+    for (const auto& [p, member] : context.names.threshold_member)
+        print_wrapped(out, constant(context, p));
     out.line();
 }
 

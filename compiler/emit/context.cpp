@@ -26,7 +26,8 @@ std::string quoted(std::string_view text) {
     while (!line.empty() && line.back() == ' ') line.pop_back();
     if (line.size() <= kLongestQuote) return line;
     std::size_t cut = kLongestQuote - 4;
-    while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U) --cut;  // not inside a code point
+    while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U)
+        --cut;  // not inside a code point
     return line.substr(0, cut) + " ...";
 }
 
@@ -41,12 +42,14 @@ bool is_register(StreamOp op) {
 std::string open_condition(ir::Interval interval) {
     std::string text;
     if (interval.low > 0) text = fmt::format("position >= {}", interval.low);
-    if (interval.bounded()) text += fmt::format("{}position <= {}", text.empty() ? "" : " && ", interval.high);
+    if (interval.bounded())
+        text += fmt::format("{}position <= {}", text.empty() ? "" : " && ", interval.high);
     return text;
 }
 
 std::string float_literal(float x) {
-    if (std::isinf(x)) return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
+    if (std::isinf(x))
+        return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
     std::string text = fmt::format("{}", x);
     if (text.find_first_of(".e") == std::string::npos) text += ".0";
     return text + "f";
@@ -81,13 +84,16 @@ void print_wrapped(Printer& out, const std::string& text) {
     }
 }
 
-void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations) {
+void print_aligned(Printer& out,
+                   const std::vector<std::pair<std::string, std::string>>& declarations) {
     constexpr std::size_t kWidest = 56;  // longer ones push their own comment out
     std::size_t width = 0;
     for (const auto& [declaration, comment] : declarations)
-        if (!comment.empty() && declaration.size() <= kWidest) width = std::max(width, declaration.size());
+        if (!comment.empty() && declaration.size() <= kWidest)
+            width = std::max(width, declaration.size());
     for (const auto& [declaration, comment] : declarations)
-        out.line(comment.empty() ? declaration : fmt::format("{:<{}}  // {}", declaration, width, comment));
+        out.line(comment.empty() ? declaration
+                                 : fmt::format("{:<{}}  // {}", declaration, width, comment));
 }
 
 bool Context::enclosed(check::Index distance) const {
@@ -119,7 +125,8 @@ std::string Context::literal(plan::Value value) const {
 }
 
 std::vector<Demand> demands(const plan::Plan& plan) {
-    constexpr std::uint64_t kMuch = std::uint64_t{1} << 40U;  // of operands that share parts, counted in each
+    constexpr std::uint64_t kMuch = std::uint64_t{1}
+                                    << 40U;  // of operands that share parts, counted in each
     constexpr std::uint64_t kManyAsks = 16;
     std::vector<int> users(plan.streams.size());
     for (const plan::Stream& stream : plan.streams)
@@ -130,7 +137,9 @@ std::vector<Demand> demands(const plan::Plan& plan) {
         const plan::Stream& stream = plan.streams[slot];
         Demand& demand = result[slot];
         switch (stream.op) {
-            case StreamOp::predicate: demand = {true, plan::measured_elements(*plan.model, stream.index)}; break;
+            case StreamOp::predicate:
+                demand = {true, plan::measured_elements(*plan.model, stream.index)};
+                break;
             case StreamOp::flag: demand.lazy = true; break;
             case StreamOp::negation:
             case StreamOp::conjunction:
@@ -153,7 +162,8 @@ std::vector<Demand> demands(const plan::Plan& plan) {
 
 std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {
     if (boolean())
-        std::stable_sort(slots.begin(), slots.end(), [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
+        std::stable_sort(slots.begin(), slots.end(),
+                         [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
     return slots;
 }
 
@@ -193,17 +203,19 @@ std::string open_monitors(const Context& context, const std::vector<std::size_t>
 }
 
 std::string Context::place(source::Span span) const {
-    return fmt::format("{}:{}: {}", spec_file, model.file.position(span.begin).line, quoted(model.file.text(span)));
+    return fmt::format("{}:{}: {}", spec_file, model.file.position(span.begin).line,
+                       quoted(model.file.text(span)));
 }
 
 std::string Context::place(plan::NodeId node) const {
     const std::string text = graph.text(node);
     const std::string words = place(graph[node].span);
-    const bool as_written =
-        words.size() >= text.size() && words.compare(words.size() - text.size(), text.size(), text) == 0;
+    const bool as_written = words.size() >= text.size() &&
+                            words.compare(words.size() - text.size(), text.size(), text) == 0;
     if (as_written || graph[node].span == source::Span{}) return words;
-    return quoted(text) == quoted(model.file.text(graph[node].span)) ? words
-                                                                     : fmt::format("{}  ({})", words, quoted(text));
+    return quoted(text) == quoted(model.file.text(graph[node].span))
+               ? words
+               : fmt::format("{}  ({})", words, quoted(text));
 }
 
 }  // namespace etlc::emit

@@ -1,6 +1,7 @@
 // What the parts of the header emitter share.
-// Takes: the plan, the graph for comments, names. Gives: spellings of values, keys, numbers and comments.
-// Keeps true: the same plan gives the same bytes on every machine; no path but the spec's file name is printed.
+// Takes: the plan, the graph for comments, names. Gives: spellings of values, keys, numbers and
+// comments. Keeps true: the same plan gives the same bytes on every machine; no path but the spec's
+// file name is printed.
 #pragma once
 
 #include <string>
@@ -31,7 +32,8 @@ struct Demand {
     bool lazy = false;       ///< an atom, or made of such
     std::uint64_t work = 0;  ///< target elements that it may have to measure
     std::uint64_t asks = 1;  ///< of atoms and kept values, at most
-    bool keeps = false;      ///< what it was found to be, since several ask: else asking doubles with each level
+    bool keeps =
+        false;  ///< what it was found to be, since several ask: else asking doubles with each level
 };
 std::vector<Demand> demands(const plan::Plan& plan);
 
@@ -50,9 +52,11 @@ struct Context {
     bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
-    /// How the functions of a step are declared: where a call would cost as much as they do, part of the caller's loop.
+    /// How the functions of a step are declared: where a call would cost as much as they do, part
+    /// of the caller's loop.
     std::string_view step_qualifier() const;
-    /// Measured on narrow rows, which leave it open within bounds; or on narrow rows that are the rows exactly.
+    /// Measured on narrow rows, which leave it open within bounds; or on narrow rows that are the
+    /// rows exactly.
     bool enclosed(check::Index distance) const;
     bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
@@ -70,7 +74,8 @@ struct Context {
     /// The low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
     std::string low(plan::Slot slot) const;
     std::string high(plan::Slot slot) const;
-    /// "dubins.etl:21: F at_a": where a formula stands and its words, or its text where the spec does not say it so.
+    /// "dubins.etl:21: F at_a": where a formula stands and its words, or its text where the spec
+    /// does not say it so.
     std::string place(plan::NodeId node) const;
     std::string place(source::Span span) const;
 };
@@ -79,13 +84,16 @@ struct Context {
 std::string open_condition(ir::Interval interval);
 /// A float32 literal that reads back to the same bits: "0.31f".
 std::string float_literal(float x);
-/// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four spaces deeper.
+/// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four
+/// spaces deeper.
 void print_wrapped(Printer& out, const std::string& text);
 /// Declarations with their comments in one column.
-void print_aligned(Printer& out, const std::vector<std::pair<std::string, std::string>>& declarations);
+void print_aligned(Printer& out,
+                   const std::vector<std::pair<std::string, std::string>>& declarations);
 /// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
 /// "max_of(max_of(a, b), c)".
-std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy = false);
+std::string call(std::string_view function, const std::vector<std::string>& arguments,
+                 bool lazy = false);
 
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);
@@ -94,7 +102,8 @@ void print_constants(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
 void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
-/// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is judged.
+/// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is
+/// judged.
 void print_advance(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
 /// The formula that a stream is; of one in between, what it holds; empty where its code says that.
@@ -103,10 +112,13 @@ void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);
 /// Of machines as tables: the lists of keys that say what the states are worth, as locals.
-void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading, const plan::Machine& machine);
-/// What the reading's value is assigned to: a Boolean monitor has declared it before it asks whether to compute it.
+void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading,
+                        const plan::Machine& machine);
+/// What the reading's value is assigned to: a Boolean monitor has declared it before it asks
+/// whether to compute it.
 std::string reading_declaration(const Context& context, std::uint32_t reading);
-/// "reach_open || avoid_open"; empty where one of the monitors is sliding, or the class is not Boolean: always.
+/// "reach_open || avoid_open"; empty where one of the monitors is sliding, or the class is not
+/// Boolean: always.
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
 std::string table_name(const Context& context, std::uint32_t reading);
 

@@ -26,8 +26,8 @@ std::string aggregation(const check::Distance& distance) {
 std::string kernel_parameters(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
-    return fmt::format("etlmon::{}, {}, {}, {}", plan::metric_name(distance), aggregation(distance), target.rows,
-                       target.dimension);
+    return fmt::format("etlmon::{}, {}, {}, {}", plan::metric_name(distance), aggregation(distance),
+                       target.rows, target.dimension);
 }
 
 std::string weights_argument(const Context& context, Index d) {
@@ -40,21 +40,26 @@ std::string wide_call(const Context& context, Index d, const std::string& z) {
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
         return fmt::format("{}.nearest<etlmon::{}>({}, rows + targets::{})", search->second,
-                           plan::metric_name(context.model.distances[d]), z, context.names.target_array.at(d));
+                           plan::metric_name(context.model.distances[d]), z,
+                           context.names.target_array.at(d));
     if (plan::stored_set(context.plan, d) != nullptr)
-        return fmt::format("etlmon::measure_stored<{}>({}, rows + targets::{}{})", kernel_parameters(context, d), z,
-                           context.names.target_array.at(d), weights_argument(context, d));
+        return fmt::format("etlmon::measure_stored<{}>({}, rows + targets::{}{})",
+                           kernel_parameters(context, d), z, context.names.target_array.at(d),
+                           weights_argument(context, d));
     return fmt::format("etlmon::measure<{}, targets::{}>({}{})", kernel_parameters(context, d),
                        context.names.target_array.at(d), z, weights_argument(context, d));
 }
 
 /// The same for its narrow rows.
 std::string narrow_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
-    const std::string parameters = fmt::format("{}, targets::{}", kernel_parameters(context, set.distance),
-                                               context.names.narrow_array.at(set.distance));
+    const std::string parameters =
+        fmt::format("{}, targets::{}", kernel_parameters(context, set.distance),
+                    context.names.narrow_array.at(set.distance));
     const std::string weights = weights_argument(context, set.distance);
-    if (set.storage == plan::Storage::f16) return fmt::format("etlmon::measure<{}>({}{})", parameters, z, weights);
-    return fmt::format("etlmon::measure_scaled<{}>({}, {}{})", parameters, z, float_literal(set.scale), weights);
+    if (set.storage == plan::Storage::f16)
+        return fmt::format("etlmon::measure<{}>({}{})", parameters, z, weights);
+    return fmt::format("etlmon::measure_scaled<{}>({}, {}{})", parameters, z,
+                       float_literal(set.scale), weights);
 }
 
 /// The kernel's call on the only rows that the distance has.
@@ -64,28 +69,35 @@ std::string only_call(const Context& context, Index d, const std::string& z) {
 }
 
 /// What its narrow rows say of the distance: the call that gives the interval.
-std::string enclosing_call(const Context& context, const plan::NarrowSet& set, const std::string& z) {
+std::string enclosing_call(const Context& context, const plan::NarrowSet& set,
+                           const std::string& z) {
     const check::Distance& distance = context.model.distances[set.distance];
     const std::string& rows = context.names.narrow_array.at(set.distance);
     if (plan::in_integers(set))
         return fmt::format("etlmon::measure_bytes<{}, targets::{}, targets::{}>({}, {}, {})",
-                           kernel_parameters(context, set.distance), rows, context.names.sums_array.at(set.distance), z,
-                           float_literal(set.scale), float_literal(set.moved));
-    const std::string averaged = distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set.rows) : "";
+                           kernel_parameters(context, set.distance), rows,
+                           context.names.sums_array.at(set.distance), z, float_literal(set.scale),
+                           float_literal(set.moved));
+    const std::string averaged =
+        distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set.rows) : "";
     return fmt::format("etlmon::enclose<etlmon::{}>({}, {}, {}{})", plan::metric_name(distance),
-                       narrow_call(context, set, z), float_literal(set.moved), set.dimension, averaged);
+                       narrow_call(context, set, z), float_literal(set.moved), set.dimension,
+                       averaged);
 }
 
-/// The thresholds that a distance is compared with, by name where they have one, and the other cuts as numbers.
+/// The thresholds that a distance is compared with, by name where they have one, and the other cuts
+/// as numbers.
 std::string cuts(const Context& context, const plan::NarrowSet& set) {
     std::string text;
     for (const plan::Cut& cut : set.cuts) {
         std::string one = cut.low == cut.high
                               ? float_literal(cut.low)
-                              : fmt::format("etlmon::Cut({}, {})", float_literal(cut.low), float_literal(cut.high));
+                              : fmt::format("etlmon::Cut({}, {})", float_literal(cut.low),
+                                            float_literal(cut.high));
         for (const auto& [p, name] : context.names.predicate_member) {
             const check::Predicate& predicate = context.model.predicates[p];
-            const bool compared = predicate.plain_distance() && predicate.expression.index == set.distance;
+            const bool compared =
+                predicate.plain_distance() && predicate.expression.index == set.distance;
             if (compared && predicate.threshold.value == cut.low && cut.low == cut.high)
                 one = fmt::format("threshold_{}()", predicate.name);
         }
@@ -94,11 +106,13 @@ std::string cuts(const Context& context, const plan::NarrowSet& set) {
     return text;
 }
 
-/// The conditions under which all of some scalars are there: "!etlmon::is_nan(x) && !etlmon::is_nan(y)".
+/// The conditions under which all of some scalars are there: "!etlmon::is_nan(x) &&
+/// !etlmon::is_nan(y)".
 std::string all_present(const Context& context, const std::vector<Index>& scalars) {
     std::string text;
     for (Index i : scalars)
-        text += fmt::format("{}!etlmon::is_nan({})", text.empty() ? "" : " && ", sample(context, i));
+        text +=
+            fmt::format("{}!etlmon::is_nan({})", text.empty() ? "" : " && ", sample(context, i));
     return text;
 }
 
@@ -110,8 +124,10 @@ std::string scalars_of(const Context& context, const check::Distance& distance) 
 }
 
 /// `into = ...`, the distance from the point that `z` names.
-void print_measurement(Printer& out, const Context& context, Index d, const std::string& z, const std::string& into) {
-    if (!context.enclosed(d)) return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
+void print_measurement(Printer& out, const Context& context, Index d, const std::string& z,
+                       const std::string& into) {
+    if (!context.enclosed(d))
+        return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
     const plan::NarrowSet& set = *plan::narrow_set(context.plan, d);
     print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, set, z)));
     print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, set)));
@@ -127,9 +143,11 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
     if (distance.point_is_vector && plan::checks_point(context.plan, d))
         return wide_call(context, d, '{' + scalars_of(context, distance) + '}');
     const Index embedding = distance.point[0];
-    if (distance.point_is_vector || context.names.input_local.count(embedding) != 0) return std::nullopt;
+    if (distance.point_is_vector || context.names.input_local.count(embedding) != 0)
+        return std::nullopt;
     const auto direction = context.names.direction_local.find(embedding);
-    const bool shared = direction != context.names.direction_local.end() && !plan::rows_as_given(distance);
+    const bool shared =
+        direction != context.names.direction_local.end() && !plan::rows_as_given(distance);
     return wide_call(context, d, shared ? direction->second : sample(context, embedding));
 }
 
@@ -138,17 +156,20 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
     const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
     if (!distance.point_is_vector && !context.enclosed(d)) {
         const std::string z = sample(context, distance.point[0]);
-        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into, only_call(context, d, z)));
+        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into,
+                                       only_call(context, d, z)));
         return;
     }
     std::string z = "point";
-    const std::string present = distance.point_is_vector ? all_present(context, distance.point)
-                                                         : sample(context, distance.point[0]) + " != nullptr";
+    const std::string present = distance.point_is_vector
+                                    ? all_present(context, distance.point)
+                                    : sample(context, distance.point[0]) + " != nullptr";
     print_wrapped(out, fmt::format("if ({}{}) {{", ready, present));
     out.indent();
     if (distance.point_is_vector) {
         const std::string elements = scalars_of(context, distance);
-        print_wrapped(out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
+        print_wrapped(
+            out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
     } else {
         z = sample(context, distance.point[0]);
     }

@@ -23,7 +23,8 @@ std::string label(const ir::Graph& graph, ir::NodeId id) {
 void print_node(Printer& out, const ir::Graph& graph, ir::NodeId id, std::set<ir::NodeId>& done) {
     if (!done.insert(id).second) return;
     const bool atom = ir::info(graph[id].op).arity == ir::Arity::atom;
-    out.line("n{} [label={}{}];", id, source::dot_string(label(graph, id)), atom ? ", shape=box" : "");
+    out.line("n{} [label={}{}];", id, source::dot_string(label(graph, id)),
+             atom ? ", shape=box" : "");
     for (ir::NodeId operand : graph[id].operands) {
         print_node(out, graph, operand, done);
         out.line("n{} -> n{};", id, operand);
@@ -40,7 +41,8 @@ std::string dot(const plan::Plan& plan, const ir::Graph& graph, const Options&) 
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = plan.monitors[m];
         const ir::NodeId root = monitor.node;
-        out.line("m{} [label=\"{}{}\", shape=plaintext];", m, monitor.sliding ? "sliding " : "", monitor.name);
+        out.line("m{} [label=\"{}{}\", shape=plaintext];", m, monitor.sliding ? "sliding " : "",
+                 monitor.name);
         print_node(out, graph, root, done);
         out.line("m{} -> n{};", m, root);
     }

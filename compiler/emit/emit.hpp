@@ -1,6 +1,6 @@
 // The plan as text for others: the C++ header, a picture of the graph, the budget.
-// Takes: a plan and its graph. Gives: one string per backend of backends.cpp. Keeps true: the same plan gives the same
-// bytes on every machine.
+// Takes: a plan and its graph. Gives: one string per backend of backends.cpp. Keeps true: the same
+// plan gives the same bytes on every machine.
 #pragma once
 
 #include <string>

@@ -24,11 +24,16 @@ std::string type_of(const check::Input& input) {
 
 std::string remark_on(const check::Input& input) {
     std::string text;
-    const auto add = [&](const std::string& remark) { text += (text.empty() ? "" : "; ") + remark; };
-    if (input.has_range) add(fmt::format("in [{}, {}]; outside counts as missing", input.range.low, input.range.high));
+    const auto add = [&](const std::string& remark) {
+        text += (text.empty() ? "" : "; ") + remark;
+    };
+    if (input.has_range)
+        add(fmt::format("in [{}, {}]; outside counts as missing", input.range.low,
+                        input.range.high));
     if (input.type == InputType::f16) add("IEEE bits of float16");
     if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
-    if (input.hold > 0) add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
+    if (input.hold > 0)
+        add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
     return text;
 }
 
@@ -51,13 +56,15 @@ void print_array(Printer& out, const std::string& type_and_name, const std::stri
     out.close("};");
 }
 
-void print_numbers(Printer& out, const std::string& name, const std::string& size, const std::vector<float>& numbers) {
+void print_numbers(Printer& out, const std::string& name, const std::string& size,
+                   const std::vector<float>& numbers) {
     print_array(out, "float " + name, size, numbers, float_literal);
 }
 
 std::string rows_of(const check::Target& target, const check::Distance& distance) {
     return fmt::format("{}: {} of {} elements{}", target.origin,
-                       target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows), target.dimension,
+                       target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
+                       target.dimension,
                        plan::rows_as_given(distance) ? "" : ", scaled to length 1");
 }
 
@@ -67,10 +74,12 @@ void print_rows(Printer& out, const Context& context, Index d) {
     out.line("/// {}", rows_of(target, distance));
     if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
         out.line("inline constexpr size_t {} = {};  // floats from the beginning of {}",
-                 context.names.target_array.at(d), set->offset / sizeof(float), context.targets_file);
+                 context.names.target_array.at(d), set->offset / sizeof(float),
+                 context.targets_file);
         return;
     }
-    print_numbers(out, context.names.target_array.at(d), fmt::format("{} * {}", target.rows, target.dimension),
+    print_numbers(out, context.names.target_array.at(d),
+                  fmt::format("{} * {}", target.rows, target.dimension),
                   plan::prepared_rows(context.model, distance));
 }
 
@@ -86,13 +95,17 @@ void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowS
         print_array(out, "uint16_t " + name, size, set.halves,
                     [](std::uint16_t x) { return fmt::format("0x{:04x}", x); });
     else
-        print_array(out, "int8_t " + name, size, set.bytes, [](std::int8_t x) { return fmt::format("{}", x); });
+        print_array(out, "int8_t " + name, size, set.bytes,
+                    [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
 void print_sums(Printer& out, const Context& context, const plan::NarrowSet& set) {
-    out.line("/// of each row of {} the sum of the integers' squares, then of each the sum of the integers",
-             context.names.narrow_array.at(set.distance));
-    print_array(out, "int32_t " + context.names.sums_array.at(set.distance), fmt::format("2 * {}", set.rows), set.sums,
+    out.line(
+        "/// of each row of {} the sum of the integers' squares, then of each the sum of the "
+        "integers",
+        context.names.narrow_array.at(set.distance));
+    print_array(out, "int32_t " + context.names.sums_array.at(set.distance),
+                fmt::format("2 * {}", set.rows), set.sums,
                 [](std::int32_t x) { return fmt::format("{}", x); });
 }
 
@@ -104,19 +117,23 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     std::vector<std::pair<std::string, std::string>> inputs;
     for (Index i : context.plan.inputs) {
         const check::Input& input = context.model.inputs[i];
-        inputs.emplace_back(fmt::format("{} {}{};", type_of(input), input.name,
-                                        input.type == InputType::scalar ? " = etlmon::kMissing" : ""),
-                            remark_on(input));
+        inputs.emplace_back(
+            fmt::format("{} {}{};", type_of(input), input.name,
+                        input.type == InputType::scalar ? " = etlmon::kMissing" : ""),
+            remark_on(input));
     }
     print_aligned(out, inputs);
     out.close("};");
     out.line();
-    out.line("/// What they answer: about the prefix so far or, sliding, about the position their horizon ago.");
+    out.line(
+        "/// What they answer: about the prefix so far or, sliding, about the position their "
+        "horizon ago.");
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
         verdicts.emplace_back(
-            fmt::format("etlmon::{} {};", context.boolean() ? "BooleanVerdict" : "Verdict", monitor.name),
+            fmt::format("etlmon::{} {};", context.boolean() ? "BooleanVerdict" : "Verdict",
+                        monitor.name),
             context.place(context.model.monitors[monitor.index].span));
     print_aligned(out, verdicts);
     out.close("};");
@@ -126,11 +143,13 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
 void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
     if (context.stores_targets()) {
-        out.line("/// The bytes of {}: mapped by etlmon/mapped_targets.hpp, or linked in at a multiple of 64.",
-                 context.targets_file);
+        out.line(
+            "/// The bytes of {}: mapped by etlmon/mapped_targets.hpp, or linked in at a multiple "
+            "of 64.",
+            context.targets_file);
         out.line("/// The type holds their size and their XXH64: it is ready with no others.");
-        out.line("using Targets = etlmon::Targets<{}u, 0x{:016x}u>;", plan::stored_bytes(context.plan),
-                 plan::stored_hash(context.plan));
+        out.line("using Targets = etlmon::Targets<{}u, 0x{:016x}u>;",
+                 plan::stored_bytes(context.plan), plan::stored_hash(context.plan));
         out.line();
     }
     out.line("/// Target sets, a row after the other.");
@@ -140,14 +159,17 @@ void print_constants(Printer& out, const Context& context) {
         const plan::NarrowSet* narrow = plan::narrow_set(context.plan, d);
         if (narrow != nullptr && done.insert(context.names.narrow_array.at(d)).second)
             print_narrow_rows(out, context, *narrow);
-        if (narrow != nullptr && plan::in_integers(*narrow) && done.insert(context.names.sums_array.at(d)).second)
+        if (narrow != nullptr && plan::in_integers(*narrow) &&
+            done.insert(context.names.sums_array.at(d)).second)
             print_sums(out, context, *narrow);
-        if (!context.lossless(d) && done.insert(context.names.target_array.at(d)).second) print_rows(out, context, d);
+        if (!context.lossless(d) && done.insert(context.names.target_array.at(d)).second)
+            print_rows(out, context, d);
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;
         const check::Distance& distance = context.model.distances[d];
         out.line("/// the weights of {}", distance.text);
-        print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()), distance.weights);
+        print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()),
+                      distance.weights);
     }
     out.line("}  // namespace targets");
     out.line();

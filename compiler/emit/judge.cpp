@@ -7,18 +7,21 @@ namespace {
 
 /// What was calibrated as a whole is shifted, bounds and all.
 std::string shifted(const plan::Monitor& monitor, const std::string& value) {
-    return monitor.shifted ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift)) : value;
+    return monitor.shifted
+               ? fmt::format("etlmon::shifted({}, {})", value, float_literal(monitor.shift))
+               : value;
 }
 
 std::string prefix_verdict(const Context& context, const plan::Monitor& monitor) {
-    return fmt::format("etlmon::prefix_verdict({})", shifted(monitor, context.names.reading_local.at(monitor.reading)));
+    return fmt::format("etlmon::prefix_verdict({})",
+                       shifted(monitor, context.names.reading_local.at(monitor.reading)));
 }
 
 std::string verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
     if (monitor.sliding)
-        return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : etlmon::Verdict()", monitor.horizon,
-                           shifted(monitor, context.value(monitor.stream)));
+        return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : etlmon::Verdict()",
+                           monitor.horizon, shifted(monitor, context.value(monitor.stream)));
     if (context.plan.has_sliding) return context.names.verdict_member.at(m);
     return prefix_verdict(context, monitor);
 }
@@ -26,7 +29,8 @@ std::string verdict(const Context& context, std::size_t m) {
 /// In a Boolean monitor: computed while some verdict can still change.
 void print_reading_while_open(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Reading& reading = context.plan.readings[r];
-    if (!reading.operands.empty()) return print_reading(out, context, r);  // of others: nothing is asked for
+    if (!reading.operands.empty())
+        return print_reading(out, context, r);  // of others: nothing is asked for
     out.line("Reading {}{{}};", context.names.reading_local.at(r));
     out.open(fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
     print_reading(out, context, r);
@@ -37,7 +41,8 @@ void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
     const bool ends =
-        plan.has_sliding && !context.boolean();  // prefixes do not grow while finish() reports the last positions
+        plan.has_sliding &&
+        !context.boolean();  // prefixes do not grow while finish() reports the last positions
     if (ends) {
         out.gap();
         out.open("if (finishes == 0) {");
@@ -45,7 +50,8 @@ void print_readings(Printer& out, const Context& context) {
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
         out.line("// {}", context.place(plan.readings[r].node));
-        context.boolean() ? print_reading_while_open(out, context, r) : print_reading(out, context, r);
+        context.boolean() ? print_reading_while_open(out, context, r)
+                          : print_reading(out, context, r);
     }
     if (!ends) return;
     for (const auto& [m, name] : context.names.verdict_member)
@@ -59,12 +65,13 @@ void print_open_verdicts(Printer& out, const Context& context) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
             print_wrapped(
-                out, fmt::format("answers.{} = exists({}) ? etlmon::sliding_verdict({}) : etlmon::BooleanVerdict();",
+                out, fmt::format("answers.{} = exists({}) ? etlmon::sliding_verdict({}) : "
+                                 "etlmon::BooleanVerdict();",
                                  monitor.name, monitor.horizon, context.value(monitor.stream)));
         else
-            print_wrapped(
-                out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});", context.names.open_local.at(m),
-                                 monitor.name, context.names.reading_local.at(monitor.reading)));
+            print_wrapped(out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});",
+                                           context.names.open_local.at(m), monitor.name,
+                                           context.names.reading_local.at(monitor.reading)));
     }
 }
 
@@ -73,19 +80,22 @@ void print_open_verdicts(Printer& out, const Context& context) {
 void print_advance(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     out.line(
-        "/// One step of every formula: min is \"and\", max is \"or\". A predicate is measured when a verdict that "
+        "/// One step of every formula: min is \"and\", max is \"or\". A predicate is measured "
+        "when a verdict that "
         "can");
-    out.line("/// still change first depends on it; min and max ask from left to right and stop where one decides.");
-    out.open(fmt::format("{}Verdicts advance({}const Inputs& in) noexcept {{", context.step_qualifier(),
-                         plan.inputs.empty() ? "[[maybe_unused]] " : ""));
+    out.line(
+        "/// still change first depends on it; min and max ask from left to right and stop where "
+        "one decides.");
+    out.open(fmt::format("{}Verdicts advance({}const Inputs& in) noexcept {{",
+                         context.step_qualifier(), plan.inputs.empty() ? "[[maybe_unused]] " : ""));
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.line("bool missing = false;");
     print_atoms_on_demand(out, context);
     out.gap();
     for (const auto& [m, open] : context.names.open_local)
-        out.line("const bool {} = {}!answers.{}.final();", open, plan.has_sliding ? "finishes == 0 && " : "",
-                 plan.monitors[m].name);
+        out.line("const bool {} = {}!answers.{}.final();", open,
+                 plan.has_sliding ? "finishes == 0 && " : "", plan.monitors[m].name);
     out.gap();
     print_streams(out, context);
     print_readings(out, context);
@@ -99,13 +109,15 @@ void print_advance(Printer& out, const Context& context) {
 
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
-    const bool reads_atoms = !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
+    const bool reads_atoms =
+        !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
     out.line(
-        "/// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower "
+        "/// One step of every formula, given this step's predicates. A Reading is rho on the "
+        "prefix, and the lower "
         "and upper");
     out.line("/// bound that no continuation leaves.");
-    out.open(fmt::format("{}Verdicts judge({}const Atoms& now) noexcept {{", context.step_qualifier(),
-                         reads_atoms ? "" : "[[maybe_unused]] "));
+    out.open(fmt::format("{}Verdicts judge({}const Atoms& now) noexcept {{",
+                         context.step_qualifier(), reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.gap();
@@ -114,7 +126,8 @@ void print_judge(Printer& out, const Context& context) {
     out.gap();
     out.line("Verdicts verdicts;");
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
-        print_wrapped(out, fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
+        print_wrapped(out,
+                      fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
     if (plan.counts_steps) out.line("if (position != 0xffffffffu) ++position;");
     out.line("return verdicts;");
     out.close();

@@ -1,5 +1,6 @@
-// measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor the same samples and
-// predicates, each found out when a verdict first depends on it (etlmon/demand.hpp).
+// measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
+// the same samples and predicates, each found out when a verdict first depends on it
+// (etlmon/demand.hpp).
 #include "emit/measurements.hpp"
 #include "plan/literals.hpp"
 
@@ -15,14 +16,16 @@ std::string expression(const Context& context, const Expr& e) {
         std::string text = expression(context, e.arguments[0]);
         if (e.arguments.size() == 1) return fmt::format("etlmon::{}({})", function, text);
         for (std::size_t i = 1; i < e.arguments.size(); ++i)
-            text = fmt::format("etlmon::{}({}, {})", function, text, expression(context, e.arguments[i]));
+            text = fmt::format("etlmon::{}({}, {})", function, text,
+                               expression(context, e.arguments[i]));
         return text;
     };
     switch (e.kind) {
         case Expr::Kind::number: return float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance:
-            return context.names.distance_local.at(e.index) + (context.boolean() ? "()" : "") + ".delta";
+            return context.names.distance_local.at(e.index) + (context.boolean() ? "()" : "") +
+                   ".delta";
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
         case Expr::Kind::subtract: return apply("subtract");
@@ -36,7 +39,8 @@ std::string expression(const Context& context, const Expr& e) {
     return "";
 }
 
-/// Distances that an expression or more than one predicate reads get a local; the others go straight into telemetry.
+/// Distances that an expression or more than one predicate reads get a local; the others go
+/// straight into telemetry.
 std::map<Index, int> uses_of_distances(const Context& context) {
     std::map<Index, int> uses;
     const auto visit = [&](const auto& self, const Expr& e, int weight) -> void {
@@ -60,7 +64,8 @@ public:
     }
 
 private:
-    /// Distances that an expression or more than one predicate reads, and those known within bounds.
+    /// Distances that an expression or more than one predicate reads, and those known within
+    /// bounds.
     bool has_local(Index d) { return uses_[d] > 1 || context_.enclosed(d); }
 
     void print_shared(Index d) {
@@ -69,7 +74,8 @@ private:
         out_.line("// {}", context_.model.distances[d].text);
         if (!context_.boolean()) {
             if (const auto call = measured_at_once(context_, d))
-                return print_wrapped(out_, fmt::format("const etlmon::Measured {} = {};", local, *call));
+                return print_wrapped(out_,
+                                     fmt::format("const etlmon::Measured {} = {};", local, *call));
             if (context_.enclosed(d))
                 out_.line("etlmon::Enclosed {};", local);
             else
@@ -83,7 +89,8 @@ private:
             return out_.close("});");
         }
         const bool enclosed = context_.enclosed(d);
-        out_.line(enclosed ? "etlmon::Enclosed measured;" : "etlmon::Measured measured = etlmon::kUnmeasured;");
+        out_.line(enclosed ? "etlmon::Enclosed measured;"
+                           : "etlmon::Measured measured = etlmon::kUnmeasured;");
         print_distance(out_, context_, d, "measured");
         out_.line(enclosed ? "return measured.measured;" : "return measured;");
         out_.close("});");
@@ -93,27 +100,34 @@ private:
         const check::Predicate& predicate = context_.model.predicates[p];
         const auto telemetry = context_.names.predicate_member.find(p);
         const bool kept = telemetry != context_.names.predicate_member.end();
-        const std::string& variable = kept ? telemetry->second : context_.names.predicate_local.at(p);
+        const std::string& variable =
+            kept ? telemetry->second : context_.names.predicate_local.at(p);
         const std::string& atom = context_.names.predicate_atom.at(p);
-        const std::string threshold =
-            kept ? fmt::format("threshold_{}()", predicate.name) : float_literal(predicate.threshold.value);
+        const std::string threshold = kept ? fmt::format("threshold_{}()", predicate.name)
+                                           : float_literal(predicate.threshold.value);
         out_.gap();
         out_.line("// {}", context_.place(predicate.span));
-        if (context_.boolean()) out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
-        const std::string delta =
-            predicate.plain_distance() ? plain(predicate, variable, kept) : general(predicate, variable, kept);
-        const std::string range = context_.literal(plan::unseen_range(predicate, context_.plan.values));
+        if (context_.boolean())
+            out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
+        const std::string delta = predicate.plain_distance() ? plain(predicate, variable, kept)
+                                                             : general(predicate, variable, kept);
+        const std::string range =
+            context_.literal(plan::unseen_range(predicate, context_.plan.values));
         if (context_.boolean()) {
             out_.line("missing |= etlmon::is_nan({});", delta);
             const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
-            out_.line("return etlmon::{}({}, {}{});", comparison_name(predicate), delta, threshold, otherwise);
+            out_.line("return etlmon::{}({}, {}{});", comparison_name(predicate), delta, threshold,
+                      otherwise);
             out_.close("});");
             return;
         }
-        const bool enclosed = predicate.plain_distance() && context_.enclosed(predicate.expression.index);
-        const std::string known = enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
+        const bool enclosed =
+            predicate.plain_distance() && context_.enclosed(predicate.expression.index);
+        const std::string known =
+            enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
-                                        predicate.upper_bound() ? "at_most" : "at_least", known, threshold, range));
+                                        predicate.upper_bound() ? "at_most" : "at_least", known,
+                                        threshold, range));
         out_.line("missing |= etlmon::is_nan({});", delta);
     }
 
@@ -130,7 +144,8 @@ private:
             return (kept ? variable : shared) + ".delta";
         }
         if (const auto call = measured_at_once(context_, d)) {
-            print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const etlmon::Measured ", variable, *call));
+            print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const etlmon::Measured ",
+                                            variable, *call));
             return variable + ".delta";
         }
         // What step() of a Boolean class keeps, it has called unmeasured.
@@ -156,9 +171,11 @@ private:
 
 void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
-    out.line("/// The robustness of every predicate at this step; counts the step if something was missing.");
-    out.open(fmt::format("{}Atoms measure({}const Inputs& in) noexcept {{", context.step_qualifier(),
-                         reads_inputs ? "" : "[[maybe_unused]] "));
+    out.line(
+        "/// The robustness of every predicate at this step; counts the step if something was "
+        "missing.");
+    out.open(fmt::format("{}Atoms measure({}const Inputs& in) noexcept {{",
+                         context.step_qualifier(), reads_inputs ? "" : "[[maybe_unused]] "));
     out.line("Atoms now;");
     out.line("bool missing = false;");
     MeasurePrinter(out, context).print();

@@ -1,6 +1,6 @@
 // What measure() is made of: samples, and the kernels' calls on them.
-// Takes: the context. Gives: expressions that stand for this step's samples and distances, and the statements that they
-// need. Keeps true: what is missing has no distance: NaN, and row 0.
+// Takes: the context. Gives: expressions that stand for this step's samples and distances, and the
+// statements that they need. Keeps true: what is missing has no distance: NaN, and row 0.
 #pragma once
 
 #include <optional>
@@ -10,18 +10,19 @@
 
 namespace etlc::emit {
 
-/// This step's sample: a scalar, NaN where it is missing; of an embedding a pointer, null where it is missing, or the
-/// view itself, where the kernels look whether it is there.
+/// This step's sample: a scalar, NaN where it is missing; of an embedding a pointer, null where it
+/// is missing, or the view itself, where the kernels look whether it is there.
 std::string sample(const Context& context, check::Index input);
 
 /// What has to be said before sample() of this input can be.
 void print_input(Printer& out, const Context& context, check::Index input);
 
-/// The call that measures a distance where there is one for whatever the sample is; else print_distance has more to
-/// say.
+/// The call that measures a distance where there is one for whatever the sample is; else
+/// print_distance has more to say.
 std::optional<std::string> measured_at_once(const Context& context, check::Index distance);
 
 /// `into = ...` where the inputs are there: a Measured that was unmeasured, or an Enclosed.
-void print_distance(Printer& out, const Context& context, check::Index distance, const std::string& into);
+void print_distance(Printer& out, const Context& context, check::Index distance,
+                    const std::string& into);
 
 }  // namespace etlc::emit

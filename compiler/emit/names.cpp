@@ -58,25 +58,27 @@ std::string member(Scope& scope, const std::string& name) {
     return scope.claim(name, "_");
 }
 
-/// A local that is named after the spec; one without an underscore would look like a name of the class itself.
+/// A local that is named after the spec; one without an underscore would look like a name of the
+/// class itself.
 std::string local(Scope& scope, const std::string& name) {
     return name.find('_') == std::string::npos ? scope.number(name) : scope.claim(name);
 }
 
-/// The functions that have an underscore in their names: the runtime's, and those of the class that are named after
-/// predicates.
+/// The functions that have an underscore in their names: the runtime's, and those of the class that
+/// are named after predicates.
 std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
     std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
-        for (const char* prefix :
-             {"distance_", "nearest_", "threshold_", "initial_threshold_", "set_threshold_", "observe_"})
+        for (const char* prefix : {"distance_", "nearest_", "threshold_", "initial_threshold_",
+                                   "set_threshold_", "observe_"})
             names.insert(prefix + model.predicates[p].name);
     return names;
 }
 
 /// Read as it is, from what was measured or written down.
 bool is_atom(plan::StreamOp op) {
-    return op == plan::StreamOp::constant || op == plan::StreamOp::predicate || op == plan::StreamOp::flag;
+    return op == plan::StreamOp::constant || op == plan::StreamOp::predicate ||
+           op == plan::StreamOp::flag;
 }
 
 std::string predicate_name(const check::Predicate& predicate) {
@@ -119,14 +121,17 @@ public:
 
 private:
     /// In Atoms they are called as they are; a Boolean class has locals for them.
-    std::string atom(const std::string& name) { return boolean_ ? local(judge_, name + "_now") : atoms_.claim(name); }
+    std::string atom(const std::string& name) {
+        return boolean_ ? local(judge_, name + "_now") : atoms_.claim(name);
+    }
 
     void name_atoms() {
         for (const plan::Stream& stream : plan_.streams)
             if (stream.op == plan::StreamOp::flag)
                 names_.flag_atom[stream.index] = atom(model_.inputs[stream.index].name);
         for (check::Index p : plan_.predicates)
-            if (!model_.predicates[p].name.empty()) names_.predicate_atom[p] = atom(model_.predicates[p].name);
+            if (!model_.predicates[p].name.empty())
+                names_.predicate_atom[p] = atom(model_.predicates[p].name);
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
             if (!predicate.name.empty()) continue;
@@ -152,13 +157,15 @@ private:
         }
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
-            if (!predicate.name.empty()) names_.predicate_member[p] = member(members_, predicate.name);
+            if (!predicate.name.empty())
+                names_.predicate_member[p] = member(members_, predicate.name);
             if (!predicate.threshold.adaptation) continue;
             names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
             names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
         }
         for (check::Index d : plan_.distances)
-            names_.distance_local[d] = local(measure_, identifier(model_.distances[d].text, "distance"));
+            names_.distance_local[d] =
+                local(measure_, identifier(model_.distances[d].text, "distance"));
     }
 
     void name_streams() {
@@ -174,7 +181,8 @@ private:
 
     std::string stream_name(const plan::Stream& stream) const {
         if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
-        if (stream.op == plan::StreamOp::predicate) return predicate_name(model_.predicates[stream.index]);
+        if (stream.op == plan::StreamOp::predicate)
+            return predicate_name(model_.predicates[stream.index]);
         const std::string suffix = suffix_of(stream);
         if (suffix.empty()) return "value";
         return stream_name(signal_of(stream)) + suffix;
@@ -217,7 +225,8 @@ private:
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;
             names_.reading_local[r] = local(judge_, name + "_reading");
-            if (plan::cost_of(plan_.readings[r], plan_.values).state_bytes > 0) name_registers(r, name);
+            if (plan::cost_of(plan_.readings[r], plan_.values).state_bytes > 0)
+                name_registers(r, name);
         }
     }
 
@@ -228,7 +237,8 @@ private:
         return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
     }
 
-    /// The first monitor whose reading each reading is a part of. Operands stand before what they are operands of.
+    /// The first monitor whose reading each reading is a part of. Operands stand before what they
+    /// are operands of.
     std::vector<const plan::Monitor*> first_monitors() const {
         std::vector<std::size_t> first(plan_.readings.size(), plan_.monitors.size());
         for (std::size_t m = plan_.monitors.size(); m-- > 0;)
@@ -237,22 +247,27 @@ private:
             for (const std::uint32_t operand : plan_.readings[r].operands)
                 first[operand] = std::min(first[operand], first[r]);
         std::vector<const plan::Monitor*> result;
-        for (const std::size_t m : first) result.push_back(m < plan_.monitors.size() ? &plan_.monitors[m] : nullptr);
+        for (const std::size_t m : first)
+            result.push_back(m < plan_.monitors.size() ? &plan_.monitors[m] : nullptr);
         return result;
     }
 
     void name_registers(std::uint32_t r, const std::string& name) {
         const plan::Reading& reading = plan_.readings[r];
         if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
-            names_.reading_member[r] =
-                member(members_, name + (reading.kind == plan::Reading::Kind::response ? "_settled" : ""));
-            if (reading.kind == plan::Reading::Kind::response) names_.recent_local[r] = local(judge_, name + "_recent");
-            if (reading.fold.left != plan::kNone) names_.guard_member[r] = member(members_, name + "_guard");
+            names_.reading_member[r] = member(
+                members_, name + (reading.kind == plan::Reading::Kind::response ? "_settled" : ""));
+            if (reading.kind == plan::Reading::Kind::response)
+                names_.recent_local[r] = local(judge_, name + "_recent");
+            if (reading.fold.left != plan::kNone)
+                names_.guard_member[r] = member(members_, name + "_guard");
             if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
-            const bool has_table = reading.kind == plan::Reading::Kind::machine ||
-                                   (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);
+            const bool has_table =
+                reading.kind == plan::Reading::Kind::machine ||
+                (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);
             if (has_table)
-                names_.table_locals[r] = {local(judge_, name + "_guards"), local(judge_, name + "_weak"),
+                names_.table_locals[r] = {local(judge_, name + "_guards"),
+                                          local(judge_, name + "_weak"),
                                           local(judge_, name + "_strong")};
             return;
         }
@@ -279,9 +294,10 @@ private:
             const std::string words = identifier(graph_.text(part.node), "");
             const bool few = !words.empty() && words.size() <= kLongestPartName;
             names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
-            names.leaves.push_back(part.leaf == plan::kNone
-                                       ? ""
-                                       : member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
+            names.leaves.push_back(
+                part.leaf == plan::kNone
+                    ? ""
+                    : member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
         }
         names.count = local(judge_, name + "_count");
         if (pending.is_fold) names_.guard_member[r] = member(members_, name + "_guard");
@@ -298,10 +314,13 @@ private:
             auto [entry, added] = arrays.try_emplace({distance.target, as_given});
             if (added) entry->second = constants_.claim(as_given ? target : target + "_unit");
             names_.target_array[d] = entry->second;
-            if (plan::searches(plan_, d)) names_.search_member[d] = member(members_, target + "_search");
+            if (plan::searches(plan_, d))
+                names_.search_member[d] = member(members_, target + "_search");
             if (const plan::NarrowSet* set = plan::narrow_set(plan_, d)) {
                 auto [narrow, first] = narrow_arrays.try_emplace(entry->second);
-                if (first) narrow->second = constants_.claim(entry->second + "_" + plan::word(set->storage));
+                if (first)
+                    narrow->second =
+                        constants_.claim(entry->second + "_" + plan::word(set->storage));
                 names_.narrow_array[d] = narrow->second;
                 if (plan::in_integers(*set)) {
                     auto [sums, first_sums] = sums_arrays.try_emplace(narrow->second);
@@ -309,7 +328,8 @@ private:
                     names_.sums_array[d] = sums->second;
                 }
             }
-            if (!distance.weights.empty()) names_.weight_array[d] = constants_.claim(target + "_weights");
+            if (!distance.weights.empty())
+                names_.weight_array[d] = constants_.claim(target + "_weights");
         }
     }
 
@@ -331,7 +351,8 @@ private:
 
 std::string Scope::claim(const std::string& wanted, const std::string& mark) {
     std::string name = wanted + mark;
-    for (int i = 2; !taken_.insert(name).second; ++i) name = fmt::format("{}_{}{}", wanted, i, mark);
+    for (int i = 2; !taken_.insert(name).second; ++i)
+        name = fmt::format("{}_{}{}", wanted, i, mark);
     return name;
 }
 
@@ -342,11 +363,13 @@ std::string Scope::number(const std::string& wanted) {
 }
 
 std::string identifier(std::string_view text, const std::string& otherwise) {
-    if (text.find("...") != std::string_view::npos) return otherwise;  // parts of the formula were left out
+    if (text.find("...") != std::string_view::npos)
+        return otherwise;  // parts of the formula were left out
     std::string name;
     for (std::size_t i = 0; i < text.size();) {
         std::size_t end = i;
-        while (end < text.size() && (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
+        while (end < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
             ++end;
         if (end > i) {
             append_word(name, word_for_operator(text.substr(i, end - i)));
@@ -357,8 +380,9 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
         }
         i = end;
     }
-    const bool legal = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 && name[0] != '_' &&
-                       name.find("__") == std::string::npos && name.size() <= kLongestName;
+    const bool legal = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+                       name[0] != '_' && name.find("__") == std::string::npos &&
+                       name.size() <= kLongestName;
     return legal ? name : otherwise;
 }
 

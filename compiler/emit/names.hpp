@@ -1,12 +1,18 @@
 // The names of generated code: all of them are made here.
-// Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from the spec, are legal
-// C++, differ from each other within their scope, and are the same on every run. None is a name that the class has of
-// itself, or that its code reads. For that there is one rule:
-// - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the namespace targets, where
-//   nothing else is declared; in names of the spec every underscore stands between two other characters;
-// - members that are named after the spec end in an underscore; locals are a name or words of a formula with an
-//   underscore and more behind it; functions are distance_P, threshold_P and the like, which no local is called;
-// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What has one is of no
+// Takes: the plan. Gives: a name for everything that the code mentions. Keeps true: names come from
+// the spec, are legal C++, differ from each other within their scope, and are the same on every
+// run. None is a name that the class has of itself, or that its code reads. For that there is one
+// rule:
+// - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the
+// namespace targets, where
+//   nothing else is declared; in names of the spec every underscore stands between two other
+//   characters;
+// - members that are named after the spec end in an underscore; locals are a name or words of a
+// formula with an
+//   underscore and more behind it; functions are distance_P, threshold_P and the like, which no
+//   local is called;
+// - what the class calls something of its own has no underscore: position, now, kStateBytes. (What
+// has one is of no
 //   such form: missing_steps(), uint32_t, macros.)
 #pragma once
 
@@ -32,49 +38,65 @@ private:
     std::set<std::string> taken_;
 };
 
-/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too long ones give
-/// `otherwise`.
+/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too
+/// long ones give `otherwise`.
 std::string identifier(std::string_view text, const std::string& otherwise);
 
 struct Names {
-    std::map<check::Index, std::string> input_local;          ///< in measure(): this step's sample; of an embedding, a
-                                                              ///< pointer; none for what is read in place
-    std::map<check::Index, std::string> direction_local;      ///< in measure(): of an embedding read in place, where
-                                                              ///< several distances need its length
-    std::map<check::Index, std::string> input_buffer;         ///< in measure(): widened elements, or a flag as a word
-    std::map<check::Index, std::string> distance_local;       ///< in measure(): what the kernel gave
-    std::map<check::Index, std::string> predicate_local;      ///< in measure(): delta of a predicate without telemetry
-    std::map<check::Index, std::string> predicate_atom;       ///< field of Atoms; of a Boolean class, a local
-    std::map<check::Index, std::string> flag_atom;            ///< likewise
-    std::map<check::Index, std::string> predicate_member;     ///< telemetry, of named predicates
-    std::map<check::Index, std::string> threshold_member;     ///< of adaptive predicates: the threshold as it is now
+    std::map<check::Index, std::string>
+        input_local;  ///< in measure(): this step's sample; of an embedding, a
+                      ///< pointer; none for what is read in place
+    std::map<check::Index, std::string>
+        direction_local;  ///< in measure(): of an embedding read in place, where
+                          ///< several distances need its length
+    std::map<check::Index, std::string>
+        input_buffer;  ///< in measure(): widened elements, or a flag as a word
+    std::map<check::Index, std::string> distance_local;  ///< in measure(): what the kernel gave
+    std::map<check::Index, std::string>
+        predicate_local;  ///< in measure(): delta of a predicate without telemetry
+    std::map<check::Index, std::string>
+        predicate_atom;                             ///< field of Atoms; of a Boolean class, a local
+    std::map<check::Index, std::string> flag_atom;  ///< likewise
+    std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
+    std::map<check::Index, std::string>
+        threshold_member;  ///< of adaptive predicates: the threshold as it is now
     std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
     std::map<check::Index, std::string> hold_member;
     std::map<plan::Slot, std::string> stream_local;
     std::map<plan::Slot, std::string> stream_member;
     std::map<std::uint32_t, std::string> reading_local;
     std::map<std::uint32_t, std::string> reading_member;
-    std::map<std::uint32_t, std::string> guard_member;  ///< of folds with two sides: what the left one lets through
-    std::map<std::uint32_t, std::string> recent_local;  ///< of responses that wait before their window
-    std::map<std::uint32_t, std::vector<std::string>> register_member;  ///< of unrolled machines, per state
-    std::map<std::uint32_t, std::vector<std::string>> register_next;    ///< their values of this step, as locals
+    std::map<std::uint32_t, std::string>
+        guard_member;  ///< of folds with two sides: what the left one lets through
+    std::map<std::uint32_t, std::string>
+        recent_local;  ///< of responses that wait before their window
+    std::map<std::uint32_t, std::vector<std::string>>
+        register_member;  ///< of unrolled machines, per state
+    std::map<std::uint32_t, std::vector<std::string>>
+        register_next;  ///< their values of this step, as locals
     struct TableLocals {
         std::string guards, weak, strong;
     };
     std::map<std::uint32_t, TableLocals> table_locals;  ///< of machines as tables
     struct PendingNames {
-        std::vector<std::string> parts;   ///< locals: readings at the last positions
-        std::vector<std::string> leaves;  ///< members: the last values; empty where the part is no leaf
-        std::string count;                ///< local
+        std::vector<std::string> parts;  ///< locals: readings at the last positions
+        std::vector<std::string>
+            leaves;         ///< members: the last values; empty where the part is no leaf
+        std::string count;  ///< local
     };
     std::map<std::uint32_t, PendingNames> pending;
-    std::map<std::size_t, std::string> verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
-    std::map<std::size_t, std::string> open_local;      ///< per prefix monitor of a Boolean class: can still change
-    std::map<check::Index, std::string> search_member;  ///< per distance whose stored set is searched
-    std::map<check::Index, std::string> target_array;   ///< per distance: its rows
-    std::map<check::Index, std::string> narrow_array;   ///< per distance: its rows in float16 or int8
-    std::map<check::Index, std::string> sums_array;     ///< per distance measured in integers: the sums of its rows
-    std::map<check::Index, std::string> weight_array;   ///< per distance
+    std::map<std::size_t, std::string>
+        verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
+    std::map<std::size_t, std::string>
+        open_local;  ///< per prefix monitor of a Boolean class: can still change
+    std::map<check::Index, std::string>
+        search_member;  ///< per distance whose stored set is searched
+    std::map<check::Index, std::string> target_array;  ///< per distance: its rows
+    std::map<check::Index, std::string>
+        narrow_array;  ///< per distance: its rows in float16 or int8
+    std::map<check::Index, std::string>
+        sums_array;  ///< per distance measured in integers: the sums of its rows
+    std::map<check::Index, std::string> weight_array;  ///< per distance
 };
 
 Names make_names(const plan::Plan& plan, const ir::Graph& graph);

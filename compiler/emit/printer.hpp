@@ -1,6 +1,6 @@
 // Text of a program, line by line, indented by blocks.
-// Takes: lines. Gives: the text. Keeps true: two spaces a level, no trailing blanks, lines end in \n; text from outside
-// ends where its line does, whatever it is.
+// Takes: lines. Gives: the text. Keeps true: two spaces a level, no trailing blanks, lines end in
+// \n; text from outside ends where its line does, whatever it is.
 #pragma once
 
 #include <fmt/format.h>
@@ -30,7 +30,9 @@ public:
         if (!open && !blank) text_.push_back('\n');
     }
     /// A line at the outer level, for `public:` one space in.
-    void label(std::string_view text) { text_.append(2 * depth_ - 1, ' ').append(text).push_back('\n'); }
+    void label(std::string_view text) {
+        text_.append(2 * depth_ - 1, ' ').append(text).push_back('\n');
+    }
     void open(std::string_view text) {
         line(text);
         ++depth_;

@@ -31,7 +31,8 @@ void print_parts(Printer& out, const Context& context, std::uint32_t r, const st
 }
 
 /// max(a, key), or what it is where the key is an infinity; min likewise.
-std::string widened(const Context& context, bool takes_max, const std::string& value, const std::string& key) {
+std::string widened(const Context& context, bool takes_max, const std::string& value,
+                    const std::string& key) {
     const Spelling& spelt = context.spelling;
     if (key == (takes_max ? spelt.top : spelt.bottom)) return key;
     if (key == (takes_max ? spelt.bottom : spelt.top)) return value;
@@ -42,7 +43,8 @@ std::string widened(const Context& context, bool takes_max, const std::string& v
 
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
     const std::string& kept = context.names.reading_member.at(r);
-    out.line("if (position == 0) {} = {};", kept, context.value(context.plan.readings[r].latch.operand));
+    out.line("if (position == 0) {} = {};", kept,
+             context.value(context.plan.readings[r].latch.operand));
     out.line("{} = etlmon::settled({});", reading_declaration(context, r), kept);
 }
 
@@ -59,19 +61,23 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const std::string step = binary ? fmt::format("{}({}, {})", narrow, guard, right) : right;
     const std::string open = open_condition(fold.interval);
 
-    print_wrapped(out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open), best, widen,
-                                   best, step));
-    // Once the right side has decided, the left one matters no more: a Boolean monitor does not ask for it.
+    print_wrapped(
+        out, fmt::format("{}{} = {}({}, {});", open.empty() ? "" : fmt::format("if ({}) ", open),
+                         best, widen, best, step));
+    // Once the right side has decided, the left one matters no more: a Boolean monitor does not ask
+    // for it.
     if (binary) {
         const std::string left = context.value(fold.left);
         const bool skips = context.lazy(fold.left);
-        print_wrapped(out, fmt::format("{} = {}({}, {});", guard, narrow, guard,
-                                       skips ? fmt::format("{}({}, {})", widen, best, left) : left));
+        print_wrapped(out,
+                      fmt::format("{} = {}({}, {});", guard, narrow, guard,
+                                  skips ? fmt::format("{}({}, {})", widen, best, left) : left));
     }
 
     const std::string unseen_key = takes_max ? context.high(fold.unseen) : context.low(fold.unseen);
     const std::string unseen =
-        binary ? widened(context, !takes_max, fmt::format("{}.{}", guard, end), unseen_key) : unseen_key;
+        binary ? widened(context, !takes_max, fmt::format("{}.{}", guard, end), unseen_key)
+               : unseen_key;
     std::string bound = widened(context, takes_max, fmt::format("{}.{}", best, end), unseen);
     if (fold.interval.bounded())
         bound = fmt::format("position < {} ? {} : {}.{}", fold.interval.high, bound, best, end);
@@ -91,9 +97,10 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const char* worst = response.of_always ? "min_of" : "max_of";
     const char* far_end = response.of_always ? "high" : "low";
 
-    print_wrapped(
-        out, conditional(open_condition({response.inner.high, kUnbounded}),
-                         fmt::format("{} = {};", settled, call(worst, {settled, context.value(response.passed)}))));
+    print_wrapped(out,
+                  conditional(open_condition({response.inner.high, kUnbounded}),
+                              fmt::format("{} = {};", settled,
+                                          call(worst, {settled, context.value(response.passed)}))));
     std::string now = response.of_always ? context.spelling.no : context.spelling.yes;
     if (response.pending != kNone) now = context.value(response.pending);
     if (response.recent != kNone) {
@@ -101,8 +108,8 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
                  call(worst, {now, context.value(response.recent)}));
         now = context.names.recent_local.at(r);
     }
-    const std::string unseen_answer =
-        response.of_always ? context.high(response.unseen_answer) : context.low(response.unseen_answer);
+    const std::string unseen_answer = response.of_always ? context.high(response.unseen_answer)
+                                                         : context.low(response.unseen_answer);
     const std::string unseen_body =
         response.of_always ? context.low(response.unseen_body) : context.high(response.unseen_body);
     const char* near_end = response.of_always ? "low" : "high";
@@ -112,7 +119,8 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     if (near != known && near != unseen_body) near = call(worst, {both[0], both[1], unseen_body});
     if (response.outer.bounded() && near != known)
         near = fmt::format("position < {} ? {} : {}", response.outer.high, near, known);
-    const std::string hope = widened(context, response.of_always, now + "." + far_end, unseen_answer);
+    const std::string hope =
+        widened(context, response.of_always, now + "." + far_end, unseen_answer);
     const std::string far = widened(context, !response.of_always, settled + "." + far_end, hope);
     print_parts(out, context, r, call(worst, {settled, now}), response.of_always ? near : far,
                 response.of_always ? far : near);
@@ -121,11 +129,13 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
 // ---- unrolled machines
 
 /// min(max of the sources, literals)
-std::string term_text(const Context& context, std::uint32_t r, const plan::Term& term, bool in_place) {
+std::string term_text(const Context& context, std::uint32_t r, const plan::Term& term,
+                      bool in_place) {
     std::vector<std::string> sources;
     for (plan::Source source : term.sources)
-        sources.push_back(source.updated && !in_place ? context.names.register_next.at(r)[source.state]
-                                                      : context.names.register_member.at(r)[source.state]);
+        sources.push_back(source.updated && !in_place
+                              ? context.names.register_next.at(r)[source.state]
+                              : context.names.register_member.at(r)[source.state]);
     std::vector<std::string> factors;
     if (!sources.empty()) factors.push_back(call("max_of", sources));
     for (Slot slot : context.by_work(term.literals)) factors.push_back(context.value(slot));
@@ -133,15 +143,19 @@ std::string term_text(const Context& context, std::uint32_t r, const plan::Term&
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
-    const plan::RegisterProgram program = plan::make_register_program(context.plan.readings[r].machine);
+    const plan::RegisterProgram program =
+        plan::make_register_program(context.plan.readings[r].machine);
     const std::vector<std::string>& registers = context.names.register_member.at(r);
     const std::vector<std::string>& next = context.names.register_next.at(r);
     for (const plan::Update& update : program.updates) {
         std::vector<std::string> terms;
-        for (const plan::Term& term : update.terms) terms.push_back(term_text(context, r, term, program.in_place));
-        const std::string target = program.in_place ? registers[update.state] : "const Value " + next[update.state];
+        for (const plan::Term& term : update.terms)
+            terms.push_back(term_text(context, r, term, program.in_place));
+        const std::string target =
+            program.in_place ? registers[update.state] : "const Value " + next[update.state];
         print_wrapped(out, fmt::format("{} = {};", target,
-                                       terms.empty() ? context.spelling.no : call("max_of", terms, context.boolean())));
+                                       terms.empty() ? context.spelling.no
+                                                     : call("max_of", terms, context.boolean())));
     }
     if (program.in_place) return;
     for (const plan::Update& update : program.updates)
@@ -163,8 +177,9 @@ std::string best_of(const Context& context,
             done[j] = true;
             if (!registers_and_keys[j].first.empty()) same.push_back(registers_and_keys[j].first);
         }
-        const bool holds_true = std::any_of(registers_and_keys.begin(), registers_and_keys.end(),
-                                            [&](const auto& e) { return e.second == key && e.first.empty(); });
+        const bool holds_true =
+            std::any_of(registers_and_keys.begin(), registers_and_keys.end(),
+                        [&](const auto& e) { return e.second == key && e.first.empty(); });
         if (holds_true)
             terms.push_back(key.empty() ? spelt.top : key);
         else
@@ -181,20 +196,23 @@ void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
     const Machine& machine = context.plan.readings[r].machine;
     const std::vector<std::string>& registers = context.names.register_member.at(r);
     std::vector<std::string> rho;
-    std::vector<std::pair<std::string, std::string>> lower;  // register, key; an empty register is always true
+    std::vector<std::pair<std::string, std::string>>
+        lower;  // register, key; an empty register is always true
     std::vector<std::pair<std::string, std::string>> upper;
     for (std::size_t q = 0; q < machine.states.size(); ++q) {
         const Machine::State& owed = machine.states[q];
-        const std::string strong = owed.strong_unseen == kNone ? "" : context.high(owed.strong_unseen);
+        const std::string strong =
+            owed.strong_unseen == kNone ? "" : context.high(owed.strong_unseen);
         const std::string weak = owed.weak_unseen == kNone ? "" : context.low(owed.weak_unseen);
         upper.emplace_back(owed.always_true ? "" : registers[q] + ".high",
                            strong == context.spelling.top ? "" : strong);
         if (owed.strong) continue;
         rho.push_back(owed.always_true ? context.spelling.yes : registers[q]);
-        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low", weak == context.spelling.top ? "" : weak);
+        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low",
+                           weak == context.spelling.top ? "" : weak);
     }
-    print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max_of", rho), best_of(context, lower),
-                best_of(context, upper));
+    print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max_of", rho),
+                best_of(context, lower), best_of(context, upper));
 }
 
 // ---- machines as tables
@@ -219,18 +237,20 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     for (const auto& literals : machine.guards) {
         std::vector<std::string> values;
         for (Slot slot : context.by_work(literals)) values.push_back(context.value(slot));
-        guards.push_back(values.empty() ? context.spelling.yes : call("min_of", values, context.boolean()));
+        guards.push_back(values.empty() ? context.spelling.yes
+                                        : call("min_of", values, context.boolean()));
     }
     print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
     print_machine_keys(out, context, r, machine);
     const std::string tables = "tables::" + table_name(context, r);
     out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, locals.guards);
-    out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables, locals.weak,
-             locals.strong);
+    out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables,
+             locals.weak, locals.strong);
 }
 
 template <class Items, class Spell>
-void print_array(Printer& out, const std::string& type, const std::string& name, const Items& items, Spell spell) {
+void print_array(Printer& out, const std::string& type, const std::string& name, const Items& items,
+                 Spell spell) {
     std::string text = fmt::format("inline constexpr {} {}[] = {{", type, name);
     for (std::size_t i = 0; i < items.size(); ++i) text += (i == 0 ? "" : ", ") + spell(items[i]);
     print_wrapped(out, text + "};");
@@ -238,8 +258,10 @@ void print_array(Printer& out, const std::string& type, const std::string& name,
 
 /// The machine that is emitted as a table, if the reading has one.
 const Machine* tabled(const Reading& reading) {
-    if (reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine)) return &reading.machine;
-    if (reading.kind == Reading::Kind::pending && !reading.pending.is_fold) return &reading.pending.machine;
+    if (reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine))
+        return &reading.machine;
+    if (reading.kind == Reading::Kind::pending && !reading.pending.is_fold)
+        return &reading.pending.machine;
     return nullptr;
 }
 
@@ -247,14 +269,16 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
     const plan::Table table = plan::make_table(*tabled(reading));
     const std::string name = table_name(context, r);
-    out.line("// {}: {} states, {} transitions", context.graph.text(reading.node), table.ends.size(),
-             table.transitions.size());
+    out.line("// {}: {} states, {} transitions", context.graph.text(reading.node),
+             table.ends.size(), table.transitions.size());
     print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
                 [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });
-    print_array(out, "uint32_t", name + "_ends", table.ends, [](std::uint32_t end) { return fmt::format("{}", end); });
+    print_array(out, "uint32_t", name + "_ends", table.ends,
+                [](std::uint32_t end) { return fmt::format("{}", end); });
     print_array(out, "etlmon::Owed", name + "_owed", table.owed, [](etlmon::Owed owed) {
-        return owed.weak == etlmon::kStrongly ? fmt::format("{{etlmon::kStrongly, {}}}", owed.strong)
-                                              : fmt::format("{{{}, {}}}", owed.weak, owed.strong);
+        return owed.weak == etlmon::kStrongly
+                   ? fmt::format("{{etlmon::kStrongly, {}}}", owed.strong)
+                   : fmt::format("{{{}, {}}}", owed.weak, owed.strong);
     });
 }
 
@@ -276,11 +300,14 @@ std::string table_name(const Context& context, std::uint32_t r) {
     return context.names.reading_local.at(r);
 }
 
-void print_machine_keys(Printer& out, const Context& context, std::uint32_t r, const Machine& machine) {
+void print_machine_keys(Printer& out, const Context& context, std::uint32_t r,
+                        const Machine& machine) {
     const plan::Table table = plan::make_table(machine);
     const Names::TableLocals& locals = context.names.table_locals.at(r);
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak, list(keys(context, table.weak, false))));
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong, list(keys(context, table.strong, true))));
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak,
+                                   list(keys(context, table.weak, false))));
+    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong,
+                                   list(keys(context, table.strong, true))));
 }
 
 void print_reading(Printer& out, const Context& context, std::uint32_t r) {
@@ -291,20 +318,26 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
         case Reading::Kind::pending: return print_pending(out, context, r);
         case Reading::Kind::response: return print_response(out, context, r);
         case Reading::Kind::machine:
-            return is_table(reading) ? print_table_machine(out, context, r) : print_unrolled(out, context, r);
+            return is_table(reading) ? print_table_machine(out, context, r)
+                                     : print_unrolled(out, context, r);
         case Reading::Kind::conjunction:
         case Reading::Kind::disjunction: break;
     }
     std::vector<std::string> parts;
-    for (std::uint32_t operand : reading.operands) parts.push_back(context.names.reading_local.at(operand));
-    print_wrapped(out, fmt::format("{} = {};", reading_declaration(context, r),
-                                   call(reading.kind == Reading::Kind::conjunction ? "min_of" : "max_of", parts)));
+    for (std::uint32_t operand : reading.operands)
+        parts.push_back(context.names.reading_local.at(operand));
+    print_wrapped(
+        out,
+        fmt::format("{} = {};", reading_declaration(context, r),
+                    call(reading.kind == Reading::Kind::conjunction ? "min_of" : "max_of", parts)));
 }
 
 void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
     if (std::none_of(readings.begin(), readings.end(), is_table)) return;
-    out.line("/// State machines: the transitions into each state, where they end, what each state owes.");
+    out.line(
+        "/// State machines: the transitions into each state, where they end, what each state "
+        "owes.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
         if (is_table(readings[r])) print_table(out, context, r);
@@ -327,8 +360,11 @@ std::vector<Member> reading_members(const Context& context) {
             for (std::size_t q = 0; q < registers->second.size(); ++q) {
                 if (reading.machine.states[q].always_true) continue;
                 const std::string& name = registers->second[q];
-                result.push_back({context.spelling.kept, name, owed_text(context, reading.machine.automaton.states[q]),
-                                  fmt::format("{} = {};", name, q == 0 ? context.spelling.yes : context.spelling.no)});
+                result.push_back(
+                    {context.spelling.kept, name,
+                     owed_text(context, reading.machine.automaton.states[q]),
+                     fmt::format("{} = {};", name,
+                                 q == 0 ? context.spelling.yes : context.spelling.no)});
             }
             continue;
         }
@@ -336,16 +372,19 @@ std::vector<Member> reading_members(const Context& context) {
         if (member == context.names.reading_member.end()) continue;
         const std::string& name = member->second;
         if (is_table(reading)) {
-            result.push_back({fmt::format("etlmon::Machine<Value, {}>", reading.machine.states.size()), name, text,
-                              fmt::format("{}.reset();", name)});
+            result.push_back(
+                {fmt::format("etlmon::Machine<Value, {}>", reading.machine.states.size()), name,
+                 text, fmt::format("{}.reset();", name)});
             continue;
         }
         const bool response = reading.kind == Reading::Kind::response;
-        const bool starts_true = response ? reading.response.of_always
-                                          : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
+        const bool starts_true =
+            response ? reading.response.of_always
+                     : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
         const std::string first = starts_true ? context.spelling.yes : context.spelling.no;
         const std::string second = starts_true ? context.spelling.no : context.spelling.yes;
-        result.push_back({context.spelling.kept, name, text + (response ? ": where the answer's time is over" : ""),
+        result.push_back({context.spelling.kept, name,
+                          text + (response ? ": where the answer's time is over" : ""),
                           fmt::format("{} = {};", name, first)});
         if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
             result.push_back({context.spelling.kept, context.names.guard_member.at(r),

@@ -31,9 +31,10 @@ std::string widening(const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& buffer = context.names.input_buffer.at(i);
     if (input.type == InputType::f16)
-        return fmt::format("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer, input.dimension);
-    return fmt::format("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name, float_literal(input.scale), buffer,
-                       input.dimension);
+        return fmt::format("etlmon::widen_f16(in.{}.data(), {}, {});", input.name, buffer,
+                           input.dimension);
+    return fmt::format("etlmon::widen_i8(in.{}.data(), {}, {}, {});", input.name,
+                       float_literal(input.scale), buffer, input.dimension);
 }
 
 bool is_widened(const check::Input& input) {
@@ -56,7 +57,8 @@ void print_flag(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i)) {
-        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.open(
+            fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line("missing |= !in.{}.present();", input.name);
         out.line("return etlmon::truth_of(in.{});", input.name);
         out.close("});");
@@ -72,9 +74,12 @@ void print_flag(Printer& out, const Context& context, Index i) {
     out.line("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : nullptr);", local,
              context.names.hold_member.at(i), input.name, word);
     if (context.boolean()) {
-        out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
+        out.open(
+            fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line("missing |= {} == nullptr;", local);
-        out.line("return etlmon::truth_of({0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag());", local);
+        out.line(
+            "return etlmon::truth_of({0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag());",
+            local);
         out.close("});");
         return;
     }
@@ -89,21 +94,24 @@ void print_scalar(Printer& out, const Context& context, Index i) {
     if (on_demand(context, i))
         out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, accepted(input));
     else if (input.hold > 0)
-        out.line("const float {} = {}.take({});", local, context.names.hold_member.at(i), accepted(input));
+        out.line("const float {} = {}.take({});", local, context.names.hold_member.at(i),
+                 accepted(input));
     else
         out.line("const float {} = {};", local, accepted(input));
 }
 
 /// The elements as float32, null where they are missing.
 std::string elements(const Context& context, Index i) {
-    return fmt::format("{} ? in.{}.data() : nullptr", present(context, i), context.model.inputs[i].name);
+    return fmt::format("{} ? in.{}.data() : nullptr", present(context, i),
+                       context.model.inputs[i].name);
 }
 
 void print_embedding_on_demand(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
     if (!is_widened(input))
-        return out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, elements(context, i));
+        return out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local,
+                        elements(context, i));
     const std::string& buffer = context.names.input_buffer.at(i);
     out.line("float {}[{}];", buffer, input.dimension);
     out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept -> const float* {{", local));
@@ -130,7 +138,8 @@ void print_embedding(Printer& out, const Context& context, Index i) {
 std::string sample(const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const auto local = context.names.input_local.find(i);
-    if (local != context.names.input_local.end()) return local->second + (on_demand(context, i) ? "()" : "");
+    if (local != context.names.input_local.end())
+        return local->second + (on_demand(context, i) ? "()" : "");
     return input.type == InputType::scalar ? accepted(input) : "in." + input.name;
 }
 
@@ -138,8 +147,10 @@ void print_input(Printer& out, const Context& context, Index i) {
     const auto direction = context.names.direction_local.find(i);
     if (direction != context.names.direction_local.end()) {
         const std::string& name = context.model.inputs[i].name;
-        out.line("const auto {} = etlmon::direction_of(in.{});  // |{}|, once for all distances that need it",
-                 direction->second, name, name);
+        out.line(
+            "const auto {} = etlmon::direction_of(in.{});  // |{}|, once for all distances that "
+            "need it",
+            direction->second, name, name);
     }
     if (context.names.input_local.count(i) == 0) return;  // read in place
     switch (context.model.inputs[i].type) {

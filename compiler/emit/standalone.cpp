@@ -46,21 +46,22 @@ public:
     }
 
 private:
-    /// A runtime file between guards, and before it those that it includes; nothing where it stands already. What is
-    /// included several times (.inc) is pasted each time.
+    /// A runtime file between guards, and before it those that it includes; nothing where it stands
+    /// already. What is included several times (.inc) is pasted each time.
     std::string file(std::string_view name) {
         const bool repeated = name.ends_with(".inc");
         if (!repeated && !done_.insert(std::string(name)).second) return "";
         const auto& files = runtime_files();
-        const auto found =
-            std::find_if(files.begin(), files.end(), [&](const RuntimeFile& f) { return f.name == name; });
+        const auto found = std::find_if(files.begin(), files.end(),
+                                        [&](const RuntimeFile& f) { return f.name == name; });
         assert(found != files.end());
         std::string body = paste(found->text);
         if (repeated) return body;
-        if (const std::size_t once = body.rfind(kOnce); once != std::string::npos) body.erase(once, kOnce.size() + 1);
+        if (const std::size_t once = body.rfind(kOnce); once != std::string::npos)
+            body.erase(once, kOnce.size() + 1);
         const std::string guard = guard_of(name);
-        return "\n// ---- " + std::string(name) + "\n#ifndef " + guard + "\n#define " + guard + "\n" + body +
-               "#endif  // " + guard + "\n";
+        return "\n// ---- " + std::string(name) + "\n#ifndef " + guard + "\n#define " + guard +
+               "\n" + body + "#endif  // " + guard + "\n";
     }
 
     std::set<std::string> done_;

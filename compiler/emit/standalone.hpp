@@ -1,7 +1,7 @@
 // A generated header with the runtime it needs pasted in: one file to copy into firmware.
-// Takes: a header that includes etlmon/*.hpp. Gives: the same header that includes nothing but C's headers.
-// Keeps true: each runtime file is pasted once a translation unit, however many such headers it includes; its SPDX line
-// stays.
+// Takes: a header that includes etlmon/*.hpp. Gives: the same header that includes nothing but C's
+// headers. Keeps true: each runtime file is pasted once a translation unit, however many such
+// headers it includes; its SPDX line stays.
 #pragma once
 
 #include <string>

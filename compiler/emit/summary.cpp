@@ -1,4 +1,5 @@
-// The head of the generated file: what it holds and what that costs; the same figures as --emit report.
+// The head of the generated file: what it holds and what that costs; the same figures as --emit
+// report.
 #include <algorithm>
 
 #include "check/guarantees.hpp"
@@ -15,7 +16,8 @@ using check::Index;
 using Row = std::vector<std::string>;
 
 /// Columns as wide as their widest cell; numbers (all columns from `first_number` on) to the right.
-void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows, std::size_t first_number) {
+void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
+                 std::size_t first_number) {
     std::vector<std::size_t> widths(rows.front().size(), 0);
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
@@ -40,16 +42,19 @@ std::string number(std::uint64_t x) {
 }
 
 Row cost_row(Row row, const plan::Cost& cost) {
-    for (std::uint64_t x : {cost.state_bytes, cost.constant_bytes, cost.operations, cost.distance_operations})
+    for (std::uint64_t x :
+         {cost.state_bytes, cost.constant_bytes, cost.operations, cost.distance_operations})
         row.push_back(number(x));
     return row;
 }
 
 std::vector<Row> monitor_rows(const plan::Plan& plan) {
-    std::vector<Row> rows{{"monitor", "about", "state B", "targets B", "operations", "distance elements"}};
+    std::vector<Row> rows{
+        {"monitor", "about", "state B", "targets B", "operations", "distance elements"}};
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = plan.monitors[m];
-        const std::string about = monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
+        const std::string about =
+            monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
         rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m]));
     }
     rows.push_back(cost_row({"all together", ""}, plan.cost));
@@ -61,16 +66,19 @@ std::string origin(const check::Threshold& threshold) {
         case check::ThresholdOrigin::literal: return "written in the spec; no guarantee";
         case check::ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
         case check::ThresholdOrigin::conformal:
-            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}", threshold.alpha,
-                               threshold.k, threshold.n, check::coverage_quantile(threshold.n, threshold.k, 0.05),
+            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}",
+                               threshold.alpha, threshold.k, threshold.n,
+                               check::coverage_quantile(threshold.n, threshold.k, 0.05),
                                check::coverage_quantile(threshold.n, threshold.k, 0.95));
         case check::ThresholdOrigin::class_conditional:
-            return fmt::format("class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
-                               threshold.alpha, threshold.k, threshold.n);
+            return fmt::format(
+                "class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
+                threshold.alpha, threshold.k, threshold.n);
         case check::ThresholdOrigin::adaptive:
-            return fmt::format("adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
-                               threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
-                               threshold.adaptation->hi, threshold.k, threshold.n);
+            return fmt::format(
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
+                threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
+                threshold.adaptation->hi, threshold.k, threshold.n);
     }
     return "";
 }
@@ -91,19 +99,22 @@ std::vector<Row> storage_rows(const plan::Plan& plan) {
     for (Index d : plan.distances) {
         const plan::NarrowSet* set = plan::narrow_set(plan, d);
         const check::Distance& distance = plan.model->distances[d];
-        const std::uint64_t wide = plan.model->targets[distance.target].values.size() * sizeof(float);
+        const std::uint64_t wide =
+            plan.model->targets[distance.target].values.size() * sizeof(float);
         if (set == nullptr)
             rows.push_back({distance.text, "float32", number(wide), "-", "-"});
         else
             rows.push_back({distance.text, set->storage == plan::Storage::f16 ? "float16" : "int8",
-                            number(plan::bytes_of(*set)), set->lossless ? "0" : fmt::format("{:.3g}", set->moved),
+                            number(plan::bytes_of(*set)),
+                            set->lossless ? "0" : fmt::format("{:.3g}", set->moved),
                             set->lossless ? "-" : fmt::format("float32, {}", wide)});
     }
     return rows;
 }
 
 bool is_calibrated(const plan::Plan& plan, bool but_adaptive) {
-    if (std::any_of(plan.monitors.begin(), plan.monitors.end(), [](const plan::Monitor& m) { return m.shifted; }))
+    if (std::any_of(plan.monitors.begin(), plan.monitors.end(),
+                    [](const plan::Monitor& m) { return m.shifted; }))
         return true;
     return std::any_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
         const check::ThresholdOrigin origin = plan.model->predicates[p].threshold.origin;
@@ -117,48 +128,60 @@ std::vector<check::Claim> claims_of(const plan::Plan& plan, const plan::Monitor&
 }
 
 bool sets_zero_aside(const plan::Plan& plan) {
-    return std::any_of(plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& monitor) {
-        const std::vector<check::Claim> claims = claims_of(plan, monitor);
-        return std::any_of(claims.begin(), claims.end(), [](const check::Claim& claim) { return claim.zero_aside; });
-    });
+    return std::any_of(
+        plan.monitors.begin(), plan.monitors.end(), [&](const plan::Monitor& monitor) {
+            const std::vector<check::Claim> claims = claims_of(plan, monitor);
+            return std::any_of(claims.begin(), claims.end(),
+                               [](const check::Claim& claim) { return claim.zero_aside; });
+        });
 }
 
-/// What the thresholds guarantee, a row a monitor, and a row a conjunct where nothing is said of the whole.
+/// What the thresholds guarantee, a row a monitor, and a row a conjunct where nothing is said of
+/// the whole.
 std::vector<Row> guarantee_rows(const plan::Plan& plan) {
     std::vector<Row> rows{{"monitor", "guarantee"}};
     for (const plan::Monitor& monitor : plan.monitors)
         for (const check::Claim& claim : claims_of(plan, monitor)) {
             const bool whole = claim.part.empty();
             if (monitor.shifted) {
-                const check::Threshold& shift = plan.model->monitors[monitor.index].calibration->threshold;
-                rows.push_back({monitor.name, fmt::format("{}; rho less {}, score {} of {}, coverage {:.3f} to {:.3f}",
-                                                          check::text(claim), shift.value, shift.k, shift.n,
-                                                          check::coverage_quantile(shift.n, shift.k, 0.05),
-                                                          check::coverage_quantile(shift.n, shift.k, 0.95))});
+                const check::Threshold& shift =
+                    plan.model->monitors[monitor.index].calibration->threshold;
+                rows.push_back(
+                    {monitor.name,
+                     fmt::format("{}; rho less {}, score {} of {}, coverage {:.3f} to {:.3f}",
+                                 check::text(claim), shift.value, shift.k, shift.n,
+                                 check::coverage_quantile(shift.n, shift.k, 0.05),
+                                 check::coverage_quantile(shift.n, shift.k, 0.95))});
                 continue;
             }
             rows.push_back({whole ? monitor.name : "",
-                            (whole ? "" : "of its part " + shortened(claim.part) + ": ") + check::text(claim)});
+                            (whole ? "" : "of its part " + shortened(claim.part) + ": ") +
+                                check::text(claim)});
         }
     return rows;
 }
 
 /// What is guaranteed of adaptive thresholds: a rate, whatever the world does.
-void print_miss_rates(Printer& out, const std::string& prefix, const std::string& margin, const plan::Plan& plan) {
-    std::vector<Row> rows{{"adaptive", "of the first T labelled positive frames it misses at most"}};
+void print_miss_rates(Printer& out, const std::string& prefix, const std::string& margin,
+                      const plan::Plan& plan) {
+    std::vector<Row> rows{
+        {"adaptive", "of the first T labelled positive frames it misses at most"}};
     for (Index p : plan.predicates) {
         const check::Predicate& predicate = plan.model->predicates[p];
-        if (predicate.threshold.adaptation) rows.push_back({predicate.name, check::miss_bound(predicate)});
+        if (predicate.threshold.adaptation)
+            rows.push_back({predicate.name, check::miss_bound(predicate)});
     }
     if (rows.size() == 1) return;
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     print_table(out, prefix, rows, 2);
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     out.line(margin +
-             "A miss: beyond the threshold that holds when its label comes. H: of those misses, how many came when the "
+             "A miss: beyond the threshold that holds when its label comes. H: of those misses, "
+             "how many came when the "
              "threshold");
     out.line(margin +
-             "was held back at the end of its range. Before the first label the threshold is the conformal one.");
+             "was held back at the end of its range. Before the first label the threshold is the "
+             "conformal one.");
 }
 
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
@@ -173,10 +196,12 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     if (zero_aside) out.line(margin + std::string(check::kZeroAside));
     if (!of_episodes) return;
     out.line(margin +
-             "Probabilities are over the demonstrations and the new episode together, exchangeable, per episode as "
+             "Probabilities are over the demonstrations and the new episode together, "
+             "exchangeable, per episode as "
              "recorded. coverage: of");
     out.line(margin +
-             "a new episode, given these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - k), more where "
+             "a new episode, given these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - "
+             "k), more where "
              "scores tie. Where a");
     out.line(margin + "sample is missing, what is said of successes does not hold.");
 }
@@ -193,13 +218,15 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
 }
 
 /// The sets that the monitor has to be given, and what they take.
-void print_stored(Printer& out, const std::string& prefix, const plan::Plan& plan, const std::string& file) {
+void print_stored(Printer& out, const std::string& prefix, const plan::Plan& plan,
+                  const std::string& file) {
     if (plan.stored.empty()) return;
     std::vector<Row> rows{{"in " + file, "rows", "elements", "bytes"}};
     for (const plan::StoredSet& set : plan.stored) {
         const check::Target& target = plan.model->targets[set.target];
-        rows.push_back({target.origin + (set.as_given ? "" : ", scaled to length 1"), number(target.rows),
-                        number(target.dimension), number(target.rows * set.row_bytes)});
+        rows.push_back({target.origin + (set.as_given ? "" : ", scaled to length 1"),
+                        number(target.rows), number(target.dimension),
+                        number(target.rows * set.row_bytes)});
     }
     rows.push_back({"all together", "", "", number(plan::stored_bytes(plan))});
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
@@ -214,23 +241,28 @@ void print_summary(Printer& out, const Context& context) {
     print_stored(out, "//   ", context.plan, context.targets_file);
     out.line("//");
     out.line(
-        "// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and "
+        "// state B: of a monitor alone, what it shares with others counted in each. operations: "
+        "min, max and "
         "comparisons of");
     out.line(
-        "// robustness keys in the worst step. distance elements: target elements that a step compares with its "
+        "// robustness keys in the worst step. distance elements: target elements that a step "
+        "compares with its "
         "input.");
-    if (context.stores_targets()) out.line("// Besides state B, a monitor holds a pointer to its targets.");
+    if (context.stores_targets())
+        out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }
 
 std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
     Printer out;
     out.line("spec {}", plan.model->name);
     print_tables(out, "  ", plan);
-    print_stored(out, "  ", plan, options.targets_file.empty() ? "the file of targets" : options.targets_file);
+    print_stored(out, "  ", plan,
+                 options.targets_file.empty() ? "the file of targets" : options.targets_file);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for positions that are evaluated anew", plan.cost.stack_bytes);
+        out.line("stack of a step: {} bytes, for positions that are evaluated anew",
+                 plan.cost.stack_bytes);
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {
@@ -241,21 +273,24 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
         if (reading.kind == plan::Reading::Kind::disjunction) as = "max of parts";
         if (reading.kind == plan::Reading::Kind::response) as = "response";
         if (reading.kind == plan::Reading::Kind::pending)
-            as = fmt::format("{}, anew at {} positions", reading.pending.is_fold ? "fold" : "state machine",
+            as = fmt::format("{}, anew at {} positions",
+                             reading.pending.is_fold ? "fold" : "state machine",
                              reading.pending.horizon + 1);
         if (reading.kind == plan::Reading::Kind::machine)
-            as = fmt::format("state machine, {} states, {} transitions{}", reading.machine.states.size(),
+            as = fmt::format("state machine, {} states, {} transitions{}",
+                             reading.machine.states.size(),
                              reading.machine.automaton.transitions.size(),
                              plan::unrolled(reading.machine) ? "" : ", as a table");
-        rows.push_back({shortened(graph.text(reading.node)), as, number(cost.state_bytes), number(cost.code_bytes),
-                        number(cost.operations)});
+        rows.push_back({shortened(graph.text(reading.node)), as, number(cost.state_bytes),
+                        number(cost.code_bytes), number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {
         const plan::Cost cost = plan::cost_of(stream, plan.values);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
         const std::string text = stream_text(graph, stream);
-        rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream", number(cost.state_bytes),
-                        number(cost.code_bytes), number(cost.operations)});
+        rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream",
+                        number(cost.state_bytes), number(cost.code_bytes),
+                        number(cost.operations)});
     }
     if (rows.size() > 1) print_table(out, "  ", rows, 2);
     return out.take();

@@ -10,7 +10,8 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
-/// splitmix64 (Steele, Lea, Flood 2014): the same on every machine, unlike the distributions of the standard library.
+/// splitmix64 (Steele, Lea, Flood 2014): the same on every machine, unlike the distributions of the
+/// standard library.
 class Random {
 public:
     explicit Random(std::uint64_t seed) : state_(seed) {}
@@ -38,7 +39,8 @@ Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {
         for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)];
 }
 
-Figure Bootstrap::figure(const std::function<std::optional<double>(const Weights&)>& statistic) const {
+Figure Bootstrap::figure(
+    const std::function<std::optional<double>(const Weights&)>& statistic) const {
     Figure result{statistic(whole_), {}};
     if (!result.value || whole_.size() < 2) return result;
     std::vector<std::optional<double>> values;

@@ -1,7 +1,8 @@
 // Intervals by resampling episodes: frames of one episode are not independent, episodes are.
-// Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 % and 97.5 % quantiles over
-// kResamples draws with replacement (Efron's percentile interval). Keeps true: the draws come from a fixed seed, so
-// that the same data give the same interval, on every machine and with any number of threads.
+// Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 %
+// and 97.5 % quantiles over kResamples draws with replacement (Efron's percentile interval). Keeps
+// true: the draws come from a fixed seed, so that the same data give the same interval, on every
+// machine and with any number of threads.
 #pragma once
 
 #include <cstdint>

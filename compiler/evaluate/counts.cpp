@@ -34,8 +34,9 @@ void Counts::add(const Counts& other, std::uint64_t times) {
 
 Rates rates(const Counts& c) {
     const std::uint64_t hits = c.true_positives;
-    return {share(2 * hits, hits + c.false_positives + c.positives()), share(hits, hits + c.false_positives),
-            share(hits, c.positives()), share(hits + c.true_negatives, c.total())};
+    return {share(2 * hits, hits + c.false_positives + c.positives()),
+            share(hits, hits + c.false_positives), share(hits, c.positives()),
+            share(hits + c.true_negatives, c.total())};
 }
 
 Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total) {

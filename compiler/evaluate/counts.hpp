@@ -1,7 +1,7 @@
 // How often claims agree with the truth.
-// Takes: pairs of what was said and what was true. Gives: precision, recall, F1 and agreement, and those of the two
-// monitors that do not look. Keeps true: what could not be said (a missing sample) is a miss and never agrees; a share
-// of nothing is no number.
+// Takes: pairs of what was said and what was true. Gives: precision, recall, F1 and agreement, and
+// those of the two monitors that do not look. Keeps true: what could not be said (a missing sample)
+// is a miss and never agrees; a share of nothing is no number.
 #pragma once
 
 #include <cstdint>
@@ -34,7 +34,8 @@ struct Counts {
 };
 
 struct Rates {
-    std::optional<double> f1;         ///< 2 TP / (2 TP + FP + misses): not defined where nothing is true or said
+    std::optional<double>
+        f1;  ///< 2 TP / (2 TP + FP + misses): not defined where nothing is true or said
     std::optional<double> precision;  ///< TP / (TP + FP)
     std::optional<double> recall;     ///< TP / positives
     std::optional<double> agreement;  ///< (TP + TN) / total

@@ -1,4 +1,5 @@
-// The evaluation for spreadsheets: `kind,name,level,figure,value,low,high`, a figure a row; empty where there is none.
+// The evaluation for spreadsheets: `kind,name,level,figure,value,low,high`, a figure a row; empty
+// where there is none.
 #include <fmt/format.h>
 
 #include "evaluate/evaluate.hpp"
@@ -11,9 +12,10 @@ class Rows {
 public:
     void row(const std::string& what, const std::string& figure, const std::optional<double>& value,
              const std::optional<Interval>& interval = {}) {
-        text_ += fmt::format("{},{},{},{},{}\n", what, figure, value ? fmt::format("{}", *value) : "",
-                             interval ? fmt::format("{}", interval->low) : "",
-                             interval ? fmt::format("{}", interval->high) : "");
+        text_ +=
+            fmt::format("{},{},{},{},{}\n", what, figure, value ? fmt::format("{}", *value) : "",
+                        interval ? fmt::format("{}", interval->low) : "",
+                        interval ? fmt::format("{}", interval->high) : "");
     }
     void row(const std::string& what, const std::string& figure, const Figure& value) {
         row(what, figure, value.value, value.interval);

@@ -16,37 +16,43 @@ namespace {
 
 constexpr std::size_t kMostNotes = 8;
 
-/// A threshold looks better on the episodes that it was taken from, and what it promises is about others.
-bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request, const thresholds::File& file,
-                 diag::Sink& sink) {
+/// A threshold looks better on the episodes that it was taken from, and what it promises is about
+/// others.
+bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request,
+                 const thresholds::File& file, diag::Sink& sink) {
     const std::vector<std::string> calibrated_on = thresholds::all_episodes(file);
     const std::set<std::string> known(calibrated_on.begin(), calibrated_on.end());
     std::vector<std::string> seen;
     for (std::size_t i = 0; i < episodes.size(); ++i)
         if (known.contains(episodes[i].hash)) seen.push_back(request.episodes[i]);
     if (seen.empty()) return true;
-    auto& error = sink.report(
-        data::in_file({diag::Code::episode_calibrated_on,
-                       fmt::format("{} of the {} episodes {} among those that the thresholds in {} were calibrated on",
-                                   seen.size(), episodes.size(), seen.size() == 1 ? "is" : "are", file.path)},
-                      seen.front()));
-    for (std::size_t i = 1; i < std::min(seen.size(), kMostNotes); ++i) error.note(seen[i] + " is, too");
+    auto& error = sink.report(data::in_file(
+        {diag::Code::episode_calibrated_on,
+         fmt::format(
+             "{} of the {} episodes {} among those that the thresholds in {} were calibrated on",
+             seen.size(), episodes.size(), seen.size() == 1 ? "is" : "are", file.path)},
+        seen.front()));
+    for (std::size_t i = 1; i < std::min(seen.size(), kMostNotes); ++i)
+        error.note(seen[i] + " is, too");
     if (seen.size() > kMostNotes) error.note(fmt::format("and {} more", seen.size() - kMostNotes));
     error.note("keep the episodes for evaluation apart from those for calibration");
     return false;
 }
 
 /// At distance 0 a frame is easier to tell than any that is not a target.
-void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& episodes, const Request& request,
-                   diag::Sink& sink) {
-    const auto first =
-        std::find_if(episodes.begin(), episodes.end(), [](const EpisodeResult& episode) { return episode.leak; });
+void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& episodes,
+                   const Request& request, diag::Sink& sink) {
+    const auto first = std::find_if(episodes.begin(), episodes.end(),
+                                    [](const EpisodeResult& episode) { return episode.leak; });
     if (first == episodes.end()) return;
-    const auto leaked = std::count_if(first, episodes.end(), [](const EpisodeResult& episode) { return episode.leak; });
-    auto& warning = sink.report(data::in_file({diag::Code::target_in_evaluation, calibrate::text(model, *first->leak)},
-                                              request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
-    warning.note(fmt::format("{} of the {} episodes {} such a frame: the figures are better than on others", leaked,
-                             episodes.size(), leaked == 1 ? "has" : "have"));
+    const auto leaked = std::count_if(first, episodes.end(),
+                                      [](const EpisodeResult& episode) { return episode.leak; });
+    auto& warning = sink.report(
+        data::in_file({diag::Code::target_in_evaluation, calibrate::text(model, *first->leak)},
+                      request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
+    warning.note(
+        fmt::format("{} of the {} episodes {} such a frame: the figures are better than on others",
+                    leaked, episodes.size(), leaked == 1 ? "has" : "have"));
     warning.note("targets have to come from other recordings");
 }
 
@@ -71,12 +77,17 @@ Score score(const Bootstrap& bootstrap, const Get& get) {
         result.interval = percentile_interval(values);
         return result;
     };
-    Score result{{}, figure(&Rates::f1), figure(&Rates::precision), figure(&Rates::recall), figure(&Rates::agreement)};
+    Score result{{},
+                 figure(&Rates::f1),
+                 figure(&Rates::precision),
+                 figure(&Rates::recall),
+                 figure(&Rates::agreement)};
     for (const Counts& counts : each) result.counts.add(counts);
     return result;
 }
 
-Detection detection(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t monitor) {
+Detection detection(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes,
+                    std::size_t monitor) {
     Detection result;
     std::vector<std::int64_t> delays;
     for (const EpisodeResult& episode : episodes) {
@@ -106,7 +117,8 @@ Detection detection(const Bootstrap& bootstrap, const std::vector<EpisodeResult>
     return result;
 }
 
-PredicateScore predicate_score(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t i) {
+PredicateScore predicate_score(const Bootstrap& bootstrap,
+                               const std::vector<EpisodeResult>& episodes, std::size_t i) {
     PredicateScore result;
     result.frames = score(bootstrap, [&](std::size_t e) { return episodes[e].predicates[i]; });
     std::vector<Scored> frames;
@@ -118,7 +130,8 @@ PredicateScore predicate_score(const Bootstrap& bootstrap, const std::vector<Epi
         result.unmeasured += episodes[e].unmeasured[i];
         result.arrays += episodes[e].from_array[i] ? 1 : 0;
     }
-    // What conformal calibration promises: P(no positive frame of an episode is missed) >= 1 - alpha.
+    // What conformal calibration promises: P(no positive frame of an episode is missed) >= 1 -
+    // alpha.
     result.coverage = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
         std::uint64_t with_positives = 0;
         std::uint64_t covered = 0;
@@ -136,19 +149,22 @@ PredicateScore predicate_score(const Bootstrap& bootstrap, const std::vector<Epi
     return result;
 }
 
-MonitorScore monitor_score(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes, std::size_t m,
-                           const MonitorSubject& subject) {
+MonitorScore monitor_score(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes,
+                           std::size_t m, const MonitorSubject& subject) {
     MonitorScore result;
     result.steps = score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].steps; });
-    result.episodes = score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].episode; });
+    result.episodes =
+        score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].episode; });
     result.detection = detection(bootstrap, episodes, m);
     if (!subject.stages.empty())
-        result.ordering =
-            score(bootstrap, [&](std::size_t e) { return episodes[e].monitors[m].ordering.value_or(Counts{}); });
+        result.ordering = score(bootstrap, [&](std::size_t e) {
+            return episodes[e].monitors[m].ordering.value_or(Counts{});
+        });
     return result;
 }
 
-Evaluation summarise(const check::Model& model, const Subject& subject, const std::vector<EpisodeResult>& episodes) {
+Evaluation summarise(const check::Model& model, const Subject& subject,
+                     const std::vector<EpisodeResult>& episodes) {
     Evaluation result;
     result.episodes = episodes.size();
     result.step_seconds = model.step_seconds;
@@ -167,8 +183,9 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
     }
     for (std::size_t m = 0; m < subject.monitors.size(); ++m) {
         const MonitorSubject& monitor = subject.monitors[m];
-        result.monitors.push_back(monitor.lacking.empty() ? monitor_score(bootstrap, episodes, m, monitor)
-                                                          : MonitorScore{});
+        result.monitors.push_back(monitor.lacking.empty()
+                                      ? monitor_score(bootstrap, episodes, m, monitor)
+                                      : MonitorScore{});
         result.monitors.back().name = model.monitors[monitor.monitor].name;
         for (const Index p : monitor.lacking) {
             result.monitors.back().lacking.push_back(model.predicates[p].shown());
@@ -179,19 +196,23 @@ Evaluation summarise(const check::Model& model, const Subject& subject, const st
 
 }  // namespace
 
-std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink) {
+std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request,
+                                                diag::Sink& sink) {
     auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
     if (labelled) return std::move(*labelled);
     sink.report(data::in_file(labelled.failure(), request.episodes[0]));
     return std::nullopt;
 }
 
-std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-                                   const Request& request, const std::optional<thresholds::File>& seen,
-                                   diag::Sink& sink) {
+std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth,
+                                   const Subject& subject, const Request& request,
+                                   const std::optional<thresholds::File>& seen, diag::Sink& sink) {
     const calibrate::Leaks leaks(*plan.model, subject.labelled);
-    const auto judge = [&] { return std::make_unique<Judge>(plan, truth, subject, leaks, request.names); };
-    const auto episodes = calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
+    const auto judge = [&] {
+        return std::make_unique<Judge>(plan, truth, subject, leaks, request.names);
+    };
+    const auto episodes =
+        calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
     if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
     warn_of_leaks(*plan.model, *episodes, request, sink);
     return summarise(*plan.model, subject, *episodes);

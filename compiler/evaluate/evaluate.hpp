@@ -1,8 +1,8 @@
 // `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
-// Takes: the plans of the spec and of its ground truth, and the episodes. Gives: counts and rates per predicate and
-// monitor, each with its interval and beside the claims that do not look. Keeps true: the result is the same whatever
-// the number of threads; one episode a thread is open at a time; episodes that thresholds were calibrated on are
-// refused.
+// Takes: the plans of the spec and of its ground truth, and the episodes. Gives: counts and rates
+// per predicate and monitor, each with its interval and beside the claims that do not look. Keeps
+// true: the result is the same whatever the number of threads; one episode a thread is open at a
+// time; episodes that thresholds were calibrated on are refused.
 #pragma once
 
 #include <functional>
@@ -41,8 +41,8 @@ struct PredicateScore {
     std::string name;
     bool adaptive = false;  ///< with the threshold that it starts with: nothing gives labels here
     Score frames;
-    Figure auroc;                  ///< of the distance, whatever the threshold
-    Figure coverage;               ///< of the episodes with a positive frame, those of which none is missed
+    Figure auroc;     ///< of the distance, whatever the threshold
+    Figure coverage;  ///< of the episodes with a positive frame, those of which none is missed
     std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown: misses
     std::uint64_t arrays = 0;      ///< episodes whose labels come from an array of theirs
 };
@@ -62,7 +62,8 @@ struct MonitorScore {
     Score steps;
     Score episodes;
     Detection detection;
-    std::optional<Score> ordering;  ///< sequential formulas: episodes in which every stage was truly visited
+    std::optional<Score>
+        ordering;  ///< sequential formulas: episodes in which every stage was truly visited
 };
 
 struct Evaluation {
@@ -75,15 +76,16 @@ struct Evaluation {
     std::vector<MonitorScore> monitors;
 };
 
-/// The predicates that have a truth in the spec or an array in the first episode; nothing where that cannot be read, as
-/// the sink then says.
-std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request, diag::Sink& sink);
+/// The predicates that have a truth in the spec or an array in the first episode; nothing where
+/// that cannot be read, as the sink then says.
+std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request,
+                                                diag::Sink& sink);
 
-/// `seen`: the thresholds that the plan has, where they were calibrated; the episodes in it are refused. Nothing where
-/// the sink now says why.
-std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-                                   const Request& request, const std::optional<thresholds::File>& seen,
-                                   diag::Sink& sink);
+/// `seen`: the thresholds that the plan has, where they were calibrated; the episodes in it are
+/// refused. Nothing where the sink now says why.
+std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth,
+                                   const Subject& subject, const Request& request,
+                                   const std::optional<thresholds::File>& seen, diag::Sink& sink);
 
 /// For people: an aligned table. For spreadsheets: a figure a row. For programs: JSON.
 std::string table(const Evaluation& evaluation);

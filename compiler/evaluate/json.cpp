@@ -14,22 +14,27 @@ public:
     explicit Object(std::size_t indent) : indent_(indent) {}
 
     Object& raw(const std::string& key, const std::string& value) {
-        text_ +=
-            fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2, source::json_string(key), value);
+        text_ += fmt::format("{}\n{:{}}{}: {}", text_.empty() ? "" : ",", "", indent_ + 2,
+                             source::json_string(key), value);
         return *this;
     }
     Object& number(const std::string& key, const std::optional<double>& value) {
         return raw(key, value ? fmt::format("{}", *value) : "null");
     }
-    Object& count(const std::string& key, std::uint64_t value) { return raw(key, std::to_string(value)); }
+    Object& count(const std::string& key, std::uint64_t value) {
+        return raw(key, std::to_string(value));
+    }
     Object& figure(const std::string& key, const Figure& figure) {
         number(key, figure.value);
         if (figure.interval)
-            raw(key + "_interval", fmt::format("[{}, {}]", figure.interval->low, figure.interval->high));
+            raw(key + "_interval",
+                fmt::format("[{}, {}]", figure.interval->low, figure.interval->high));
         return *this;
     }
     std::size_t inner() const { return indent_ + 2; }
-    std::string text() const { return text_.empty() ? "{}" : fmt::format("{{{}\n{:{}}}}", text_, "", indent_); }
+    std::string text() const {
+        return text_.empty() ? "{}" : fmt::format("{{{}\n{:{}}}}", text_, "", indent_);
+    }
 
 private:
     std::size_t indent_;
@@ -48,17 +53,21 @@ std::string blind(bool claim, const Counts& counts, std::size_t indent) {
 
 Object& add_score(Object& object, const Score& score) {
     const Counts& c = score.counts;
-    object.figure("f1", score.f1).figure("precision", score.precision).figure("recall", score.recall);
+    object.figure("f1", score.f1)
+        .figure("precision", score.precision)
+        .figure("recall", score.recall);
     object.figure("agreement", score.agreement);
     const auto total = static_cast<double>(c.total());
-    object.number("positive_rate",
-                  c.total() == 0 ? std::optional<double>{} : static_cast<double>(c.positives()) / total);
+    object.number("positive_rate", c.total() == 0 ? std::optional<double>{}
+                                                  : static_cast<double>(c.positives()) / total);
     object.count("positives", c.positives()).count("negatives", c.negatives());
     object.count("true_positives", c.true_positives).count("false_positives", c.false_positives);
     object.count("false_negatives", c.false_negatives).count("true_negatives", c.true_negatives);
-    object.count("unsaid_positives", c.unsaid_positives).count("unsaid_negatives", c.unsaid_negatives);
+    object.count("unsaid_positives", c.unsaid_positives)
+        .count("unsaid_negatives", c.unsaid_negatives);
     object.count("unlabelled", c.unlabelled);
-    object.raw("always_true", blind(true, c, object.inner())).raw("always_false", blind(false, c, object.inner()));
+    object.raw("always_true", blind(true, c, object.inner()))
+        .raw("always_false", blind(false, c, object.inner()));
     return object;
 }
 
@@ -69,7 +78,8 @@ std::string predicate(const PredicateScore& p, std::size_t indent) {
     return object.text();
 }
 
-std::string detection(const Detection& d, const std::optional<double>& step_seconds, std::size_t indent) {
+std::string detection(const Detection& d, const std::optional<double>& step_seconds,
+                      std::size_t indent) {
     Object object(indent);
     object.count("turns", d.turns).count("missed", d.missed).count("early", d.early);
     object.figure("mean_steps", d.mean).number("median_steps", d.median);
@@ -77,19 +87,23 @@ std::string detection(const Detection& d, const std::optional<double>& step_seco
     return object.text();
 }
 
-std::string monitor(const MonitorScore& m, const std::optional<double>& step_seconds, std::size_t indent) {
+std::string monitor(const MonitorScore& m, const std::optional<double>& step_seconds,
+                    std::size_t indent) {
     Object object(indent);
     if (!m.lacking.empty()) {
         std::string names;
-        for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + source::json_string(name);
+        for (const std::string& name : m.lacking)
+            names += (names.empty() ? "" : ", ") + source::json_string(name);
         return object.raw("evaluable", "false").raw("without_truth", "[" + names + "]").text();
     }
     object.raw("evaluable", "true");
-    object.figure("step_agreement", m.steps.agreement).figure("episode_agreement", m.episodes.agreement);
+    object.figure("step_agreement", m.steps.agreement)
+        .figure("episode_agreement", m.episodes.agreement);
     if (m.ordering) object.figure("ordering_agreement", m.ordering->agreement);
     Object steps(object.inner());
     Object episodes(object.inner());
-    object.raw("steps", add_score(steps, m.steps).text()).raw("episodes", add_score(episodes, m.episodes).text());
+    object.raw("steps", add_score(steps, m.steps).text())
+        .raw("episodes", add_score(episodes, m.episodes).text());
     if (m.ordering) {
         Object ordering(object.inner());
         object.raw("ordering", add_score(ordering, *m.ordering).text());
@@ -105,11 +119,13 @@ std::string json(const Evaluation& evaluation) {
     top.count("repeated_episodes", evaluation.repeated).count("leaked_episodes", evaluation.leaked);
     top.count("resamples", kResamples);
     Object predicates(top.inner());
-    for (const PredicateScore& p : evaluation.predicates) predicates.raw(p.name, predicate(p, predicates.inner()));
+    for (const PredicateScore& p : evaluation.predicates)
+        predicates.raw(p.name, predicate(p, predicates.inner()));
     Object monitors(top.inner());
     const std::optional<double> seconds =
         evaluation.step_seconds > 0 ? std::optional(evaluation.step_seconds) : std::nullopt;
-    for (const MonitorScore& m : evaluation.monitors) monitors.raw(m.name, monitor(m, seconds, monitors.inner()));
+    for (const MonitorScore& m : evaluation.monitors)
+        monitors.raw(m.name, monitor(m, seconds, monitors.inner()));
     return top.raw("predicates", predicates.text()).raw("monitors", monitors.text()).text() + "\n";
 }
 

@@ -32,7 +32,8 @@ std::optional<Turn> turn_of(const std::vector<Label>& said, const std::vector<La
     const auto known = [](Label label) { return label != Label::unknown; };
     const auto first = std::find_if(is.begin(), is.end(), known);
     if (first == is.end()) return std::nullopt;
-    const auto turned = std::find_if(first, is.end(), [&](Label label) { return known(label) && label != *first; });
+    const auto turned =
+        std::find_if(first, is.end(), [&](Label label) { return known(label) && label != *first; });
     if (turned == is.end()) return std::nullopt;
     const auto onset = turned - is.begin();
     auto at = onset;
@@ -53,7 +54,8 @@ std::vector<std::size_t> places(const plan::Plan& plan) {
 }
 
 bool measures(const plan::Plan& plan, Index predicate) {
-    return std::find(plan.predicates.begin(), plan.predicates.end(), predicate) != plan.predicates.end();
+    return std::find(plan.predicates.begin(), plan.predicates.end(), predicate) !=
+           plan.predicates.end();
 }
 
 std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predicates) {
@@ -63,8 +65,8 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 }  // namespace
 
-Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const calibrate::Leaks& leaks,
-             const data::NamesInFile& names)
+Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+             const calibrate::Leaks& leaks, const data::NamesInFile& names)
     : plan_(plan),
       truth_plan_(truth),
       subject_(subject),
@@ -85,9 +87,10 @@ Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& sub
 }
 
 diag::Result<EpisodeResult> Judge::score(const std::string& path) {
-    auto recording = calibrate::Recording::open(wanted_, [&](const std::vector<data::Channel>& channels) {
-        return data::open_trace(path, data::renamed(channels, names_));
-    });
+    auto recording =
+        calibrate::Recording::open(wanted_, [&](const std::vector<data::Channel>& channels) {
+            return data::open_trace(path, data::renamed(channels, names_));
+        });
     if (!recording) return recording.failure();
     EpisodeResult result;
     result.predicates.resize(subject_.labelled.size());
@@ -108,7 +111,8 @@ diag::Result<EpisodeResult> Judge::score(const std::string& path) {
     finish();
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
         result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
-    for (const Index predicate : subject_.labelled) result.from_array.push_back(recording->from_array(predicate));
+    for (const Index predicate : subject_.labelled)
+        result.from_array.push_back(recording->from_array(predicate));
     result.hash = recording->hash();
     result.frames = recording->frames();
     return result;
@@ -118,7 +122,8 @@ void Judge::step(const calibrate::Recording& recording, EpisodeResult& result) {
     const std::vector<plan::Sample>& samples = recording.samples();
     std::copy(samples.begin(), samples.end(), truth_samples_.begin());
     for (const Index predicate : subject_.labelled)
-        truth_samples_[subject_.truth.inputs[predicate]] = calibrate::sample_of(recording.label(predicate));
+        truth_samples_[subject_.truth.inputs[predicate]] =
+            calibrate::sample_of(recording.label(predicate));
     const std::vector<Verdict>& said = monitor_.step(samples);
     const std::vector<Verdict>& is = truth_.step(truth_samples_);
     measure_.step(samples);
@@ -160,7 +165,8 @@ void Judge::note(const std::vector<Verdict>& said, const std::vector<Verdict>& i
 /// The last positions of the sliding monitors, each as often as it has some left.
 void Judge::finish() {
     std::uint32_t longest = 0;
-    for (const plan::Monitor& monitor : plan_.monitors) longest = std::max(longest, monitor.horizon);
+    for (const plan::Monitor& monitor : plan_.monitors)
+        longest = std::max(longest, monitor.horizon);
     for (std::uint32_t call = 0; call < longest; ++call) {
         std::vector<Verdict> said = monitor_.finish();
         for (std::size_t m = 0; m < said.size(); ++m)
@@ -172,7 +178,8 @@ void Judge::finish() {
 MonitorEpisode Judge::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
     MonitorEpisode result;
     if (tracks.said.empty()) return result;
-    for (std::size_t i = 0; i < tracks.said.size(); ++i) result.steps.add(tracks.said[i], tracks.is[i]);
+    for (std::size_t i = 0; i < tracks.said.size(); ++i)
+        result.steps.add(tracks.said[i], tracks.is[i]);
     const bool sliding = model().monitors[subject.monitor].sliding;
     const auto verdict = [&](const Track& track) {
         return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
@@ -180,7 +187,8 @@ MonitorEpisode Judge::conclude(const MonitorSubject& subject, const Tracks& trac
     result.episode.add(verdict(tracks.said), verdict(tracks.is));
     result.turn = turn_of(tracks.said, tracks.is);
     const auto visited = [&](Index stage) { return visited_[stage]; };
-    if (!subject.stages.empty() && std::all_of(subject.stages.begin(), subject.stages.end(), visited))
+    if (!subject.stages.empty() &&
+        std::all_of(subject.stages.begin(), subject.stages.end(), visited))
         result.ordering = result.episode;
     return result;
 }

@@ -1,7 +1,8 @@
 // One episode: what the monitors said of it, beside what was true.
-// Takes: the plans of the spec and of its ground truth, and an episode. Gives: counts per predicate and monitor, the
-// distances for ranking, and when verdicts turned. Keeps true: both monitors are run by the same evaluator, and what
-// the spec's is given is what the generated class would be given.
+// Takes: the plans of the spec and of its ground truth, and an episode. Gives: counts per predicate
+// and monitor, the distances for ranking, and when verdicts turned. Keeps true: both monitors are
+// run by the same evaluator, and what the spec's is given is what the generated class would be
+// given.
 #pragma once
 
 #include <cstdint>
@@ -19,18 +20,21 @@
 
 namespace etlc::evaluate {
 
-/// The first step at which the true verdict is another than at the first step, and when the monitor said so.
+/// The first step at which the true verdict is another than at the first step, and when the monitor
+/// said so.
 struct Turn {
-    /// Steps from the true turn to the monitor's: negative where it said so before and has held on to it since.
-    /// Nothing: it never did.
+    /// Steps from the true turn to the monitor's: negative where it said so before and has held on
+    /// to it since. Nothing: it never did.
     std::optional<std::int64_t> delay;
 };
 
 struct MonitorEpisode {
     Counts steps;    ///< of a sliding monitor: positions, all of them
-    Counts episode;  ///< one: the last verdict; of a sliding monitor, whether every position satisfies it
+    Counts episode;  ///< one: the last verdict; of a sliding monitor, whether every position
+                     ///< satisfies it
     std::optional<Turn> turn;
-    std::optional<Counts> ordering;  ///< one: of sequential formulas, where every stage was truly visited
+    std::optional<Counts>
+        ordering;  ///< one: of sequential formulas, where every stage was truly visited
 };
 
 struct EpisodeResult {
@@ -39,16 +43,19 @@ struct EpisodeResult {
     std::uint64_t frames = 0;
     std::vector<Counts> predicates;           ///< per labelled predicate
     std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
-    std::vector<std::uint64_t> unmeasured;    ///< per labelled predicate: labelled frames whose distance is unknown
-    std::vector<bool> from_array;             ///< per labelled predicate
-    std::vector<MonitorEpisode> monitors;     ///< per monitor; of those that cannot be evaluated all is zero
+    std::vector<std::uint64_t>
+        unmeasured;  ///< per labelled predicate: labelled frames whose distance is unknown
+    std::vector<bool> from_array;  ///< per labelled predicate
+    std::vector<MonitorEpisode>
+        monitors;  ///< per monitor; of those that cannot be evaluated all is zero
 };
 
-/// Judges one episode after the other. Not shared between threads; all that it is given outlives it.
+/// Judges one episode after the other. Not shared between threads; all that it is given outlives
+/// it.
 class Judge {
 public:
-    Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject, const calibrate::Leaks& leaks,
-          const data::NamesInFile& names);
+    Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+          const calibrate::Leaks& leaks, const data::NamesInFile& names);
     Judge(const Judge&) = delete;
     Judge& operator=(const Judge&) = delete;
 
@@ -76,9 +83,10 @@ private:
     const Subject& subject_;
     const calibrate::Leaks& leaks_;
     const data::NamesInFile& names_;
-    std::vector<std::size_t> said_at_;   ///< per monitor, its index in plan_
-    std::vector<std::size_t> truth_at_;  ///< per monitor of the ground truth, its index in truth_plan_
-    plan::Plan measuring_;               ///< of labelled predicates that no monitor uses
+    std::vector<std::size_t> said_at_;  ///< per monitor, its index in plan_
+    std::vector<std::size_t>
+        truth_at_;          ///< per monitor of the ground truth, its index in truth_plan_
+    plan::Plan measuring_;  ///< of labelled predicates that no monitor uses
     plan::Evaluator monitor_;
     plan::Evaluator truth_;
     plan::Evaluator measure_;

@@ -5,7 +5,8 @@
 namespace etlc::evaluate {
 
 Ranking::Ranking(std::vector<Scored> frames) : frames_(std::move(frames)) {
-    std::sort(frames_.begin(), frames_.end(), [](const Scored& a, const Scored& b) { return a.score < b.score; });
+    std::sort(frames_.begin(), frames_.end(),
+              [](const Scored& a, const Scored& b) { return a.score < b.score; });
 }
 
 std::optional<double> Ranking::auroc(const std::vector<std::uint32_t>& weights) const {
@@ -18,7 +19,8 @@ std::optional<double> Ranking::auroc(const std::vector<std::uint32_t>& weights) 
         std::uint64_t tied_negatives = 0;
         for (; i < frames_.size() && frames_[i].score == score; ++i)
             (frames_[i].positive ? tied_positives : tied_negatives) += weights[frames_[i].episode];
-        twice_pairs += static_cast<double>(tied_positives) * static_cast<double>(2 * negatives + tied_negatives);
+        twice_pairs += static_cast<double>(tied_positives) *
+                       static_cast<double>(2 * negatives + tied_negatives);
         positives += tied_positives;
         negatives += tied_negatives;
     }

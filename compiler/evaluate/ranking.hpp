@@ -1,6 +1,7 @@
 // How well a distance tells frames apart, whatever the threshold: the area under the ROC curve.
-// Takes: a score and a label per frame, and the episode it is of. Gives: the probability that a positive frame scores
-// higher than a negative one, ties counted half (Mann-Whitney). Keeps true: exact, no binning.
+// Takes: a score and a label per frame, and the episode it is of. Gives: the probability that a
+// positive frame scores higher than a negative one, ties counted half (Mann-Whitney). Keeps true:
+// exact, no binning.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,8 @@ class Ranking {
 public:
     explicit Ranking(std::vector<Scored> frames);
 
-    /// With each episode's frames counted `weights[episode]` times; nothing where one of the classes is empty.
+    /// With each episode's frames counted `weights[episode]` times; nothing where one of the
+    /// classes is empty.
     std::optional<double> auroc(const std::vector<std::uint32_t>& weights) const;
 
 private:

@@ -13,7 +13,8 @@ namespace {
 using check::Formula;
 using Kind = check::Formula::Kind;
 
-void collect_predicates(const check::Model& model, Index formula, std::vector<bool>& seen, std::set<Index>& found) {
+void collect_predicates(const check::Model& model, Index formula, std::vector<bool>& seen,
+                        std::set<Index>& found) {
     if (seen[formula]) return;
     seen[formula] = true;
     const Formula& f = model.formulas[formula];
@@ -21,11 +22,13 @@ void collect_predicates(const check::Model& model, Index formula, std::vector<bo
     for (const Index operand : f.operands) collect_predicates(model, operand, seen, found);
 }
 
-/// Without a truth: what it says of scalars, by a threshold that somebody wrote down, is what it means.
+/// Without a truth: what it says of scalars, by a threshold that somebody wrote down, is what it
+/// means.
 bool is_its_own_truth(const check::Model& model, Index predicate) {
     const check::Predicate& p = model.predicates[predicate];
     return p.threshold.origin == check::ThresholdOrigin::literal &&
-           std::none_of(p.inputs.begin(), p.inputs.end(), [&](Index i) { return model.inputs[i].is_embedding(); });
+           std::none_of(p.inputs.begin(), p.inputs.end(),
+                        [&](Index i) { return model.inputs[i].is_embedding(); });
 }
 
 bool is_eventually(const Formula& f) {
@@ -47,9 +50,10 @@ std::vector<Index> conjuncts_of(const check::Model& model, Index formula) {
     return conjuncts;
 }
 
-/// The conjuncts of each of a, b, ... of F (a && F (b && ...)); fewer than two where the formula has another shape.
-std::vector<std::vector<Index>> stages_of(const check::Model& model, const std::vector<check::Reach>& reaches,
-                                          Index formula) {
+/// The conjuncts of each of a, b, ... of F (a && F (b && ...)); fewer than two where the formula
+/// has another shape.
+std::vector<std::vector<Index>> stages_of(const check::Model& model,
+                                          const std::vector<check::Reach>& reaches, Index formula) {
     std::vector<std::vector<Index>> stages;
     while (is_eventually(model.formulas[formula])) {
         std::vector<Index> conjuncts = conjuncts_of(model, model.formulas[formula].operands[0]);
@@ -74,8 +78,10 @@ Index append(check::Model& model, Kind kind, std::vector<Index> operands) {
 }
 
 /// A monitor of the ground truth that says whether the stage has been visited.
-Index append_visit(check::Model& model, const std::string& name, const std::vector<Index>& conjuncts) {
-    const Index stage = conjuncts.size() == 1 ? conjuncts[0] : append(model, Kind::conjunction, conjuncts);
+Index append_visit(check::Model& model, const std::string& name,
+                   const std::vector<Index>& conjuncts) {
+    const Index stage =
+        conjuncts.size() == 1 ? conjuncts[0] : append(model, Kind::conjunction, conjuncts);
     check::Monitor monitor;
     monitor.name = name;
     monitor.formula = append(model, Kind::eventually, {stage});
@@ -106,7 +112,8 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         truth.monitors.push_back(true_monitors[m]);
         const auto stages = stages_of(model, reaches, monitor.formula);
         if (monitor.sliding || stages.size() < 2) continue;
-        for (const auto& conjuncts : stages) subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));
+        for (const auto& conjuncts : stages)
+            subject.stages.push_back(append_visit(truth, monitor.name, conjuncts));
     }
     return result;
 }

@@ -1,4 +1,5 @@
-// The evaluation for people: aligned columns; every figure with its interval, and beside it what blind claims get.
+// The evaluation for people: aligned columns; every figure with its interval, and beside it what
+// blind claims get.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -14,8 +15,9 @@ using Row = std::vector<std::string>;
 
 /// Code points, which is what a terminal aligns by.
 std::size_t width(const std::string& text) {
-    return static_cast<std::size_t>(std::count_if(
-        text.begin(), text.end(), [](char c) { return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U; }));
+    return static_cast<std::size_t>(std::count_if(text.begin(), text.end(), [](char c) {
+        return (static_cast<unsigned char>(c) & 0xc0U) != 0x80U;
+    }));
 }
 
 /// The first column flush left, the others right, two blanks apart.
@@ -58,22 +60,27 @@ Row heading(const std::string& what, const std::string& positive) {
 
 void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
     const Counts& c = score.counts;
-    rows.push_back({name, figure(score.f1), figure(score.precision), figure(score.recall), figure(score.agreement),
-                    fmt::format("{} of {} ({})", c.positives(), c.total(), percent(c.positives(), c.total()))});
+    rows.push_back({name, figure(score.f1), figure(score.precision), figure(score.recall),
+                    figure(score.agreement),
+                    fmt::format("{} of {} ({})", c.positives(), c.total(),
+                                percent(c.positives(), c.total()))});
     for (const bool claim : {true, false}) {
         const Rates blind = rates_of_constant(claim, c.positives(), c.total());
-        rows.push_back({claim ? "  always true" : "  always false", number(blind.f1), number(blind.precision),
-                        number(blind.recall), number(blind.agreement)});
+        rows.push_back({claim ? "  always true" : "  always false", number(blind.f1),
+                        number(blind.precision), number(blind.recall), number(blind.agreement)});
     }
 }
 
 /// What was left out or could not be said, a line each.
-void add_remarks(std::string& text, const std::string& name, const Counts& counts, const char* what) {
+void add_remarks(std::string& text, const std::string& name, const Counts& counts,
+                 const char* what) {
     if (counts.unlabelled > 0)
-        text += fmt::format("{}: {} {} left out, whose truth is unknown\n", name, counts.unlabelled, what);
+        text += fmt::format("{}: {} {} left out, whose truth is unknown\n", name, counts.unlabelled,
+                            what);
     if (const std::uint64_t unsaid = counts.unsaid_positives + counts.unsaid_negatives; unsaid > 0)
         text +=
-            fmt::format("{}: {} {} that a missing sample leaves open, counted as not agreeing\n", name, unsaid, what);
+            fmt::format("{}: {} {} that a missing sample leaves open, counted as not agreeing\n",
+                        name, unsaid, what);
 }
 
 std::string predicates_part(const Evaluation& evaluation) {
@@ -88,15 +95,18 @@ std::string predicates_part(const Evaluation& evaluation) {
         rows[first].push_back(figure(p.coverage));
         add_remarks(remarks, p.name, p.frames.counts, "frames");
         if (p.adaptive)
-            remarks += fmt::format("{}: with the threshold that it starts with; labels would move it\n", p.name);
+            remarks += fmt::format(
+                "{}: with the threshold that it starts with; labels would move it\n", p.name);
         if (p.arrays > 0)
-            remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n", p.name, p.arrays);
+            remarks += fmt::format("{}: in {} of the episodes labelled by an array of theirs\n",
+                                   p.name, p.arrays);
     }
     return "\n" + aligned(rows) + remarks;
 }
 
-std::string monitors_part(const Evaluation& evaluation, const std::string& what, const std::string& positive,
-                          Score MonitorScore::*level, const char* unit) {
+std::string monitors_part(const Evaluation& evaluation, const std::string& what,
+                          const std::string& positive, Score MonitorScore::*level,
+                          const char* unit) {
     std::vector<Row> rows = {heading(what, positive)};
     std::string remarks;
     for (const MonitorScore& m : evaluation.monitors) {
@@ -108,11 +118,12 @@ std::string monitors_part(const Evaluation& evaluation, const std::string& what,
 }
 
 std::string ordering_part(const Evaluation& evaluation) {
-    std::vector<Row> rows = {
-        {"ordering, where all stages were visited", "agreement", "episodes in order", "in another order"}};
+    std::vector<Row> rows = {{"ordering, where all stages were visited", "agreement",
+                              "episodes in order", "in another order"}};
     for (const MonitorScore& m : evaluation.monitors)
         if (m.ordering)
-            rows.push_back({m.name, figure(m.ordering->agreement), std::to_string(m.ordering->counts.positives()),
+            rows.push_back({m.name, figure(m.ordering->agreement),
+                            std::to_string(m.ordering->counts.positives()),
                             std::to_string(m.ordering->counts.negatives())});
     return rows.size() == 1 ? "" : "\n" + aligned(rows);
 }
@@ -122,17 +133,21 @@ std::string steps(const std::optional<double>& value) {
 }
 
 std::string detection_part(const Evaluation& evaluation) {
-    std::vector<Row> rows = {{"time to detection, steps", "true turns", "missed", "early", "median", "mean"}};
+    std::vector<Row> rows = {
+        {"time to detection, steps", "true turns", "missed", "early", "median", "mean"}};
     if (evaluation.step_seconds > 0) rows[0].emplace_back("mean, s");
     for (const MonitorScore& m : evaluation.monitors) {
         if (!m.lacking.empty()) continue;
         const Detection& d = m.detection;
         std::string mean = steps(d.mean.value);
-        if (d.mean.interval) mean += fmt::format(" [{:+.1f}, {:+.1f}]", d.mean.interval->low, d.mean.interval->high);
-        rows.push_back({m.name, std::to_string(d.turns), std::to_string(d.missed), std::to_string(d.early),
-                        steps(d.median), mean});
+        if (d.mean.interval)
+            mean += fmt::format(" [{:+.1f}, {:+.1f}]", d.mean.interval->low, d.mean.interval->high);
+        rows.push_back({m.name, std::to_string(d.turns), std::to_string(d.missed),
+                        std::to_string(d.early), steps(d.median), mean});
         if (evaluation.step_seconds > 0)
-            rows.back().push_back(d.mean.value ? fmt::format("{:+.3f}", *d.mean.value * evaluation.step_seconds) : "-");
+            rows.back().push_back(
+                d.mean.value ? fmt::format("{:+.3f}", *d.mean.value * evaluation.step_seconds)
+                             : "-");
     }
     return rows.size() == 1 ? "" : "\n" + aligned(rows);
 }
@@ -151,18 +166,23 @@ std::string left_out(const Evaluation& evaluation) {
 }  // namespace
 
 std::string table(const Evaluation& evaluation) {
-    std::string text =
-        fmt::format("{} episode{}, {} frames; in brackets 95 % intervals from {} resamples of the episodes\n",
-                    evaluation.episodes, evaluation.episodes == 1 ? "" : "s", evaluation.frames, kResamples);
+    std::string text = fmt::format(
+        "{} episode{}, {} frames; in brackets 95 % intervals from {} resamples of the episodes\n",
+        evaluation.episodes, evaluation.episodes == 1 ? "" : "s", evaluation.frames, kResamples);
     if (evaluation.repeated > 0)
-        text += fmt::format("{} of the episodes repeat another's content: the intervals are too narrow\n",
-                            evaluation.repeated);
+        text += fmt::format(
+            "{} of the episodes repeat another's content: the intervals are too narrow\n",
+            evaluation.repeated);
     if (evaluation.leaked > 0)
-        text += fmt::format("{} of the episodes {} a target among the frames: the figures are better than on others\n",
-                            evaluation.leaked, evaluation.leaked == 1 ? "has" : "have");
+        text += fmt::format(
+            "{} of the episodes {} a target among the frames: the figures are better than on "
+            "others\n",
+            evaluation.leaked, evaluation.leaked == 1 ? "has" : "have");
     if (!evaluation.predicates.empty()) text += predicates_part(evaluation);
-    text += monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "steps");
-    text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes, "episodes");
+    text +=
+        monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "steps");
+    text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes,
+                          "episodes");
     return text + ordering_part(evaluation) + detection_part(evaluation) + left_out(evaluation);
 }
 

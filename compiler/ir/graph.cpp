@@ -9,7 +9,8 @@ namespace etlc::ir {
 namespace {
 
 constexpr std::array kOperators = {
-#define OPERATOR(name, symbol, arity, tense, dual) OpInfo{#name, symbol, Arity::arity, Tense::tense, Op::dual},
+#define OPERATOR(name, symbol, arity, tense, dual) \
+    OpInfo{#name, symbol, Arity::arity, Tense::tense, Op::dual},
 #include "ir/operators.def"
 #undef OPERATOR
 };
@@ -19,7 +20,8 @@ std::size_t mix(std::size_t seed, std::size_t value) {
 }
 
 std::size_t hash(const Node& node) {
-    std::size_t result = mix(static_cast<std::size_t>(node.op), static_cast<std::size_t>(node.negated));
+    std::size_t result =
+        mix(static_cast<std::size_t>(node.op), static_cast<std::size_t>(node.negated));
     result = mix(mix(result, node.index), mix(node.interval.low, node.interval.high));
     for (NodeId operand : node.operands) result = mix(result, operand);
     return result;
@@ -41,8 +43,8 @@ bool takes_max(Op op) {
 }
 
 bool Node::same_as(const Node& other) const {
-    return op == other.op && negated == other.negated && index == other.index && interval == other.interval &&
-           operands == other.operands;
+    return op == other.op && negated == other.negated && index == other.index &&
+           interval == other.interval && operands == other.operands;
 }
 
 Graph::Graph(const check::Model& model) : model_(&model) {
@@ -80,12 +82,14 @@ std::vector<NodeId> Graph::absorb(Op op, std::vector<NodeId> operands) const {
     const Op dual = info(op).dual;
     const auto absorbed = [&](NodeId candidate) {
         const Node& node = nodes_[candidate];
-        return node.op == dual && std::any_of(node.operands.begin(), node.operands.end(), [&](NodeId part) {
+        return node.op == dual &&
+               std::any_of(node.operands.begin(), node.operands.end(), [&](NodeId part) {
                    return std::binary_search(operands.begin(), operands.end(), part);
                });
     };
     std::vector<NodeId> kept;
-    std::copy_if(operands.begin(), operands.end(), std::back_inserter(kept), [&](NodeId id) { return !absorbed(id); });
+    std::copy_if(operands.begin(), operands.end(), std::back_inserter(kept),
+                 [&](NodeId id) { return !absorbed(id); });
     return kept;
 }
 
@@ -109,21 +113,22 @@ NodeId Graph::combine(Op op, std::vector<NodeId> operands, Span span) {
     return intern({.op = op, .operands = std::move(flat), .span = span});
 }
 
-// The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it is false at the last
-// step.
+// The laws below hold position by position on every prefix. Note that F[1,b] true is not true: it
+// is false at the last step.
 NodeId Graph::unary(Op op, Interval interval, NodeId operand, Span span) {
     const bool max = takes_max(op);
     const NodeId empty = constant(!max);
     if (operand == empty) return empty;
     if (interval.low == 0 && (interval.high == 0 || operand == constant(max))) return operand;
     const Node& inner = nodes_[operand];
-    if (inner.op ==
-        op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached through one in between
+    if (inner.op == op) {  // F[a,b] F[c,d] f is F[a+c,b+d] f: every position of the sum is reached
+                           // through one in between
         const std::uint32_t low = add_steps(interval.low, inner.interval.low);
         const std::uint32_t high = add_steps(interval.high, inner.interval.high);
-        // An unbounded O at the present never falls below what it has seen, which its bounds use: it stays around
-        // O[1,b].
-        const bool remembers = interval == Interval{} && inner.interval.low > 0 && info(op).tense == Tense::past;
+        // An unbounded O at the present never falls below what it has seen, which its bounds use:
+        // it stays around O[1,b].
+        const bool remembers =
+            interval == Interval{} && inner.interval.low > 0 && info(op).tense == Tense::past;
         const bool exact = !remembers && low <= check::kMaxBound &&
                            (high != kUnbounded || !interval.bounded() || !inner.interval.bounded());
         if (exact) return unary(op, {low, high}, inner.operands.front(), span);
@@ -136,11 +141,14 @@ NodeId Graph::binary(Op op, Interval interval, NodeId left, NodeId right, Span s
     const bool future = info(op).tense == Tense::future;
     const NodeId empty = constant(!max);
     if (right == empty) return empty;
-    if (interval.low == 0 && (interval.high == 0 || right == constant(max) || left == empty)) return right;
-    if (interval.low == 0 && left == right) return right;  // f U f: f now is all it takes, and it takes f now
-    if (left == empty) return empty;                       // the left side breaks before the window opens
+    if (interval.low == 0 && (interval.high == 0 || right == constant(max) || left == empty))
+        return right;
+    if (interval.low == 0 && left == right)
+        return right;                 // f U f: f now is all it takes, and it takes f now
+    if (left == empty) return empty;  // the left side breaks before the window opens
     if (left == constant(max)) {
-        const Op one = future ? (max ? Op::eventually : Op::always) : (max ? Op::once : Op::historically);
+        const Op one =
+            future ? (max ? Op::eventually : Op::always) : (max ? Op::once : Op::historically);
         return unary(one, interval, right, span);
     }
     return intern({.op = op, .interval = interval, .operands = {left, right}, .span = span});

@@ -1,8 +1,8 @@
 // The formulas of all monitors as one hash-consed graph in negation normal form.
-// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of formulas is equality of
-// ids. Keeps true: operands have smaller ids; only predicates and flags are negated; && and || are flat, sorted and
-// without repeats; the laws applied on the way (see simplify.cpp) hold for min and max on every prefix, so p && !p
-// stays.
+// Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of
+// formulas is equality of ids. Keeps true: operands have smaller ids; only predicates and flags are
+// negated; && and || are flat, sorted and without repeats; the laws applied on the way (see
+// simplify.cpp) hold for min and max on every prefix, so p && !p stays.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,8 @@ struct OpInfo {
     Op dual;
 };
 const OpInfo& info(Op op);
-/// F, U, O and S: a max over positions, false over no position. The other temporal operators are mins, true over none.
+/// F, U, O and S: a max over positions, false over no position. The other temporal operators are
+/// mins, true over none.
 bool takes_max(Op op);
 
 /// Steps from the present: [low, high], or [low, inf).
@@ -76,16 +77,17 @@ public:
 
     NodeId constant(bool value) const { return value ? 0 : 1; }
     NodeId literal(Op op, Index index, bool negated, Span span);
-    /// && or || of any number of operands: flattened, sorted, constants and absorbed operands dropped.
+    /// && or || of any number of operands: flattened, sorted, constants and absorbed operands
+    /// dropped.
     NodeId combine(Op op, std::vector<NodeId> operands, Span span);
     NodeId unary(Op op, Interval interval, NodeId operand, Span span);
     NodeId binary(Op op, Interval interval, NodeId left, NodeId right, Span span);
-    /// A temporal operator as it stands, no law applied: F[0,0] f is f, but what is owed at the next position also says
-    /// what it is worth where the prefix ends before.
+    /// A temporal operator as it stands, no law applied: F[0,0] f is f, but what is owed at the
+    /// next position also says what it is worth where the prefix ends before.
     NodeId keep(Op op, Interval interval, std::vector<NodeId> operands, Span span);
 
-    /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a long one are left out
-    /// (check/elision.hpp).
+    /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a
+    /// long one are left out (check/elision.hpp).
     std::string text(NodeId id) const;
 
 private:

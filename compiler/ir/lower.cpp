@@ -37,7 +37,8 @@ private:
             case Kind::negation: return lower(f.operands[0], !negated);
             case Kind::conjunction: return combine(f, Op::conjunction, negated);
             case Kind::disjunction: return combine(f, Op::disjunction, negated);
-            case Kind::implication: return implication(f.operands[0], f.operands[1], negated, f.span);
+            case Kind::implication:
+                return implication(f.operands[0], f.operands[1], negated, f.span);
             case Kind::equivalence: {
                 const NodeId there = implication(f.operands[0], f.operands[1], negated, f.span);
                 const NodeId back = implication(f.operands[1], f.operands[0], negated, f.span);
@@ -65,11 +66,13 @@ private:
 
     /// f -> g is !f || g.
     NodeId implication(Index left, Index right, bool negated, Span span) {
-        return graph_.combine(turn(Op::disjunction, negated), {lower(left, !negated), lower(right, negated)}, span);
+        return graph_.combine(turn(Op::disjunction, negated),
+                              {lower(left, !negated), lower(right, negated)}, span);
     }
 
     NodeId unary(const check::Formula& f, Op op, bool negated) {
-        return graph_.unary(turn(op, negated), {f.low, f.high}, lower(f.operands[0], negated), f.span);
+        return graph_.unary(turn(op, negated), {f.low, f.high}, lower(f.operands[0], negated),
+                            f.span);
     }
 
     NodeId binary(const check::Formula& f, Op op, bool negated) {

@@ -1,6 +1,6 @@
 // Typed formulas to the graph: negation normal form, derived operators written out.
-// Takes: the model. Gives: the graph and the node of every monitor. Keeps true: each formula is lowered at most once a
-// polarity, so shared `let`s stay shared.
+// Takes: the model. Gives: the graph and the node of every monitor. Keeps true: each formula is
+// lowered at most once a polarity, so shared `let`s stay shared.
 #pragma once
 
 #include <vector>

@@ -42,7 +42,8 @@ bool is_bare(const Node& node) {
 check::Phrase phrase(const Graph& graph, NodeId id) {
     const Node& node = graph[id];
     check::Phrase result;
-    for (NodeId operand : node.operands) result.operands.push_back({operand, !is_bare(graph[operand])});
+    for (NodeId operand : node.operands)
+        result.operands.push_back({operand, !is_bare(graph[operand])});
     switch (info(node.op).arity) {
         case Arity::atom: result.opening = atom_text(graph, node); break;
         case Arity::unary: result.opening = operator_text(node) + ' '; break;

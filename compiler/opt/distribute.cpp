@@ -1,5 +1,6 @@
-// F (f || g) is F f || F g, G (f && g) is G f && G g, and so for the right side of U and R, over any interval:
-// max distributes over max. Monitors of the parts add their states where the whole would multiply them.
+// F (f || g) is F f || F g, G (f && g) is G f && G g, and so for the right side of U and R, over
+// any interval: max distributes over max. Monitors of the parts add their states where the whole
+// would multiply them.
 #include "opt/opt.hpp"
 
 namespace etlc::opt {
@@ -18,7 +19,8 @@ ir::Op distributes_over(ir::Op op) {
 }
 
 ir::NodeId apply(ir::Graph& graph, const ir::Node& node, ir::NodeId right) {
-    if (ir::info(node.op).arity == ir::Arity::unary) return graph.unary(node.op, node.interval, right, node.span);
+    if (ir::info(node.op).arity == ir::Arity::unary)
+        return graph.unary(node.op, node.interval, right, node.span);
     return graph.binary(node.op, node.interval, node.operands[0], right, node.span);
 }
 
@@ -40,7 +42,8 @@ ir::NodeId distribute(ir::Graph& graph, ir::NodeId id) {
             present.push_back(operand);
     }
     if (!present.empty())
-        parts.push_back(apply(graph, node, graph.combine(connective, std::move(present), inner.span)));
+        parts.push_back(
+            apply(graph, node, graph.combine(connective, std::move(present), inner.span)));
     return graph.combine(connective, std::move(parts), node.span);
 }
 

@@ -27,8 +27,10 @@ private:
         for (ir::NodeId operand : node.operands) operands.push_back(rewrite(operand));
         switch (ir::info(node.op).arity) {
             case ir::Arity::atom: return id;
-            case ir::Arity::unary: return graph_.unary(node.op, node.interval, operands[0], node.span);
-            case ir::Arity::binary: return graph_.binary(node.op, node.interval, operands[0], operands[1], node.span);
+            case ir::Arity::unary:
+                return graph_.unary(node.op, node.interval, operands[0], node.span);
+            case ir::Arity::binary:
+                return graph_.binary(node.op, node.interval, operands[0], operands[1], node.span);
             case ir::Arity::many: return graph_.combine(node.op, std::move(operands), node.span);
         }
         return id;

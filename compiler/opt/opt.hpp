@@ -1,6 +1,6 @@
 // Rewriting the graph before it is planned.
-// Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the bounds of every monitor
-// on every prefix; the passes stand in one table, each is a file.
+// Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the
+// bounds of every monitor on every prefix; the passes stand in one table, each is a file.
 #pragma once
 
 #include <string_view>
@@ -10,19 +10,22 @@
 
 namespace etlc::opt {
 
-/// Rewrites one node whose operands are rewritten already; gives the node itself where the pass has nothing to say.
+/// Rewrites one node whose operands are rewritten already; gives the node itself where the pass has
+/// nothing to say.
 using Rule = ir::NodeId (*)(ir::Graph& graph, ir::NodeId node);
 
 struct Pass {
     std::string_view name;
     Rule rule;
-    /// Only formulas that prefix monitors evaluate at position 0, below && and ||: there an unbounded F or G ranges
-    /// over the whole trace, so that looking back from any position reaches no position that it would not have reached.
+    /// Only formulas that prefix monitors evaluate at position 0, below && and ||: there an
+    /// unbounded F or G ranges over the whole trace, so that looking back from any position reaches
+    /// no position that it would not have reached.
     bool at_start_only = false;
 };
 const std::vector<Pass>& passes();
 
-/// Applies every pass to every prefix monitor. Sliding monitors are planned as written: their delays are their meaning.
+/// Applies every pass to every prefix monitor. Sliding monitors are planned as written: their
+/// delays are their meaning.
 void optimise(ir::Program& program);
 
 ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);

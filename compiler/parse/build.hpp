@@ -1,7 +1,7 @@
 // ANTLR's parse tree to ast:: structs.
-// Takes: the contexts of one declaration. Gives: its struct. Throws SyntaxError where the grammar takes more than the
-// language: expressions in place of formulas and the other way round, chained comparisons, trees of more than
-// kMaxHeight.
+// Takes: the contexts of one declaration. Gives: its struct. Throws SyntaxError where the grammar
+// takes more than the language: expressions in place of formulas and the other way round, chained
+// comparisons, trees of more than kMaxHeight.
 #pragma once
 
 #include <string>
@@ -21,7 +21,8 @@ public:
     explicit Builder(const source::File& file) : file_(file) {}
 
     /// A `spec NAME;` gives its name.
-    std::variant<ast::Name, ast::Declaration> declaration(Grammar::DeclarationContext& context) const;
+    std::variant<ast::Name, ast::Declaration> declaration(
+        Grammar::DeclarationContext& context) const;
 
 private:
     /// A tree and the length of its longest path.
@@ -38,15 +39,18 @@ private:
     ast::Type type(Grammar::TypeContext& context) const;
     ast::Range range(Grammar::RangeContext& context) const;
     ast::Target target(Grammar::TargetDeclarationContext& context, source::Span span) const;
-    ast::Predicate predicate(Grammar::PredicateDeclarationContext& context, source::Span span) const;
+    ast::Predicate predicate(Grammar::PredicateDeclarationContext& context,
+                             source::Span span) const;
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
     ast::Load load(Grammar::LoadContext& context) const;
-    std::variant<ast::MatrixLiteral, ast::VectorLiteral> literal(Grammar::LiteralContext& context) const;
+    std::variant<ast::MatrixLiteral, ast::VectorLiteral> literal(
+        Grammar::LiteralContext& context) const;
     ast::Name name(const Grammar::NameContext& context) const;
     ast::Number number(const Token& token) const;
     ast::Number number(Grammar::NumberContext& context) const;
-    /// Of a rule that is a number with or without '-': the text of both, blanks between them left out.
+    /// Of a rule that is a number with or without '-': the text of both, blanks between them left
+    /// out.
     std::string signed_text(const ParserRuleContext& context) const;
 
     // expressions.cpp
@@ -75,19 +79,25 @@ private:
     Formula formula(Grammar::PrimaryContext& context) const;
     template <class Operand>
     Formula n_ary(const ParserRuleContext& context, ast::Formula::Kind kind) const;
-    Formula combined(ast::Formula::Kind kind, const Token& op, source::Span span, Formula left, Formula right) const;
-    Formula prefix(const Token& op, Grammar::PrefixedContext& operand, const ParserRuleContext& whole) const;
+    Formula combined(ast::Formula::Kind kind, const Token& op, source::Span span, Formula left,
+                     Formula right) const;
+    Formula prefix(const Token& op, Grammar::PrefixedContext& operand,
+                   const ParserRuleContext& whole) const;
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
-    /// The number that an expression consists of, with its sign; nothing where it is more than that.
+    /// The number that an expression consists of, with its sign; nothing where it is more than
+    /// that.
     std::optional<ast::Number> lone_number(Grammar::SumContext& context) const;
     ast::Interval interval(Grammar::IntervalContext& context) const;
     ast::Bound bound(Grammar::BoundContext& context) const;
     static ast::Comparison comparison(Grammar::ComparisonOperatorContext& context);
 
     std::string text(const Token& token) const { return text_of(token, file_); }
-    std::string text(const ParserRuleContext& context) const { return std::string(file_.text(span_of(context))); }
+    std::string text(const ParserRuleContext& context) const {
+        return std::string(file_.text(span_of(context)));
+    }
 
-    [[noreturn]] static void fail(diag::Code code, source::Span span, std::string message, std::string note = {});
+    [[noreturn]] static void fail(diag::Code code, source::Span span, std::string message,
+                                  std::string note = {});
     [[noreturn]] static void too_high(source::Span span);
 
     const source::File& file_;

@@ -22,7 +22,8 @@ void ByteStream::seek(std::size_t index) {
 
 std::string ByteStream::getText(const antlr4::misc::Interval& interval) {
     const auto begin = static_cast<std::size_t>(std::max<ssize_t>(interval.a, 0));
-    const auto end = std::min(static_cast<std::size_t>(std::max<ssize_t>(interval.b + 1, 0)), text_.size());
+    const auto end =
+        std::min(static_cast<std::size_t>(std::max<ssize_t>(interval.b + 1, 0)), text_.size());
     return begin < end ? std::string(text_.substr(begin, end - begin)) : std::string();
 }
 

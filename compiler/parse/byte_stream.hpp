@@ -1,7 +1,7 @@
 // A file's bytes as ANTLR's character stream.
-// Takes: a text that outlives it. Gives: one character a byte, so that ANTLR's indices are our offsets.
-// Keeps true: every byte above ASCII reads as DEL: outside strings and comments none of them can stand, inside any can,
-// and ANTLR caches its transitions for ASCII alone.
+// Takes: a text that outlives it. Gives: one character a byte, so that ANTLR's indices are our
+// offsets. Keeps true: every byte above ASCII reads as DEL: outside strings and comments none of
+// them can stand, inside any can, and ANTLR caches its transitions for ASCII alone.
 #pragma once
 
 #include <string_view>

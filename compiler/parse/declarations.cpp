@@ -15,22 +15,28 @@ source::Span span_of_declaration(const Grammar::DeclarationContext& context, sou
 /// What stands before the closing ';'.
 source::Span last_part(const Grammar::DeclarationContext& context) {
     auto* const part = context.children[context.children.size() - 2];
-    if (auto* const terminal = dynamic_cast<antlr4::tree::TerminalNode*>(part)) return span_of(*terminal->getSymbol());
+    if (auto* const terminal = dynamic_cast<antlr4::tree::TerminalNode*>(part))
+        return span_of(*terminal->getSymbol());
     return span_of(dynamic_cast<const ParserRuleContext&>(*part));
 }
 
 }  // namespace
 
-std::variant<ast::Name, ast::Declaration> Builder::declaration(Grammar::DeclarationContext& context) const {
+std::variant<ast::Name, ast::Declaration> Builder::declaration(
+    Grammar::DeclarationContext& context) const {
     const source::Span span = span_of_declaration(context, last_part(context));
-    if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context)) return name(*d->name());
+    if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context))
+        return name(*d->name());
     if (auto* const d = dynamic_cast<Grammar::RateDeclarationContext*>(&context))
         return ast::Rate{number(*d->NUMBER()->getSymbol()), false, "Hz", span};
     if (auto* const d = dynamic_cast<Grammar::PeriodDeclarationContext*>(&context))
         return ast::Rate{number(*d->NUMBER()->getSymbol()), true, text(*d->timeUnit()), span};
-    if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context)) return input(*d, span);
-    if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context)) return target(*d, span);
-    if (auto* const d = dynamic_cast<Grammar::PredicateDeclarationContext*>(&context)) return predicate(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context))
+        return input(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context))
+        return target(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::PredicateDeclarationContext*>(&context))
+        return predicate(*d, span);
     if (auto* const d = dynamic_cast<Grammar::TruthDeclarationContext*>(&context))
         return ast::Truth{name(*d->name()), formula(*d->formula()).root, span};
     if (auto* const d = dynamic_cast<Grammar::LetDeclarationContext*>(&context))
@@ -69,7 +75,9 @@ ast::Type Builder::type(Grammar::TypeContext& context) const {
 }
 
 ast::Range Builder::range(Grammar::RangeContext& context) const {
-    const auto limit = [this](const Grammar::LimitContext& l) { return ast::Number{signed_text(l), span_of(l)}; };
+    const auto limit = [this](const Grammar::LimitContext& l) {
+        return ast::Number{signed_text(l), span_of(l)};
+    };
     return {limit(*context.limit(0)), limit(*context.limit(1)), span_of(context)};
 }
 
@@ -86,25 +94,30 @@ ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::
     return result;
 }
 
-ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context, source::Span span) const {
+ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context,
+                                  source::Span span) const {
     ast::Predicate result;
     result.name = name(*context.name());
     result.expression = expression(*context.sum()).root;
     result.comparison = comparison(*context.comparisonOperator());
-    if (auto* const calibration = dynamic_cast<Grammar::CalibratedThresholdContext*>(context.threshold()))
+    if (auto* const calibration =
+            dynamic_cast<Grammar::CalibratedThresholdContext*>(context.threshold()))
         result.threshold = calibrated(*calibration->calibrated());
     else
-        result.threshold = number(*dynamic_cast<Grammar::NumberThresholdContext&>(*context.threshold()).number());
+        result.threshold =
+            number(*dynamic_cast<Grammar::NumberThresholdContext&>(*context.threshold()).number());
     result.span = span;
     return result;
 }
 
-ast::Monitor Builder::monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const {
+ast::Monitor Builder::monitor(Grammar::MonitorDeclarationContext& context,
+                              source::Span span) const {
     ast::Monitor result;
     result.name = name(*context.name());
     result.formula = formula(*context.formula()).root;
     result.sliding = context.SLIDING() != nullptr;
-    if (auto* const calibration = context.calibrated()) result.calibrated = calibrated(*calibration);
+    if (auto* const calibration = context.calibrated())
+        result.calibrated = calibrated(*calibration);
     result.span = span;
     return result;
 }
@@ -140,7 +153,8 @@ ast::Load Builder::load(Grammar::LoadContext& context) const {
     return result;
 }
 
-std::variant<ast::MatrixLiteral, ast::VectorLiteral> Builder::literal(Grammar::LiteralContext& context) const {
+std::variant<ast::MatrixLiteral, ast::VectorLiteral> Builder::literal(
+    Grammar::LiteralContext& context) const {
     const auto numbers = [this](const std::vector<Grammar::NumberContext*>& contexts) {
         std::vector<ast::Number> result;
         result.reserve(contexts.size());
@@ -151,7 +165,8 @@ std::variant<ast::MatrixLiteral, ast::VectorLiteral> Builder::literal(Grammar::L
         return ast::VectorLiteral{numbers(vector->number()), span_of(context)};
     ast::MatrixLiteral matrix;
     matrix.span = span_of(context);
-    for (Grammar::RowContext* const row : dynamic_cast<Grammar::MatrixLiteralContext&>(context).row())
+    for (Grammar::RowContext* const row :
+         dynamic_cast<Grammar::MatrixLiteralContext&>(context).row())
         matrix.rows.push_back(numbers(row->number()));
     return matrix;
 }

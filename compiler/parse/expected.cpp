@@ -26,7 +26,9 @@ struct Group {
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all{
-        {{EtlParser::NUMBER, EtlParser::CALIBRATED}, "a threshold (a number or calibrated(...))", false},
+        {{EtlParser::NUMBER, EtlParser::CALIBRATED},
+         "a threshold (a number or calibrated(...))",
+         false},
         {{EtlParser::NUMBER, EtlParser::INF}, "a number or inf", false},
         {{EtlParser::LESS_EQUAL, EtlParser::GREATER}, "a comparison (<=, <, >= or >)", false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
@@ -47,11 +49,13 @@ bool has(const Stuck& stuck, std::size_t type) {
 }
 
 bool has_all(const Stuck& stuck, const Types& types) {
-    return std::all_of(types.begin(), types.end(), [&stuck](std::size_t t) { return has(stuck, t); });
+    return std::all_of(types.begin(), types.end(),
+                       [&stuck](std::size_t t) { return has(stuck, t); });
 }
 
 bool is_one_of(const Token* token, std::initializer_list<std::size_t> types) {
-    return token != nullptr && std::find(types.begin(), types.end(), token->getType()) != types.end();
+    return token != nullptr &&
+           std::find(types.begin(), types.end(), token->getType()) != types.end();
 }
 
 bool expects_name(const Stuck& stuck) {
@@ -62,15 +66,16 @@ bool expects_operand(const Stuck& stuck) {
     return expects_name(stuck) && has(stuck, EtlParser::NUMBER) && has(stuck, EtlParser::LPAREN);
 }
 
-/// Formulas and expressions share rules; what stands before the place tells which of them was begun.
+/// Formulas and expressions share rules; what stands before the place tells which of them was
+/// begun.
 std::string operand_words(const Stuck& stuck) {
-    if (is_one_of(stuck.previous,
-                  {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL, EtlParser::GREATER}))
+    if (is_one_of(stuck.previous, {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL,
+                                   EtlParser::GREATER}))
         return "a number";
-    const bool in_call =
-        is_one_of(stuck.previous, {EtlParser::COMMA}) ||
-        (is_one_of(stuck.previous, {EtlParser::LPAREN}) &&
-         is_one_of(stuck.before_previous, {EtlParser::ABS, EtlParser::SQRT, EtlParser::MIN, EtlParser::MAX}));
+    const bool in_call = is_one_of(stuck.previous, {EtlParser::COMMA}) ||
+                         (is_one_of(stuck.previous, {EtlParser::LPAREN}) &&
+                          is_one_of(stuck.before_previous, {EtlParser::ABS, EtlParser::SQRT,
+                                                            EtlParser::MIN, EtlParser::MAX}));
     if (in_call || !has(stuck, EtlParser::NOT)) return "an expression";
     const bool bracket = is_one_of(stuck.previous, {EtlParser::LPAREN});
     if (bracket && stuck.declaration == EtlParser::PREDICATE) return "an expression";
@@ -81,21 +86,28 @@ std::string name_words(const Stuck& stuck) {
     switch (stuck.rule == EtlParser::RuleName ? stuck.parent_rule : stuck.rule) {
         case EtlParser::RuleDistance: return "the name of a target";
         case EtlParser::RulePoint:
-            return has(stuck, EtlParser::LBRACKET) ? "the name of an input, or a vector [x, y] of scalar inputs"
-                                                   : "the name of a scalar input";
-        case EtlParser::RuleWeights: return "load(\"FILE\"), a matrix, a diagonal [...] or the name of a target";
-        case EtlParser::RuleCalibrated: return "a method of calibration (f1, conformal or class_conditional)";
-        case EtlParser::RuleArgument: return has(stuck, EtlParser::NUMBER) ? "a number or a word" : "a word";
+            return has(stuck, EtlParser::LBRACKET)
+                       ? "the name of an input, or a vector [x, y] of scalar inputs"
+                       : "the name of a scalar input";
+        case EtlParser::RuleWeights:
+            return "load(\"FILE\"), a matrix, a diagonal [...] or the name of a target";
+        case EtlParser::RuleCalibrated:
+            return "a method of calibration (f1, conformal or class_conditional)";
+        case EtlParser::RuleArgument:
+            return has(stuck, EtlParser::NUMBER) ? "a number or a word" : "a word";
         default: return "a name";
     }
 }
 
-/// The operators that could follow an operand are tried by loops, so the parser does not expect them any more.
+/// The operators that could follow an operand are tried by loops, so the parser does not expect
+/// them any more.
 bool operators_could_follow(const Stuck& stuck) {
-    const bool in_formula = stuck.declaration == EtlParser::LET || stuck.declaration == EtlParser::TRUTH ||
-                            stuck.declaration == EtlParser::MONITOR || stuck.declaration == EtlParser::SLIDING;
+    const bool in_formula =
+        stuck.declaration == EtlParser::LET || stuck.declaration == EtlParser::TRUTH ||
+        stuck.declaration == EtlParser::MONITOR || stuck.declaration == EtlParser::SLIDING;
     if (stuck.rule == EtlParser::RulePrimary) return true;
-    return stuck.rule == EtlParser::RuleDeclaration && in_formula && has(stuck, EtlParser::SEMICOLON);
+    return stuck.rule == EtlParser::RuleDeclaration && in_formula &&
+           has(stuck, EtlParser::SEMICOLON);
 }
 
 std::string spelling(std::size_t type) {
@@ -124,7 +136,8 @@ bool another_item_could_follow(const Stuck& stuck) {
         case EtlParser::RulePoint:
         case EtlParser::RuleLiteral:
         case EtlParser::RuleRow:
-        case EtlParser::RuleLoad: return has(stuck, EtlParser::RPAREN) || has(stuck, EtlParser::RBRACKET);
+        case EtlParser::RuleLoad:
+            return has(stuck, EtlParser::RPAREN) || has(stuck, EtlParser::RBRACKET);
         default: return false;
     }
 }
@@ -143,15 +156,16 @@ std::vector<std::string> listed(const Stuck& stuck) {
     std::vector<std::string> words;
     Types covered{EtlParser::MINUS};  // begins a number
     for (const Group& group : groups()) {
-        const bool fresh =
-            std::none_of(group.types.begin(), group.types.end(), [&covered](auto t) { return contains(covered, t); });
+        const bool fresh = std::none_of(group.types.begin(), group.types.end(),
+                                        [&covered](auto t) { return contains(covered, t); });
         if (!fresh || !has_all(stuck, group.types)) continue;
         words.emplace_back(group.words);
         covered.insert(covered.end(), group.types.begin(), group.types.end());
     }
     for (std::size_t type = EtlParser::SPEC; type <= EtlParser::SEMICOLON; ++type) {
         const std::string text = spelling(type);
-        if (has(stuck, type) && !contains(covered, type) && !text.empty()) words.push_back(fmt::format("'{}'", text));
+        if (has(stuck, type) && !contains(covered, type) && !text.empty())
+            words.push_back(fmt::format("'{}'", text));
     }
     return words;
 }
@@ -160,7 +174,8 @@ std::vector<std::string> listed(const Stuck& stuck) {
 
 std::string expected_words(const Stuck& stuck) {
     if (stuck.looked_ahead)
-        return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers" : "an operator";
+        return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers"
+                                                    : "an operator";
     if (expects_operand(stuck)) return operand_words(stuck);
     if (expects_name(stuck)) return name_words(stuck);
     std::vector<std::string> words = listed(stuck);
@@ -184,8 +199,8 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
         if (!literal.empty()) words.push_back(std::move(literal));
     }
     if (operators_could_follow(stuck))
-        for (const char* word :
-             {"and", "or", "implies", "iff", "until", "weak_until", "release", "since", "calibrated"})
+        for (const char* word : {"and", "or", "implies", "iff", "until", "weak_until", "release",
+                                 "since", "calibrated"})
             words.emplace_back(word);
     if (stuck.rule == EtlParser::RuleDeclaration && stuck.declaration == EtlParser::INPUT)
         for (const char* word : {"in", "hold", "scale"}) words.emplace_back(word);
@@ -193,8 +208,9 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
 }
 
 const std::vector<std::string>& callable_words() {
-    static const std::vector<std::string> words{"l2",          "l2sq", "l1",   "linf", "cosine", "angular",
-                                                "mahalanobis", "abs",  "sqrt", "min",  "max",    "kth"};
+    static const std::vector<std::string> words{"l2",     "l2sq",    "l1",          "linf",
+                                                "cosine", "angular", "mahalanobis", "abs",
+                                                "sqrt",   "min",     "max",         "kth"};
     return words;
 }
 

@@ -1,6 +1,7 @@
 // What could have stood at a place, in words.
-// Takes: where the parser is stuck. Gives: "a formula", "':' or ','", "a type (f32, f16[D], ...)", and the words near
-// which a misspelling may lie. Keeps true: no word of the grammar's own names reaches a user.
+// Takes: where the parser is stuck. Gives: "a formula", "':' or ','", "a type (f32, f16[D], ...)",
+// and the words near which a misspelling may lie. Keeps true: no word of the grammar's own names
+// reaches a user.
 #pragma once
 
 #include <string>
@@ -12,7 +13,8 @@ namespace etlc::parse {
 
 std::string expected_words(const Stuck& stuck);
 
-/// The place wants one of a closed list of words (types, units, distances), so another word is an unknown keyword.
+/// The place wants one of a closed list of words (types, units, distances), so another word is an
+/// unknown keyword.
 bool expects_keyword(const Stuck& stuck);
 
 /// The words that could have stood there, for the nearest to a misspelt one.

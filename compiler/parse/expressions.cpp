@@ -63,10 +63,12 @@ template <class Operand>
 Builder::Expression Builder::chain(const ParserRuleContext& context) const {
     Expression left = expression(*dynamic_cast<Operand*>(context.children[0]));
     for (std::size_t i = 1; i + 1 < context.children.size(); i += 2) {
-        const Token& op = *dynamic_cast<antlr4::tree::TerminalNode*>(context.children[i])->getSymbol();
+        const Token& op =
+            *dynamic_cast<antlr4::tree::TerminalNode*>(context.children[i])->getSymbol();
         auto& operand = *dynamic_cast<Operand*>(context.children[i + 1]);
         Expression right = expression(operand);
-        ast::ExprPtr both = node(kind_of(op), source::join(span_of(*context.start), span_of(operand)));
+        ast::ExprPtr both =
+            node(kind_of(op), source::join(span_of(*context.start), span_of(operand)));
         both->arguments.push_back(std::move(left.root));
         both->arguments.push_back(std::move(right.root));
         left = {std::move(both), 1 + std::max(left.height, right.height)};
@@ -84,7 +86,8 @@ Builder::Expression Builder::expression(Grammar::ProductContext& context) const 
 }
 
 Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
-    if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context)) return expression(*plain->primary());
+    if (auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(&context))
+        return expression(*plain->primary());
     auto& negation = dynamic_cast<Grammar::NegationContext&>(context);
     Expression operand = expression(*negation.factor());
     ast::ExprPtr result = node(Kind::negate, span_of(context));
@@ -110,12 +113,14 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
         result->distance = distance(*measured->distance());
         return {std::move(result), 1};
     }
-    if (dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr) result->kind = Kind::number;
+    if (dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr)
+        result->kind = Kind::number;
     result->text = text(context);
     return {std::move(result), 1};
 }
 
-Builder::Expression Builder::call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
+Builder::Expression Builder::call(const Token& function,
+                                  const std::vector<Grammar::FormulaContext*>& arguments,
                                   const ParserRuleContext& whole) const {
     Expression result{node(kind_of(function), span_of(whole)), 1};
     for (Grammar::FormulaContext* const argument : arguments) {
@@ -130,7 +135,8 @@ Builder::Expression Builder::call(const Token& function, const std::vector<Gramm
 std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& context) const {
     auto result = std::make_unique<ast::Distance>();
     result->span = span_of(context);
-    if (auto* const aggregated = context.aggregation()) result->aggregation = aggregation(*aggregated);
+    if (auto* const aggregated = context.aggregation())
+        result->aggregation = aggregation(*aggregated);
     const Token& word = *context.metric()->start;
     result->metric = {text(word), span_of(word)};
     if (auto* const weighted = dynamic_cast<Grammar::WeightedMetricContext*>(context.metric()))
@@ -142,7 +148,8 @@ std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& conte
         result->point.push_back(name(*embedding->name()));
     } else {
         result->point_is_vector = true;
-        for (const Grammar::NameContext* const n : dynamic_cast<Grammar::VectorPointContext&>(point).name())
+        for (const Grammar::NameContext* const n :
+             dynamic_cast<Grammar::VectorPointContext&>(point).name())
             result->point.push_back(name(*n));
     }
     result->target = name(*context.name());
@@ -167,8 +174,10 @@ ast::Aggregation Builder::aggregation(Grammar::AggregationContext& context) cons
 }
 
 ast::Weights Builder::weights(Grammar::WeightsContext& context) const {
-    if (auto* const loaded = dynamic_cast<Grammar::LoadedWeightsContext*>(&context)) return load(*loaded->load());
-    if (auto* const named = dynamic_cast<Grammar::NamedWeightsContext*>(&context)) return name(*named->name());
+    if (auto* const loaded = dynamic_cast<Grammar::LoadedWeightsContext*>(&context))
+        return load(*loaded->load());
+    if (auto* const named = dynamic_cast<Grammar::NamedWeightsContext*>(&context))
+        return name(*named->name());
     auto value = literal(*dynamic_cast<Grammar::LiteralWeightsContext&>(context).literal());
     return std::visit([](auto&& v) -> ast::Weights { return std::move(v); }, std::move(value));
 }

@@ -65,7 +65,8 @@ Builder::Formula Builder::n_ary(const ParserRuleContext& context, Kind kind) con
     return result;
 }
 
-Builder::Formula Builder::combined(Kind kind, const Token& op, source::Span span, Formula left, Formula right) const {
+Builder::Formula Builder::combined(Kind kind, const Token& op, source::Span span, Formula left,
+                                   Formula right) const {
     Formula result{node(kind, span), 1 + std::max(left.height, right.height)};
     result.root->operator_span = span_of(op);
     result.root->operands.push_back(std::move(left.root));
@@ -79,7 +80,8 @@ Builder::Formula Builder::formula(Grammar::FormulaContext& context) const {
     for (std::size_t i = 1; i + 1 < context.children.size(); i += 2) {
         auto& operand = dynamic_cast<Grammar::ImplicationContext&>(*context.children[i + 1]);
         const source::Span span = source::join(span_of(*context.start), span_of(operand));
-        left = combined(Kind::equivalence, symbol(context.children[i]), span, std::move(left), formula(operand));
+        left = combined(Kind::equivalence, symbol(context.children[i]), span, std::move(left),
+                        formula(operand));
     }
     return left;
 }
@@ -87,8 +89,8 @@ Builder::Formula Builder::formula(Grammar::FormulaContext& context) const {
 Builder::Formula Builder::formula(Grammar::ImplicationContext& context) const {
     Formula left = formula(*context.disjunction());
     if (context.children.size() == 1) return left;
-    return combined(Kind::implication, symbol(context.children[1]), span_of(context), std::move(left),
-                    formula(*context.implication()));
+    return combined(Kind::implication, symbol(context.children[1]), span_of(context),
+                    std::move(left), formula(*context.implication()));
 }
 
 Builder::Formula Builder::formula(Grammar::DisjunctionContext& context) const {
@@ -119,7 +121,8 @@ Builder::Formula Builder::prefix(const Token& op, Grammar::PrefixedContext& oper
 }
 
 Builder::Formula Builder::formula(Grammar::PrefixedContext& context) const {
-    if (auto* const atom = dynamic_cast<Grammar::AtomContext*>(&context)) return formula(*atom->comparison());
+    if (auto* const atom = dynamic_cast<Grammar::AtomContext*>(&context))
+        return formula(*atom->comparison());
     if (auto* const plain = dynamic_cast<Grammar::PlainPrefixContext*>(&context))
         return prefix(*plain->op, *plain->prefixed(), context);
     auto& bounded = dynamic_cast<Grammar::IntervalPrefixContext&>(context);
@@ -136,14 +139,17 @@ Builder::Formula Builder::formula(Grammar::ComparisonContext& context) const {
          "an expression becomes a formula by comparing it with a number, as in 'x - y > 0'");
 }
 
-Builder::Formula Builder::compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const {
+Builder::Formula Builder::compared(Grammar::SumContext& left,
+                                   Grammar::ComparisonContext& context) const {
     auto& op = dynamic_cast<Grammar::ComparisonOperatorContext&>(*context.children[1]);
     if (context.children.size() > 3)
-        fail(diag::Code::comparison_form, span_of(dynamic_cast<ParserRuleContext&>(*context.children[3])),
+        fail(diag::Code::comparison_form,
+             span_of(dynamic_cast<ParserRuleContext&>(*context.children[3])),
              "comparisons do not chain", "write two of them: 'x > 0 && x < 1'");
     auto* const right = dynamic_cast<Grammar::SumContext*>(context.children[2]);
     if (right == nullptr)
-        fail(diag::Code::comparison_form, span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
+        fail(diag::Code::comparison_form,
+             span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
              "a calibrated threshold stands only in a predicate",
              "declare 'predicate NAME = ... calibrated(...);' and use its name here");
     const std::optional<ast::Number> threshold = lone_number(*right);
@@ -169,9 +175,11 @@ std::optional<ast::Number> Builder::lone_number(Grammar::SumContext& context) co
     auto* const negation = dynamic_cast<Grammar::NegationContext*>(factor);
     if (negation != nullptr) factor = negation->factor();
     auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(factor);
-    if (plain == nullptr || dynamic_cast<Grammar::NumberPrimaryContext*>(plain->primary()) == nullptr)
+    if (plain == nullptr ||
+        dynamic_cast<Grammar::NumberPrimaryContext*>(plain->primary()) == nullptr)
         return std::nullopt;
-    return ast::Number{fmt::format("{}{}", negation != nullptr ? "-" : "", text(*plain->start)), span_of(context)};
+    return ast::Number{fmt::format("{}{}", negation != nullptr ? "-" : "", text(*plain->start)),
+                       span_of(context)};
 }
 
 Builder::Formula Builder::formula(Grammar::PrimaryContext& context) const {

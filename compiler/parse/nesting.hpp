@@ -1,7 +1,7 @@
 // How deep a declaration nests, before ANTLR's recursive descent goes there.
-// Takes: the tokens of one slice, in one pass. Gives: the first token that nests deeper than kMaxNesting.
-// Keeps true: what it lets through recurses at most kMaxNesting times a grammar rule, in parse/ and in all that walk
-// trees.
+// Takes: the tokens of one slice, in one pass. Gives: the first token that nests deeper than
+// kMaxNesting. Keeps true: what it lets through recurses at most kMaxNesting times a grammar rule,
+// in parse/ and in all that walk trees.
 #pragma once
 
 #include <optional>

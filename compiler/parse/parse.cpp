@@ -38,7 +38,8 @@ private:
         if (text.size() > kMaxSpecBytes) {
             sink_
                 .report({Code::spec_too_large,
-                         fmt::format("a spec of {} bytes; at most {} are read", text.size(), kMaxSpecBytes),
+                         fmt::format("a spec of {} bytes; at most {} are read", text.size(),
+                                     kMaxSpecBytes),
                          {},
                          {},
                          0,
@@ -49,11 +50,13 @@ private:
         }
         const bool utf16 = text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF";
         if (utf16) {
-            sink_.report({Code::invalid_utf8, "this file is UTF-16; save it as UTF-8", {}, {}, 0, 0, {}});
+            sink_.report(
+                {Code::invalid_utf8, "this file is UTF-16; save it as UTF-8", {}, {}, 0, 0, {}});
             return false;
         }
         if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
-            sink_.report(Code::unexpected_character, span_at(nul), "a NUL byte; is this a text file?");
+            sink_.report(Code::unexpected_character, span_at(nul),
+                         "a NUL byte; is this a text file?");
             return false;
         }
         if (const std::size_t invalid = source::first_invalid_utf8(text); invalid < text.size())
@@ -103,13 +106,14 @@ private:
     void refuse_deep_nesting(Slice slice) const {
         const std::optional<std::size_t> at = too_deep_at(tokens_, slice);
         if (!at) return;
-        Diagnostic error{Code::nesting_too_deep,
-                         fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
-                         span_of(*tokens_[*at]),
-                         {},
-                         0,
-                         0,
-                         {}};
+        Diagnostic error{
+            Code::nesting_too_deep,
+            fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
+            span_of(*tokens_[*at]),
+            {},
+            0,
+            0,
+            {}};
         error.note("name parts of the formula with 'let'");
         throw SyntaxError{std::move(error), {}, {}};
     }
@@ -129,9 +133,11 @@ private:
         }
         auto& name = std::get<ast::Name>(read);
         if (spec_seen_)
-            sink_.report(Code::misplaced_spec, first, "a second 'spec'").note(spec_.name.span, "the first is here");
+            sink_.report(Code::misplaced_spec, first, "a second 'spec'")
+                .note(spec_.name.span, "the first is here");
         else if (!spec_.declarations.empty() || !errors_.empty())
-            sink_.report(Code::misplaced_spec, first, "'spec' must be the first declaration of the file");
+            sink_.report(Code::misplaced_spec, first,
+                         "'spec' must be the first declaration of the file");
         if (!spec_seen_) spec_.name = std::move(name);
         spec_seen_ = true;
     }
@@ -141,19 +147,23 @@ private:
         const std::size_t last = slice.end;
         std::size_t at = slice.begin;
         const std::size_t kind = tokens_[at]->getType();
-        if (kind == Grammar::SLIDING && at + 1 < last && tokens_[at + 1]->getType() == Grammar::MONITOR) ++at;
+        if (kind == Grammar::SLIDING && at + 1 < last &&
+            tokens_[at + 1]->getType() == Grammar::MONITOR)
+            ++at;
         if (kind == Grammar::SPEC || kind == Grammar::TRUTH) return;
         if (kind == Grammar::RATE || kind == Grammar::PERIOD) {
             spec_.unreadable.push_back({"rate", span_of(*tokens_[at])});
             return;
         }
-        for (++at; at < last && (is_name(*tokens_[at]) || is_reserved_word(*tokens_[at], file_)); at += 2) {
+        for (++at; at < last && (is_name(*tokens_[at]) || is_reserved_word(*tokens_[at], file_));
+             at += 2) {
             spec_.unreadable.push_back({text_of(*tokens_[at], file_), span_of(*tokens_[at])});
             if (at + 1 >= last || tokens_[at + 1]->getType() != Grammar::COMMA) break;
         }
     }
 
-    /// A reserved word used as a name breaks every other declaration that uses it: that is one cause, told once.
+    /// A reserved word used as a name breaks every other declaration that uses it: that is one
+    /// cause, told once.
     void report_errors() {
         std::vector<std::string> misused;
         for (const SyntaxError& error : errors_)
@@ -162,8 +172,8 @@ private:
             return std::find(misused.begin(), misused.end(), word) != misused.end();
         };
         for (SyntaxError& error : errors_) {
-            const bool follows =
-                error.diagnostic.code != Code::reserved_name && (is_misused(error.found) || is_misused(error.previous));
+            const bool follows = error.diagnostic.code != Code::reserved_name &&
+                                 (is_misused(error.found) || is_misused(error.previous));
             if (!follows && !is_missing_spec(error)) sink_.report(std::move(error.diagnostic));
         }
     }
@@ -174,12 +184,15 @@ private:
         const bool empty = first.getType() == Token::EOF;
         Diagnostic& missing = sink_.report(
             Code::misplaced_spec, span_of(first),
-            empty ? "the file is empty" : fmt::format("expected 'spec NAME;', found {}", quoted(first, file_)));
-        if (diag::nearest_name(text_of(first, file_), {"spec"})) missing.note("did you mean 'spec'?");
+            empty ? "the file is empty"
+                  : fmt::format("expected 'spec NAME;', found {}", quoted(first, file_)));
+        if (diag::nearest_name(text_of(first, file_), {"spec"}))
+            missing.note("did you mean 'spec'?");
         missing.note("a file begins with 'spec NAME;', which names the generated code");
     }
 
-    /// A first declaration that is none, in a file without `spec NAME;`: the missing spec is what is wrong with it.
+    /// A first declaration that is none, in a file without `spec NAME;`: the missing spec is what
+    /// is wrong with it.
     bool is_missing_spec(const SyntaxError& error) const {
         return !spec_seen_ && error.previous.empty() && !error.found.empty() &&
                error.diagnostic.span == span_of(*tokens_.front());

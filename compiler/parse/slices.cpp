@@ -10,16 +10,20 @@ using grammar::EtlLexer;
 
 namespace {
 
-/// Whether a declaration begins at token `i`, judged by its first words: a declaration word alone may as well be a
-/// reserved word that somebody took for a name.
+/// Whether a declaration begins at token `i`, judged by its first words: a declaration word alone
+/// may as well be a reserved word that somebody took for a name.
 bool begins_declaration(const Tokens& tokens, std::size_t i) {
-    const auto type = [&tokens](std::size_t k) { return k < tokens.size() ? tokens[k]->getType() : Token::EOF; };
+    const auto type = [&tokens](std::size_t k) {
+        return k < tokens.size() ? tokens[k]->getType() : Token::EOF;
+    };
     const bool name_follows = i + 1 < tokens.size() && is_name(*tokens[i + 1]);
     switch (type(i)) {
         case EtlLexer::SPEC: return name_follows && type(i + 2) == EtlLexer::SEMICOLON;
         case EtlLexer::RATE:
         case EtlLexer::PERIOD: return type(i + 1) == EtlLexer::NUMBER;
-        case EtlLexer::INPUT: return name_follows && (type(i + 2) == EtlLexer::COMMA || type(i + 2) == EtlLexer::COLON);
+        case EtlLexer::INPUT:
+            return name_follows &&
+                   (type(i + 2) == EtlLexer::COMMA || type(i + 2) == EtlLexer::COLON);
         case EtlLexer::SLIDING: return type(i + 1) == EtlLexer::MONITOR;
         case EtlLexer::TARGET:
         case EtlLexer::PREDICATE:
@@ -42,7 +46,9 @@ std::vector<Slice> slices_of(const Tokens& tokens) {
             slices.push_back({begin, i});
             begin = i;
         }
-        const auto is_semicolon = [&tokens](std::size_t k) { return tokens[k]->getType() == EtlLexer::SEMICOLON; };
+        const auto is_semicolon = [&tokens](std::size_t k) {
+            return tokens[k]->getType() == EtlLexer::SEMICOLON;
+        };
         // A run of stray ';' is one slice, and one error.
         if (is_semicolon(begin) && is_semicolon(i) && is_semicolon(i + 1)) continue;
         if (is_semicolon(i)) {
@@ -54,7 +60,8 @@ std::vector<Slice> slices_of(const Tokens& tokens) {
     return slices;
 }
 
-SliceStream::SliceStream(const Tokens& tokens, Slice slice) : tokens_(tokens), slice_(slice), end_(Token::EOF) {
+SliceStream::SliceStream(const Tokens& tokens, Slice slice)
+    : tokens_(tokens), slice_(slice), end_(Token::EOF) {
     end_.setStartIndex(tokens[slice.end]->getStartIndex());
     end_.setStopIndex(tokens[slice.end]->getStartIndex());
     end_.setTokenIndex(slice.end - slice.begin);

@@ -1,6 +1,7 @@
 // Tokens to declarations, each a slice that is parsed by itself.
-// Takes: all tokens of a file. Gives: slices, each ended by its ';', by a word that begins another declaration, or by
-// EOF. Keeps true: the slices cover all tokens but EOF in order, so an error in one cannot reach another.
+// Takes: all tokens of a file. Gives: slices, each ended by its ';', by a word that begins another
+// declaration, or by EOF. Keeps true: the slices cover all tokens but EOF in order, so an error in
+// one cannot reach another.
 #pragma once
 
 #include <vector>
@@ -31,7 +32,9 @@ public:
     void seek(std::size_t index) override;
     std::size_t size() override { return slice_.end - slice_.begin; }
 
-    antlr4::TokenSource* getTokenSource() const override { return tokens_[slice_.begin]->getTokenSource(); }
+    antlr4::TokenSource* getTokenSource() const override {
+        return tokens_[slice_.begin]->getTokenSource();
+    }
     std::string getSourceName() const override { return {}; }
     // Nobody asks the stream for text: it is the file's.
     std::string getText(const antlr4::misc::Interval& /*interval*/) override { return {}; }

@@ -48,7 +48,8 @@ private:
 
     bool found_is_word() const { return found_.getType() == EtlParser::IDENTIFIER; }
 
-    /// Where what is missing belongs: after the last word on its line rather than before the first on the next.
+    /// Where what is missing belongs: after the last word on its line rather than before the first
+    /// on the next.
     source::Span place() const {
         const source::Span found = span_of(found_);
         if (stuck_.previous == nullptr) return found;
@@ -61,45 +62,53 @@ private:
         return {code, std::move(message), span, {}, 0, 0, {}};
     }
 
-    void add_nearest(Diagnostic& to, const Token& word, const std::vector<std::string>& candidates) const {
+    void add_nearest(Diagnostic& to, const Token& word,
+                     const std::vector<std::string>& candidates) const {
         if (const auto nearest = diag::nearest_name(text(word), candidates))
             to.note(fmt::format("did you mean '{}'?", *nearest));
     }
 
     Diagnostic no_declaration() const {
-        static const std::vector<std::string> kWords{"spec",      "rate",  "period", "input",   "target",
-                                                     "predicate", "truth", "let",    "monitor", "sliding"};
+        static const std::vector<std::string> kWords{"spec",    "rate",      "period", "input",
+                                                     "target",  "predicate", "truth",  "let",
+                                                     "monitor", "sliding"};
         const bool word = found_is_word();
-        Diagnostic result = at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
-                               fmt::format("expected a declaration, found {}", quoted(found_, file_)));
+        Diagnostic result =
+            at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
+               fmt::format("expected a declaration, found {}", quoted(found_, file_)));
         if (word) add_nearest(result, found_, kWords);
         if (result.notes.empty())
             result.note(
-                "a declaration begins with spec, rate, period, input, target, predicate, truth, let, monitor or "
+                "a declaration begins with spec, rate, period, input, target, predicate, truth, "
+                "let, monitor or "
                 "sliding monitor");
         return result;
     }
 
     bool reserved_as_name() const {
-        return stuck_.rule == EtlParser::RuleName && stuck_.parent_rule == EtlParser::RuleDeclaration &&
-               is_reserved_word(found_, file_);
+        return stuck_.rule == EtlParser::RuleName &&
+               stuck_.parent_rule == EtlParser::RuleDeclaration && is_reserved_word(found_, file_);
     }
 
     Diagnostic reserved() const {
-        Diagnostic result = at(Code::reserved_name, span_of(found_),
-                               fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)));
+        Diagnostic result =
+            at(Code::reserved_name, span_of(found_),
+               fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)));
         result.note(fmt::format("{} is {}; choose another name", quoted(found_, file_),
                                 description_of_reserved(found_.getType())));
         return result;
     }
 
-    /// A word before '(' that is neither a distance nor a function, or a word after an aggregation that is no distance.
+    /// A word before '(' that is neither a distance nor a function, or a word after an aggregation
+    /// that is no distance.
     bool unknown_call() const {
         if (is_aggregation(stuck_.previous) && found_is_word()) return true;
-        const bool after_operand = stuck_.rule == EtlParser::RulePrimary || stuck_.rule == EtlParser::RuleDeclaration ||
+        const bool after_operand = stuck_.rule == EtlParser::RulePrimary ||
+                                   stuck_.rule == EtlParser::RuleDeclaration ||
                                    stuck_.rule == EtlParser::RuleComparisonOperator;
         const bool declared_name = is(stuck_.before_previous, {stuck_.declaration});
-        return found_.getType() == EtlParser::LPAREN && is_name(*stuck_.previous) && after_operand && !declared_name;
+        return found_.getType() == EtlParser::LPAREN && is_name(*stuck_.previous) &&
+               after_operand && !declared_name;
     }
 
     Diagnostic no_such_callable() const {
@@ -107,37 +116,43 @@ private:
         const Token& word = aggregated ? found_ : *stuck_.previous;
         Diagnostic result =
             at(Code::unknown_keyword, span_of(word),
-               aggregated ? fmt::format("expected a distance after {}, found {}", quoted(*stuck_.previous, file_),
-                                        quoted(word, file_))
-                          : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
+               aggregated
+                   ? fmt::format("expected a distance after {}, found {}",
+                                 quoted(*stuck_.previous, file_), quoted(word, file_))
+                   : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
         if (word.getType() == EtlParser::IDENTIFIER) add_nearest(result, word, callable_words());
         if (result.notes.empty())
             result.note(
-                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(W); functions: abs, sqrt, min, max");
+                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(W); functions: abs, "
+                "sqrt, min, max");
         return result;
     }
 
     bool interval_misplaced() const {
         return found_.getType() == EtlParser::LBRACKET &&
-               is(stuck_.previous, {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::WEAK_UNTIL, EtlParser::NOT,
-                                    EtlParser::AND, EtlParser::OR, EtlParser::IMPLIES, EtlParser::IFF});
+               is(stuck_.previous,
+                  {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::WEAK_UNTIL, EtlParser::NOT,
+                   EtlParser::AND, EtlParser::OR, EtlParser::IMPLIES, EtlParser::IFF});
     }
 
     Diagnostic no_interval() const {
-        Diagnostic result = at(Code::syntax_error, span_of(found_),
-                               fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)));
+        Diagnostic result =
+            at(Code::syntax_error, span_of(found_),
+               fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)));
         result.note("intervals stand after F, G, O, H, U, R and S");
         return result;
     }
 
     bool unknown_unit() const {
-        return stuck_.rule == EtlParser::RuleInterval && is(stuck_.previous, {EtlParser::NUMBER}) && found_is_word();
+        return stuck_.rule == EtlParser::RuleInterval && is(stuck_.previous, {EtlParser::NUMBER}) &&
+               found_is_word();
     }
 
     Diagnostic no_such_unit() const {
-        Diagnostic result = at(Code::unknown_keyword, span_of(found_),
-                               fmt::format("expected a unit of time (us, ms, s or min) after {}, found {}",
-                                           quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        Diagnostic result =
+            at(Code::unknown_keyword, span_of(found_),
+               fmt::format("expected a unit of time (us, ms, s or min) after {}, found {}",
+                           quoted(*stuck_.previous, file_), quoted(found_, file_)));
         add_nearest(result, found_, {"us", "ms", "s", "min"});
         return result;
     }
@@ -145,12 +160,13 @@ private:
     Diagnostic expected_found() const {
         const bool unknown = found_is_word() && expects_keyword(stuck_);
         return at(unknown ? Code::unknown_keyword : Code::syntax_error, place(),
-                  fmt::format("expected {} after {}, found {}", expected_words(stuck_), quoted(*stuck_.previous, file_),
-                              quoted(found_, file_)));
+                  fmt::format("expected {} after {}, found {}", expected_words(stuck_),
+                              quoted(*stuck_.previous, file_), quoted(found_, file_)));
     }
 
     void add_notes(Diagnostic& to) const {
-        if (found_is_word() && stuck_.rule != EtlParser::RuleName) add_nearest(to, found_, expected_spellings(stuck_));
+        if (found_is_word() && stuck_.rule != EtlParser::RuleName)
+            add_nearest(to, found_, expected_spellings(stuck_));
         if (to.notes.empty()) add_note_on_words(to);
         if (to.notes.empty()) add_note_on_rule(to);
     }
@@ -158,39 +174,51 @@ private:
     /// What the words found and before suggest was meant.
     void add_note_on_words(Diagnostic& to) const {
         const std::size_t found = found_.getType();
-        const bool in_brackets =
-            stuck_.rule == EtlParser::RulePrimary && stuck_.expected.contains(std::size_t{EtlParser::COMMA});
+        const bool in_brackets = stuck_.rule == EtlParser::RulePrimary &&
+                                 stuck_.expected.contains(std::size_t{EtlParser::COMMA});
         if (found == EtlParser::INF)
             to.note("inf stands only in the bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
             to.note("a comparison is '<=', '<', '>=' or '>'");
         else if (found == EtlParser::RPAREN && in_brackets)
-            to.note("min(...) and max(...) of expressions take two or more; over a target set it is 'min l2(z, goal)'");
+            to.note(
+                "min(...) and max(...) of expressions take two or more; over a target set it is "
+                "'min l2(z, goal)'");
         else if (is(stuck_.previous, {EtlParser::KTH}))
             to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
-        else if (is_reserved_word(found_, file_) && stuck_.expected.contains(std::size_t{EtlParser::IDENTIFIER}) &&
-                 !slice_ended())
-            to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_), description_of_reserved(found)));
+        else if (is_reserved_word(found_, file_) &&
+                 stuck_.expected.contains(std::size_t{EtlParser::IDENTIFIER}) && !slice_ended())
+            to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_),
+                                description_of_reserved(found)));
     }
 
     /// How the thing that is being read is written.
     void add_note_on_rule(Diagnostic& to) const {
         switch (stuck_.rule) {
             case EtlParser::RuleDimension:
-                to.note("only f32 and bool can be scalars; an embedding has its dimension in brackets");
+                to.note(
+                    "only f32 and bool can be scalars; an embedding has its dimension in brackets");
                 break;
             case EtlParser::RuleMetric:
-            case EtlParser::RuleWeights: to.note("the weights come first: mahalanobis(W)(z, goal)"); break;
+            case EtlParser::RuleWeights:
+                to.note("the weights come first: mahalanobis(W)(z, goal)");
+                break;
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
-                to.note("an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], [0s, 2s]");
+                to.note(
+                    "an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], "
+                    "[0s, 2s]");
                 break;
             case EtlParser::RuleThreshold:
-                to.note("what is compared stands on the left, its threshold on the right: x - y <= 0.5");
+                to.note(
+                    "what is compared stands on the left, its threshold on the right: x - y <= "
+                    "0.5");
                 break;
             case EtlParser::RuleComparisonOperator:
                 if (stuck_.declaration == EtlParser::PREDICATE)
-                    to.note("a predicate compares one expression with a threshold; a formula is named with 'let'");
+                    to.note(
+                        "a predicate compares one expression with a threshold; a formula is named "
+                        "with 'let'");
                 break;
             default: break;
         }
@@ -207,7 +235,8 @@ private:
 
 SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file) {
     const Token& found = stuck.found->getType() == Token::EOF ? next : *stuck.found;
-    const std::string previous = stuck.previous != nullptr ? text_of(*stuck.previous, file) : std::string();
+    const std::string previous =
+        stuck.previous != nullptr ? text_of(*stuck.previous, file) : std::string();
     return {Explanation(stuck, found, file).make(), text_of(found, file), previous};
 }
 
@@ -231,7 +260,9 @@ void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
         return i;
     };
     const std::size_t at = index(found);
-    const auto before = [this, at](std::size_t n) { return at >= slice_.begin + n ? tokens_[at - n].get() : nullptr; };
+    const auto before = [this, at](std::size_t n) {
+        return at >= slice_.begin + n ? tokens_[at - n].get() : nullptr;
+    };
     const antlr4::ParserRuleContext* const context = parser->getContext();
     const auto* const parent = dynamic_cast<const antlr4::ParserRuleContext*>(context->parent);
     const Stuck stuck{found,

@@ -1,6 +1,7 @@
 // What stops the reading of one declaration.
-// Takes: the place where ANTLR's parser is stuck. Gives: one diagnostic in the user's terms, thrown as SyntaxError.
-// Keeps true: parsing stops at a declaration's first error; ANTLR's own recovery and messages are never used.
+// Takes: the place where ANTLR's parser is stuck. Gives: one diagnostic in the user's terms, thrown
+// as SyntaxError. Keeps true: parsing stops at a declaration's first error; ANTLR's own recovery
+// and messages are never used.
 #pragma once
 
 #include <string>
@@ -12,7 +13,8 @@ namespace etlc::parse {
 
 struct SyntaxError {
     diag::Diagnostic diagnostic;
-    /// The words at the place: an error that only follows from a reserved word used as a name is told by them.
+    /// The words at the place: an error that only follows from a reserved word used as a name is
+    /// told by them.
     std::string found;
     std::string previous;
 };
@@ -41,7 +43,8 @@ public:
     void sync(antlr4::Parser* /*parser*/) override {}
     bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
     void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/, const antlr4::RecognitionException& /*error*/) override {}
+    void reportError(antlr4::Parser* /*parser*/,
+                     const antlr4::RecognitionException& /*error*/) override {}
 
 private:
     [[noreturn]] void give_up(antlr4::Parser* parser, const Token* found);
@@ -51,7 +54,8 @@ private:
     Slice slice_;
 };
 
-/// `next`: the first token after the slice, which is what the user sees where the slice ended too early.
+/// `next`: the first token after the slice, which is what the user sees where the slice ended too
+/// early.
 SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file);
 
 }  // namespace etlc::parse

@@ -69,8 +69,8 @@ constexpr std::array kHints{
 };
 
 void add_hint(diag::Diagnostic& to, std::string_view written) {
-    const auto* const found =
-        std::find_if(kHints.begin(), kHints.end(), [written](const Hint& h) { return h.written == written; });
+    const auto* const found = std::find_if(
+        kHints.begin(), kHints.end(), [written](const Hint& h) { return h.written == written; });
     if (found != kHints.end()) to.note(std::string(found->hint));
 }
 
@@ -87,7 +87,8 @@ std::optional<diag::Diagnostic> explain_character(Span span, const source::File&
     const bool control = length == 1 && (byte < 0x20 || byte == 0x7F);
     std::string message = control ? fmt::format("unexpected character U+{:04X}", byte)
                                   : fmt::format("unexpected character '{}'", character);
-    diag::Diagnostic result = diagnostic(diag::Code::unexpected_character, span, std::move(message));
+    diag::Diagnostic result =
+        diagnostic(diag::Code::unexpected_character, span, std::move(message));
     add_hint(result, character);
     return result;
 }
@@ -150,13 +151,16 @@ std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source
                               "this comment has no closing '*/'");
         case EtlLexer::MALFORMED_NUMBER: {
             diag::Diagnostic result =
-                diagnostic(diag::Code::malformed_number, span, fmt::format("{} is not a number", quoted(token, file)));
-            result.note("numbers are decimal, with digits on both sides of a point: 2, 0.5, 1.0e-3");
+                diagnostic(diag::Code::malformed_number, span,
+                           fmt::format("{} is not a number", quoted(token, file)));
+            result.note(
+                "numbers are decimal, with digits on both sides of a point: 2, 0.5, 1.0e-3");
             return result;
         }
         case EtlLexer::FOREIGN_OPERATOR: {
-            diag::Diagnostic result = diagnostic(diag::Code::unexpected_character, span,
-                                                 fmt::format("there is no operator {}", quoted(token, file)));
+            diag::Diagnostic result =
+                diagnostic(diag::Code::unexpected_character, span,
+                           fmt::format("there is no operator {}", quoted(token, file)));
             add_hint(result, file.text(span));
             return result;
         }

@@ -1,6 +1,7 @@
 // Text to tokens.
-// Takes: a file. Gives: its tokens without blanks and comments, ended by EOF; and what is wrong with a token that the
-// lexer found to be a mistake. Keeps true: a token's indices are byte offsets of the file; any bytes can be lexed.
+// Takes: a file. Gives: its tokens without blanks and comments, ended by EOF; and what is wrong
+// with a token that the lexer found to be a mistake. Keeps true: a token's indices are byte offsets
+// of the file; any bytes can be lexed.
 #pragma once
 
 #include <memory>
@@ -16,7 +17,8 @@ namespace etlc::parse {
 
 using Token = antlr4::Token;
 
-/// Tokens refer to the streams they came from but are never asked for their text: that is the file's.
+/// Tokens refer to the streams they came from but are never asked for their text: that is the
+/// file's.
 using Tokens = std::vector<std::unique_ptr<Token>>;
 
 Tokens tokens_of(const source::File& file);
@@ -28,7 +30,8 @@ std::string text_of(const Token& token, const source::File& file);
 std::string quoted(const Token& token, const source::File& file);
 
 bool is_mistake(const Token& token);
-/// What to say of such a token; nothing where its bytes are not UTF-8, which has been said of the file as a whole.
+/// What to say of such a token; nothing where its bytes are not UTF-8, which has been said of the
+/// file as a whole.
 std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source::File& file);
 
 /// Reserved words cannot be names; contextual words can.

@@ -14,7 +14,8 @@ using ir::NodeId;
 using ir::Op;
 using Set = std::vector<NodeId>;  // sorted, without repeats
 
-/// One way to satisfy a formula at a position: these literals now, these obligations from the next position on.
+/// One way to satisfy a formula at a position: these literals now, these obligations from the next
+/// position on.
 struct Clause {
     Set literals;
     Set next;
@@ -38,16 +39,20 @@ void unite(const Set& a, const Set& b, Set& result) {
 
 class Construction {
 public:
-    Construction(ir::Graph& graph, Literals literals, const AutomatonLimits& limits, AutomatonSize& reached)
+    Construction(ir::Graph& graph, Literals literals, const AutomatonLimits& limits,
+                 AutomatonSize& reached)
         : graph_(graph), literals_(literals), limits_(limits), reached_(reached) {}
 
     Automaton build(NodeId formula) {
         guard_number({});
         state_number({formula});
-        for (std::uint32_t state = 0; state < automaton_.states.size(); ++state) expand_state(state);
-        std::sort(automaton_.transitions.begin(), automaton_.transitions.end(), [](const auto& a, const auto& b) {
-            return std::tie(a.target, a.guard, a.source) < std::tie(b.target, b.guard, b.source);
-        });
+        for (std::uint32_t state = 0; state < automaton_.states.size(); ++state)
+            expand_state(state);
+        std::sort(automaton_.transitions.begin(), automaton_.transitions.end(),
+                  [](const auto& a, const auto& b) {
+                      return std::tie(a.target, a.guard, a.source) <
+                             std::tie(b.target, b.guard, b.source);
+                  });
         return std::move(automaton_);
     }
 
@@ -68,14 +73,19 @@ private:
         if (stronger == weaker) return true;
         const Node& s = graph_[stronger];
         const Node& w = graph_[weaker];
-        if (s.operands.empty() || w.operands.empty() || s.operands.back() != w.operands.back()) return false;
+        if (s.operands.empty() || w.operands.empty() || s.operands.back() != w.operands.back())
+            return false;
         const bool same_left = s.operands == w.operands;
         switch (s.op) {
             case Op::eventually: return w.op == Op::eventually && w.interval.contains(s.interval);
             case Op::until:
-                return ((w.op == Op::until && same_left) || w.op == Op::eventually) && w.interval.contains(s.interval);
-            case Op::always: return (w.op == Op::always || w.op == Op::release) && s.interval.contains(w.interval);
-            case Op::release: return w.op == Op::release && same_left && s.interval.contains(w.interval);
+                return ((w.op == Op::until && same_left) || w.op == Op::eventually) &&
+                       w.interval.contains(s.interval);
+            case Op::always:
+                return (w.op == Op::always || w.op == Op::release) &&
+                       s.interval.contains(w.interval);
+            case Op::release:
+                return w.op == Op::release && same_left && s.interval.contains(w.interval);
             default: return false;
         }
     }
@@ -84,7 +94,8 @@ private:
         spend(1);
         if (std::binary_search(stronger.begin(), stronger.end(), weaker)) return true;
         spend(stronger.size());
-        return std::any_of(stronger.begin(), stronger.end(), [&](NodeId s) { return implies(s, weaker); });
+        return std::any_of(stronger.begin(), stronger.end(),
+                           [&](NodeId s) { return implies(s, weaker); });
     }
 
     /// The first clause makes the second idle: whatever satisfies the second satisfies the first.
@@ -92,9 +103,10 @@ private:
         spend(1);
         if (kept.literals.size() > dropped.literals.size()) return false;
         spend(dropped.literals.size());
-        return std::includes(dropped.literals.begin(), dropped.literals.end(), kept.literals.begin(),
-                             kept.literals.end()) &&
-               std::all_of(kept.next.begin(), kept.next.end(), [&](NodeId w) { return implied(w, dropped.next); });
+        return std::includes(dropped.literals.begin(), dropped.literals.end(),
+                             kept.literals.begin(), kept.literals.end()) &&
+               std::all_of(kept.next.begin(), kept.next.end(),
+                           [&](NodeId w) { return implied(w, dropped.next); });
     }
 
     void add(Clauses& clauses, const Clause& clause) {
@@ -113,12 +125,14 @@ private:
         const Node& a = graph_[first];
         const Node& b = graph_[second];
         if (a.op != Op::always || b.op != Op::always || a.operands != b.operands) return false;
-        const auto touches = [](Interval x, Interval y) { return !x.bounded() || y.low <= x.high + 1; };
+        const auto touches = [](Interval x, Interval y) {
+            return !x.bounded() || y.low <= x.high + 1;
+        };
         return touches(a.interval, b.interval) && touches(b.interval, a.interval);
     }
 
-    /// G[0,4] f and G[2,9] f are G[0,9] f: windows of one operand that touch become one, so that a requirement which
-    /// repeats at every step is one obligation and not a set of them.
+    /// G[0,4] f and G[2,9] f are G[0,9] f: windows of one operand that touch become one, so that a
+    /// requirement which repeats at every step is one obligation and not a set of them.
     void merge_always(Set& obligations) {
         for (std::size_t i = 0; i < obligations.size(); ++i) {
             if (graph_[obligations[i]].op != Op::always) continue;
@@ -127,25 +141,30 @@ private:
                 if (!merge(obligations[i], obligations[j])) continue;
                 const Node a = graph_[obligations[i]];  // a copy: the graph grows meanwhile
                 const Interval b = graph_[obligations[j]].interval;
-                const Interval whole{std::min(a.interval.low, b.low), std::max(a.interval.high, b.high)};
+                const Interval whole{std::min(a.interval.low, b.low),
+                                     std::max(a.interval.high, b.high)};
                 const NodeId merged = keep(a, whole);
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(j));
                 obligations.erase(obligations.begin() + static_cast<std::ptrdiff_t>(i));
-                obligations.insert(std::lower_bound(obligations.begin(), obligations.end(), merged), merged);
-                obligations.erase(std::unique(obligations.begin(), obligations.end()), obligations.end());
+                obligations.insert(std::lower_bound(obligations.begin(), obligations.end(), merged),
+                                   merged);
+                obligations.erase(std::unique(obligations.begin(), obligations.end()),
+                                  obligations.end());
                 return merge_always(obligations);
             }
         }
     }
 
-    /// Obligations without those that another of the set implies. (None but equal ones imply each other.)
+    /// Obligations without those that another of the set implies. (None but equal ones imply each
+    /// other.)
     void reduce(Set& obligations) {
         merge_always(obligations);
         const Set all = obligations;
         std::erase_if(obligations, [&](NodeId weaker) {
             spend(all.size());
-            return std::any_of(all.begin(), all.end(),
-                               [&](NodeId stronger) { return stronger != weaker && implies(stronger, weaker); });
+            return std::any_of(all.begin(), all.end(), [&](NodeId stronger) {
+                return stronger != weaker && implies(stronger, weaker);
+            });
         });
     }
 
@@ -154,7 +173,8 @@ private:
         spend(a.size() + b.size() + 2 * a.size() * b.size());
         bool related = false;
         for (NodeId x : a)
-            for (NodeId y : b) related = related || (x != y && (implies(x, y) || implies(y, x) || merge(x, y)));
+            for (NodeId y : b)
+                related = related || (x != y && (implies(x, y) || implies(y, x) || merge(x, y)));
         unite(a, b, result);
         if (related) reduce(result);
     }
@@ -162,7 +182,8 @@ private:
     // ---- expansion
 
     void spend_on(const Clauses& clauses) {
-        for (const Clause& clause : clauses) spend(kWorkPerClause + clause.literals.size() + clause.next.size());
+        for (const Clause& clause : clauses)
+            spend(kWorkPerClause + clause.literals.size() + clause.next.size());
     }
 
     Clauses either(const Clauses& a, const Clauses& b) {
@@ -192,12 +213,14 @@ private:
         const Node& node = graph_[id];
         if (node.op == Op::constant_true) return always_satisfied();
         if (node.op == Op::constant_false) return {};
-        if (node.op == Op::conjunction) return {Clause{node.operands, {}}};  // each for itself: more is absorbed
+        if (node.op == Op::conjunction)
+            return {Clause{node.operands, {}}};  // each for itself: more is absorbed
         return {Clause{{id}, {}}};
     }
 
-    /// The window one step later, as an obligation for the next position. It keeps its operator even where the window
-    /// is [0,0], since at the end of the prefix F and U are false there and G and R are true.
+    /// The window one step later, as an obligation for the next position. It keeps its operator
+    /// even where the window is [0,0], since at the end of the prefix F and U are false there and G
+    /// and R are true.
     Clauses later(const Node& node) { return next(keep(node, node.interval.earlier())); }
 
     NodeId keep(const Node& node, Interval interval) {
@@ -206,7 +229,8 @@ private:
     }
 
     const Clauses& expand(NodeId id) {
-        if (const auto known = expansions_.find(id); known != expansions_.end()) return known->second;
+        if (const auto known = expansions_.find(id); known != expansions_.end())
+            return known->second;
         Clauses clauses = expand_node(id);
         return expansions_.emplace(id, std::move(clauses)).first->second;
     }
@@ -214,7 +238,8 @@ private:
     Clauses expand_node(NodeId id) {
         const Node node = graph_[id];  // a copy: the graph grows meanwhile
         const bool bounded = node.horizon != ir::kUnbounded;
-        if (!node.has_future || (literals_ == Literals::with_bounded_future && bounded)) return literal(id);
+        if (!node.has_future || (literals_ == Literals::with_bounded_future && bounded))
+            return literal(id);
         const bool opens_later = node.interval.low > 0;
         const bool last = node.interval.high == 0;
         switch (node.op) {
@@ -230,16 +255,19 @@ private:
             }
             case Op::eventually:
                 if (opens_later) return later(node);
-                return last ? expand(node.operands[0]) : either(expand(node.operands[0]), later(node));
+                return last ? expand(node.operands[0])
+                            : either(expand(node.operands[0]), later(node));
             case Op::always:
                 if (opens_later) return later(node);
-                return last ? expand(node.operands[0]) : both(expand(node.operands[0]), later(node));
+                return last ? expand(node.operands[0])
+                            : both(expand(node.operands[0]), later(node));
             case Op::until: {
                 const Clauses wait = last ? Clauses{} : both(expand(node.operands[0]), later(node));
                 return opens_later ? wait : either(expand(node.operands[1]), wait);
             }
             case Op::release: {
-                const Clauses hold = last ? always_satisfied() : either(expand(node.operands[0]), later(node));
+                const Clauses hold =
+                    last ? always_satisfied() : either(expand(node.operands[0]), later(node));
                 return opens_later ? hold : both(expand(node.operands[1]), hold);
             }
             default: return literal(id);
@@ -250,14 +278,16 @@ private:
 
     std::uint32_t guard_number(const Set& literals) {
         spend(kWorkPerClause + literals.size());
-        const auto [entry, added] = guards_.emplace(literals, static_cast<std::uint32_t>(automaton_.guards.size()));
+        const auto [entry, added] =
+            guards_.emplace(literals, static_cast<std::uint32_t>(automaton_.guards.size()));
         if (added) automaton_.guards.push_back(literals);
         return entry->second;
     }
 
     std::uint32_t state_number(const Set& obligations) {
         spend(obligations.size());
-        const auto [entry, added] = states_.emplace(obligations, static_cast<std::uint32_t>(automaton_.states.size()));
+        const auto [entry, added] =
+            states_.emplace(obligations, static_cast<std::uint32_t>(automaton_.states.size()));
         if (added) {
             spend(kWorkPerState + kWorkPerObligation * obligations.size());
             automaton_.states.push_back(obligations);
@@ -272,7 +302,8 @@ private:
         Clauses clauses = always_satisfied();
         for (NodeId obligation : obligations) clauses = both(clauses, expand(obligation));
         for (const Clause& clause : clauses)
-            automaton_.transitions.push_back({state, state_number(clause.next), guard_number(clause.literals)});
+            automaton_.transitions.push_back(
+                {state, state_number(clause.next), guard_number(clause.literals)});
         reached_.transitions = automaton_.transitions.size();
         if (reached_.transitions > limits_.transitions) throw TooLarge{};
     }
@@ -281,7 +312,8 @@ private:
     // Where most clauses turn out to be idle, work and not size is what ends a construction.
     static constexpr std::uint64_t kEffortPerClause = 16;
     static constexpr std::uint64_t kEffortPerTransition = 256;
-    // Work in steps of a loop over a set: what takes longer, and what those that use the automaton do with it.
+    // Work in steps of a loop over a set: what takes longer, and what those that use the automaton
+    // do with it.
     static constexpr std::uint64_t kWorkPerClause = 32;
     static constexpr std::uint64_t kWorkPerNode = 256;
     static constexpr std::uint64_t kWorkPerState = 256;

@@ -22,7 +22,8 @@ using check::Values;
 
 constexpr std::uint64_t kWord = sizeof(std::uint32_t);
 constexpr std::uint64_t kKeysPerValue = 2;
-/// Of a window whose highs part from its lows: which blocks have highs of their own, and from where (etlmon::Parting).
+/// Of a window whose highs part from its lows: which blocks have highs of their own, and from where
+/// (etlmon::Parting).
 constexpr std::uint64_t kPartingComparisons = 6;
 
 // Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
@@ -90,19 +91,24 @@ Cost fold_cost(const Footprint& of, const Fold& fold) {
 
 Cost response_cost(const Footprint& of, const Response& response) {
     Cost cost = values(of, 1, 2 + (response.recent != kNone ? 1 : 0));
-    cost.operations += 2 + 3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
+    cost.operations +=
+        2 +
+        3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
     cost.code_bytes += 2 * kCodePerFold;
     return cost;
 }
 
-/// Operations on values or readings at one position, in units of the temporal loops of etlmon/pending.hpp.
+/// Operations on values or readings at one position, in units of the temporal loops of
+/// etlmon/pending.hpp.
 std::uint64_t pending_steps(const Pending& pending) {
     std::uint64_t steps = 0;
     for (const Pending::Part& part : pending.parts) {
         const bool temporal = part.unseen != kNone;
-        const std::uint64_t window = std::min(part.interval.high, pending.horizon) + std::uint64_t{1};
+        const std::uint64_t window =
+            std::min(part.interval.high, pending.horizon) + std::uint64_t{1};
         if (part.leaf == kNone)
-            steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2 : part.operands.size() - 1;
+            steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2
+                              : part.operands.size() - 1;
     }
     if (pending.is_fold) return steps + 4;
     steps += 2 * pending.machine.states.size() + 2 * pending.machine.automaton.transitions.size();
@@ -116,33 +122,41 @@ Cost pending_cost(const Footprint& of, const Pending& pending) {
     Cost cost;
     std::uint64_t leaves = 0;
     for (const Pending::Part& part : pending.parts) leaves += part.leaf != kNone ? 1 : 0;
-    cost.state_bytes = leaves * etlmon::storage_bytes(static_cast<std::uint32_t>(positions * of.value));
+    cost.state_bytes =
+        leaves * etlmon::storage_bytes(static_cast<std::uint32_t>(positions * of.value));
     cost.state_bytes += of.value * (pending.is_fold ? 2 : pending.machine.states.size());
     cost.stack_bytes = pending.parts.size() * positions * of.reading;
     if (!pending.is_fold)  // the guards at each position, and what PendingMachine::read works with
-        cost.stack_bytes += (pending.guards.size() * positions + 2 * pending.machine.states.size()) * of.reading +
-                            (pending.guards.size() + pending.machine.states.size()) * of.value;
+        cost.stack_bytes +=
+            (pending.guards.size() * positions + 2 * pending.machine.states.size()) * of.reading +
+            (pending.guards.size() + pending.machine.states.size()) * of.value;
     cost.operations = positions * pending_steps(pending) * kKeysPerReading;
     cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
     if (!pending.is_fold)
         cost.code_bytes += pending.machine.automaton.transitions.size() * kTransitionBytes +
-                           pending.machine.states.size() * kStateBytes + pending.guards.size() * kCodePerValueOperation;
+                           pending.machine.states.size() * kStateBytes +
+                           pending.guards.size() * kCodePerValueOperation;
     return cost;
 }
 
 Cost table_cost(const Footprint& of, const AutomatonSize& size) {
-    return {.state_bytes = etlmon::storage_bytes(static_cast<std::uint32_t>(2 * size.states * of.value)),
-            .code_bytes = kCodePerTable + size.transitions * kTransitionBytes + size.states * kStateBytes,
+    return {.state_bytes =
+                etlmon::storage_bytes(static_cast<std::uint32_t>(2 * size.states * of.value)),
+            .code_bytes =
+                kCodePerTable + size.transitions * kTransitionBytes + size.states * kStateBytes,
             .operations = (3 * size.states + 2 * size.transitions) * kKeysPerValue};
 }
 
-/// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of values.
+/// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of
+/// values.
 Cost machine_cost(const Footprint& of, const Machine& machine) {
     const std::size_t read = 3 * machine.states.size();
-    if (unrolled(machine)) return values(of, registers(machine), operations(make_register_program(machine)) + read);
+    if (unrolled(machine))
+        return values(of, registers(machine), operations(make_register_program(machine)) + read);
     Cost cost = table_cost(of, {machine.states.size(), machine.automaton.transitions.size()});
     cost.code_bytes += machine.guards.size() * kCodePerValueOperation;
-    for (const auto& guard : machine.guards) cost.operations += guard.empty() ? 0 : (guard.size() - 1) * kKeysPerValue;
+    for (const auto& guard : machine.guards)
+        cost.operations += guard.empty() ? 0 : (guard.size() - 1) * kKeysPerValue;
     return cost;
 }
 
@@ -156,7 +170,9 @@ Cost distance_cost(const check::Model& model, const check::Distance& distance) {
 
 Cost hold_cost(const check::Input& input) {
     if (input.hold == 0) return {};
-    return {.state_bytes = (std::uint64_t{input.dimension} + 1) * kWord, .code_bytes = kCodePerRing, .operations = 1};
+    return {.state_bytes = (std::uint64_t{input.dimension} + 1) * kWord,
+            .code_bytes = kCodePerRing,
+            .operations = 1};
 }
 
 /// The parts of a plan that one monitor, or all of them, need.
@@ -180,17 +196,21 @@ public:
         for (const Slot* slot : slots_of(copy)) stream(*slot);
     }
 
-    void monitor(const Monitor& monitor) { monitor.sliding ? stream(monitor.stream) : reading(monitor.reading); }
+    void monitor(const Monitor& monitor) {
+        monitor.sliding ? stream(monitor.stream) : reading(monitor.reading);
+    }
 
     Cost cost() const {
         const check::Model& model = *plan_.model;
         Cost sum;
         for (Slot slot : streams_) sum = sum + cost_of(plan_.streams[slot], plan_.values);
-        for (std::uint32_t index : readings_) sum = sum + cost_of(plan_.readings[index], plan_.values);
+        for (std::uint32_t index : readings_)
+            sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
         for (Index d : distances_) {
             sum = sum + distance_cost(model, model.distances[d]);
-            if (searches(plan_, d)) sum.state_bytes += search_bytes(model.targets[model.distances[d].target]);
+            if (searches(plan_, d))
+                sum.state_bytes += search_bytes(model.targets[model.distances[d].target]);
         }
         sum.constant_bytes += target_bytes();
         for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
@@ -211,7 +231,8 @@ private:
             if (set == nullptr) continue;
             const std::pair rows{distance.target, rows_as_given(distance)};
             if (narrow.insert(rows).second) bytes += bytes_of_rows(*set);
-            if (in_integers(*set) && summed.insert(rows).second) bytes += bytes_of(*set) - bytes_of_rows(*set);
+            if (in_integers(*set) && summed.insert(rows).second)
+                bytes += bytes_of(*set) - bytes_of_rows(*set);
         }
         for (Index t : wide) bytes += plan_.model->targets[t].values.size() * sizeof(float);
         return bytes;
@@ -219,8 +240,10 @@ private:
 
     static Cost telemetry(const check::Predicate& predicate) {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
-        Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord, .code_bytes = kCodePerRing};
-        if (predicate.threshold.adaptation) cost = cost + Cost{.state_bytes = kWord, .code_bytes = kCodePerAdaptation};
+        Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord,
+                  .code_bytes = kCodePerRing};
+        if (predicate.threshold.adaptation)
+            cost = cost + Cost{.state_bytes = kWord, .code_bytes = kCodePerAdaptation};
         return cost;
     }
 
@@ -268,13 +291,14 @@ Cost operator+(Cost a, const Cost& b) {
 }
 
 bool within(const Cost& cost, const Limits& limits) {
-    return cost.state_bytes + cost.stack_bytes <= limits.state_bytes && cost.code_bytes <= limits.code_bytes &&
-           cost.operations <= limits.operations;
+    return cost.state_bytes + cost.stack_bytes <= limits.state_bytes &&
+           cost.code_bytes <= limits.code_bytes && cost.operations <= limits.operations;
 }
 
 std::size_t registers(const Machine& machine) {
-    return static_cast<std::size_t>(std::count_if(machine.states.begin(), machine.states.end(),
-                                                  [](const Machine::State& state) { return !state.always_true; }));
+    return static_cast<std::size_t>(
+        std::count_if(machine.states.begin(), machine.states.end(),
+                      [](const Machine::State& state) { return !state.always_true; }));
 }
 
 bool unrolled(const Machine& machine) {
@@ -306,7 +330,8 @@ Cost cost_of(const Stream& stream, Values kind) {
         case StreamOp::window_until:
         case StreamOp::window_release: return window_cost(of.until, stream.length, 2);
         case StreamOp::widening_max:
-        case StreamOp::widening_min: return ring_cost(of, stream.length - stream.from_length) + values(of, 0, 1);
+        case StreamOp::widening_min:
+            return ring_cost(of, stream.length - stream.from_length) + values(of, 0, 1);
     }
     return {};
 }
@@ -340,7 +365,8 @@ void add_costs(Plan& plan) {
         all.monitor(monitor);
         plan.monitor_costs.push_back(own.cost());
         if (plan.values == Values::boolean)
-            fixed.state_bytes += sizeof(etlmon::BooleanVerdict);  // the last one: a final verdict stops computing
+            fixed.state_bytes +=
+                sizeof(etlmon::BooleanVerdict);  // the last one: a final verdict stops computing
         else if (plan.has_sliding && !monitor.sliding)
             fixed.state_bytes += sizeof(etlmon::Verdict);
     }

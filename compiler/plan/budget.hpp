@@ -1,8 +1,8 @@
 // What a plan costs: bytes of state and constants, estimated code, operations of the worst step.
 // Takes: a plan. Gives: the figures of `--emit report` and of the generated header's table.
-// Keeps true: state_bytes is exactly the size of the generated class; stack_bytes the arrays of its step; operations
-// count every min, max and comparison of two keys that the worst step performs (a Value has two keys); code_bytes is an
-// estimate.
+// Keeps true: state_bytes is exactly the size of the generated class; stack_bytes the arrays of its
+// step; operations count every min, max and comparison of two keys that the worst step performs (a
+// Value has two keys); code_bytes is an estimate.
 #pragma once
 
 #include "plan/plan.hpp"

@@ -6,7 +6,8 @@ namespace {
 
 class Walk {
 public:
-    Walk(const Plan& plan, std::size_t monitor, Dependents& result) : plan_(plan), monitor_(monitor), result_(result) {}
+    Walk(const Plan& plan, std::size_t monitor, Dependents& result)
+        : plan_(plan), monitor_(monitor), result_(result) {}
 
     void stream(Slot slot) {
         if (slot == kNone || !add(result_.of_stream[slot])) return;
@@ -39,7 +40,8 @@ Dependents dependents(const Plan& plan) {
                       std::vector<std::vector<std::size_t>>(plan.readings.size())};
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         Walk walk(plan, m, result);
-        plan.monitors[m].sliding ? walk.stream(plan.monitors[m].stream) : walk.reading(plan.monitors[m].reading);
+        plan.monitors[m].sliding ? walk.stream(plan.monitors[m].stream)
+                                 : walk.reading(plan.monitors[m].reading);
     }
     return result;
 }

@@ -1,6 +1,6 @@
 // Which monitors a part of the plan works for.
-// Takes: a plan. Gives: per stream and per reading, the monitors whose verdicts depend on it. Keeps true: a part none
-// of whose monitors can change any more need not be computed.
+// Takes: a plan. Gives: per stream and per reading, the monitors whose verdicts depend on it. Keeps
+// true: a part none of whose monitors can change any more need not be computed.
 #pragma once
 
 #include <vector>

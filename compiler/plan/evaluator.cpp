@@ -35,7 +35,8 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
     measured_.resize(model_.predicates.size());
-    for (const check::Predicate& predicate : model_.predicates) thresholds_.push_back(predicate.threshold.value);
+    for (const check::Predicate& predicate : model_.predicates)
+        thresholds_.push_back(predicate.threshold.value);
     literals_.resize(model_.predicates.size(), kAnything);
     flags_.resize(model_.inputs.size(), kAnything);
     streams_.resize(plan.streams.size());
@@ -48,8 +49,10 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
 
 void Evaluator::reset() {
     for (Held& held : held_) held = {};
-    for (Slot slot = 0; slot < plan_.streams.size(); ++slot) reset_stream(plan_.streams[slot], stream_states_[slot]);
-    for (std::size_t i = 0; i < plan_.readings.size(); ++i) reset_reading(plan_.readings[i], reading_states_[i]);
+    for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
+        reset_stream(plan_.streams[slot], stream_states_[slot]);
+    for (std::size_t i = 0; i < plan_.readings.size(); ++i)
+        reset_reading(plan_.readings[i], reading_states_[i]);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
     steps_ = 0;
@@ -80,7 +83,9 @@ const std::vector<etlmon::Verdict>& Evaluator::finish() {
 }
 
 void Evaluator::observe(Index predicate, float distance, bool truth) {
-    if (truth) thresholds_[predicate] = observed(model_.predicates[predicate], thresholds_[predicate], distance);
+    if (truth)
+        thresholds_[predicate] =
+            observed(model_.predicates[predicate], thresholds_[predicate], distance);
 }
 
 // ---- inputs, distances, predicates
@@ -120,12 +125,15 @@ void Evaluator::measure_predicates() {
         const bool present = std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
                                          [&](Index input) { return inputs_[input] != nullptr; });
         etlmon::Measured measured{etlmon::kMissing, 0};
-        if (present && predicate.plain_distance()) measured = distances_[predicate.expression.index];
-        if (present && !predicate.plain_distance()) measured.delta = expression(predicate.expression);
+        if (present && predicate.plain_distance())
+            measured = distances_[predicate.expression.index];
+        if (present && !predicate.plain_distance())
+            measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         literals_[p] = literal(predicate, measured.delta, thresholds_[p], plan_.values);
         if (predicate.plain_distance() && plan_.values == check::Values::robustness)
-            literals_[p] = literal(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
+            literals_[p] =
+                literal(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
         if (literal_ && !std::isnan(measured.delta)) literals_[p] = literal_(p);
         missing |= std::isnan(measured.delta);
     }
@@ -160,20 +168,26 @@ Value Evaluator::advance_window(const Stream& stream, StreamState& state) const 
     };
     switch (stream.op) {
         case StreamOp::window_max:
-            return push<etlmon::Greatest<Value>>(state.values, state.cursor, n, operand(stream, 0, kFalse));
+            return push<etlmon::Greatest<Value>>(state.values, state.cursor, n,
+                                                 operand(stream, 0, kFalse));
         case StreamOp::window_min:
-            return push<etlmon::Least<Value>>(state.values, state.cursor, n, operand(stream, 0, kTrue));
+            return push<etlmon::Least<Value>>(state.values, state.cursor, n,
+                                              operand(stream, 0, kTrue));
         case StreamOp::window_since:
-            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue))
+            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n,
+                                                             pair(kFalse, kTrue))
                 .value;
         case StreamOp::window_trigger:
-            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse))
+            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n,
+                                                               pair(kTrue, kFalse))
                 .value;
         case StreamOp::window_until:
-            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n, pair(kFalse, kTrue))
+            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n,
+                                                             pair(kFalse, kTrue))
                 .value;
         default:
-            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n, pair(kTrue, kFalse))
+            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n,
+                                                               pair(kTrue, kFalse))
                 .value;
     }
 }
@@ -196,27 +210,31 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
             return value;
         }
         case StreamOp::within:
-            return stream.interval.low <= steps_ && steps_ <= stream.interval.high ? at(0) : stream.value;
-        case StreamOp::delay: return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
+            return stream.interval.low <= steps_ && steps_ <= stream.interval.high ? at(0)
+                                                                                   : stream.value;
+        case StreamOp::delay:
+            return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
         case StreamOp::shift:
             return etlmon::delay_push(state.values.data(), state.cursor, stream.length,
                                       operand(stream, 0, stream.value));
-        case StreamOp::running_max: return state.values[0] = max_of(state.values[0], operand(stream, 0, kFalse));
-        case StreamOp::running_min: return state.values[0] = min_of(state.values[0], operand(stream, 0, kTrue));
+        case StreamOp::running_max:
+            return state.values[0] = max_of(state.values[0], operand(stream, 0, kFalse));
+        case StreamOp::running_min:
+            return state.values[0] = min_of(state.values[0], operand(stream, 0, kTrue));
         case StreamOp::since:
-            return state.values[0] =
-                       max_of(operand(stream, 1, kFalse), min_of(state.values[0], operand(stream, 0, kTrue)));
+            return state.values[0] = max_of(operand(stream, 1, kFalse),
+                                            min_of(state.values[0], operand(stream, 0, kTrue)));
         case StreamOp::trigger:
-            return state.values[0] =
-                       min_of(operand(stream, 1, kTrue), max_of(state.values[0], operand(stream, 0, kFalse)));
+            return state.values[0] = min_of(operand(stream, 1, kTrue),
+                                            max_of(state.values[0], operand(stream, 0, kFalse)));
         case StreamOp::widening_max:
-            return max_of(
-                etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
-                at(0));
+            return max_of(etlmon::delay_push(state.values.data(), state.cursor,
+                                             stream.length - stream.from_length, at(0)),
+                          at(0));
         case StreamOp::widening_min:
-            return min_of(
-                etlmon::delay_push(state.values.data(), state.cursor, stream.length - stream.from_length, at(0)),
-                at(0));
+            return min_of(etlmon::delay_push(state.values.data(), state.cursor,
+                                             stream.length - stream.from_length, at(0)),
+                          at(0));
         default: return advance_window(stream, state);
     }
 }
@@ -230,131 +248,30 @@ void Evaluator::reset_stream(const Stream& stream, StreamState& state) {
         case StreamOp::running_min: state.values.assign(1, kTrue); break;
         case StreamOp::since:
         case StreamOp::trigger: state.values.assign(1, stream.value); break;
-        case StreamOp::window_max: state.values.assign(etlmon::window_elements(stream.length), kFalse); break;
-        case StreamOp::window_min: state.values.assign(etlmon::window_elements(stream.length), kTrue); break;
-        case StreamOp::widening_max: state.values.assign(stream.length - stream.from_length, kFalse); break;
-        case StreamOp::widening_min: state.values.assign(stream.length - stream.from_length, kTrue); break;
+        case StreamOp::window_max:
+            state.values.assign(etlmon::window_elements(stream.length), kFalse);
+            break;
+        case StreamOp::window_min:
+            state.values.assign(etlmon::window_elements(stream.length), kTrue);
+            break;
+        case StreamOp::widening_max:
+            state.values.assign(stream.length - stream.from_length, kFalse);
+            break;
+        case StreamOp::widening_min:
+            state.values.assign(stream.length - stream.from_length, kTrue);
+            break;
         case StreamOp::window_since:
         case StreamOp::window_until:
-            state.pairs.assign(etlmon::window_elements(stream.length), etlmon::Until<Value>::identity());
+            state.pairs.assign(etlmon::window_elements(stream.length),
+                               etlmon::Until<Value>::identity());
             break;
         case StreamOp::window_trigger:
         case StreamOp::window_release:
-            state.pairs.assign(etlmon::window_elements(stream.length), etlmon::Release<Value>::identity());
+            state.pairs.assign(etlmon::window_elements(stream.length),
+                               etlmon::Release<Value>::identity());
             break;
         default: break;
     }
-}
-
-// ---- readings
-
-void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
-    switch (reading.kind) {
-        case Reading::Kind::latch: state.registers.assign(1, kFalse); break;
-        case Reading::Kind::fold:
-            state.registers =
-                ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
-            break;
-        case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
-        case Reading::Kind::response: state.registers.assign(1, reading.response.of_always ? kTrue : kFalse); break;
-        case Reading::Kind::machine:
-            state.registers.assign(reading.machine.states.size(), kFalse);
-            state.next = state.registers;
-            state.registers[0] = kTrue;
-            state.table = make_table(reading.machine);
-            state.guards.assign(reading.machine.guards.size(), kTrue);
-            state.weak.assign(state.table.weak.size() + 1, kTop);
-            state.strong.assign(state.table.strong.size() + 1, kTop);
-            break;
-        default: break;
-    }
-}
-
-void Evaluator::advance_readings() {
-    for (std::size_t i = 0; i < plan_.readings.size(); ++i)
-        readings_[i] = advance(plan_.readings[i], reading_states_[i]);
-}
-
-etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) const {
-    switch (reading.kind) {
-        case Reading::Kind::latch:
-            if (steps_ == 0) state.registers[0] = streams_[reading.latch.operand];
-            return etlmon::settled(state.registers[0]);
-        case Reading::Kind::fold: return advance_fold(reading.fold, state);
-        case Reading::Kind::pending: return state.pending->advance(steps_, streams_);
-        case Reading::Kind::response: return advance_response(reading.response, state);
-        case Reading::Kind::machine: return advance_machine(reading.machine, state);
-        default: break;
-    }
-    etlmon::Reading result = readings_[reading.operands[0]];
-    for (std::uint32_t operand : reading.operands) {
-        const etlmon::Reading& other = readings_[operand];
-        result = reading.kind == Reading::Kind::conjunction ? min_of(result, other) : max_of(result, other);
-    }
-    return result;
-}
-
-/// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left side before now.
-etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
-    const bool takes_max = ir::takes_max(fold.op);
-    const bool open = fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
-    const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
-    Value& best = state.registers[0];
-    Value& guard = state.registers[1];
-    const Value right = streams_[fold.right];
-    if (open) best = takes_max ? max_of(best, min_of(guard, right)) : min_of(best, max_of(guard, right));
-    if (fold.left != kNone) guard = takes_max ? min_of(guard, streams_[fold.left]) : max_of(guard, streams_[fold.left]);
-    etlmon::Reading reading = etlmon::settled(best);
-    if (!reaches_past) return reading;
-    const Value unseen = streams_[fold.unseen];
-    if (takes_max)
-        reading.upper = etlmon::max_of(reading.upper, etlmon::min_of(guard.high, unseen.high));
-    else
-        reading.lower = etlmon::min_of(reading.lower, etlmon::max_of(guard.low, unseen.low));
-    return reading;
-}
-
-/// registers[0]: settled positions. Below, `worst` is the min of an always.
-etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
-    const bool always = response.of_always;
-    const auto worst = [&](Value a, Value b) { return always ? min_of(a, b) : max_of(a, b); };
-    const Value hopeless = always ? kFalse : kTrue;
-    Value& settled = state.registers[0];
-    if (steps_ >= response.inner.high) settled = worst(settled, streams_[response.passed]);
-    Value now = response.pending == kNone ? hopeless : streams_[response.pending];
-    if (response.recent != kNone) now = worst(now, streams_[response.recent]);
-
-    etlmon::Reading reading = etlmon::settled(worst(settled, now));
-    const Value answer = streams_[response.unseen_answer];
-    const Value body = streams_[response.unseen_body];
-    const bool reaches_past = !response.outer.bounded() || steps_ < response.outer.high;
-    if (always) {
-        reading.upper = etlmon::min_of(settled.high, etlmon::max_of(now.high, answer.high));
-        if (reaches_past) reading.lower = etlmon::min_of(reading.lower, body.low);
-    } else {
-        reading.lower = etlmon::max_of(settled.low, etlmon::min_of(now.low, answer.low));
-        if (reaches_past) reading.upper = etlmon::max_of(reading.upper, body.high);
-    }
-    return reading;
-}
-
-etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState& state) const {
-    const auto low = [&](Slot slot) { return streams_[slot].low; };
-    const auto high = [&](Slot slot) { return streams_[slot].high; };
-    const Table& table = state.table;
-    for (std::size_t g = 0; g < machine.guards.size(); ++g) {
-        state.guards[g] = kTrue;
-        for (Slot slot : machine.guards[g]) state.guards[g] = etlmon::min_of(state.guards[g], streams_[slot]);
-    }
-    std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1, low);
-    std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);
-
-    const auto states = static_cast<std::uint32_t>(machine.states.size());
-    etlmon::machine_advance(state.registers.data(), state.next.data(), states, table.transitions.data(),
-                            table.ends.data(), state.guards.data());
-    std::swap(state.registers, state.next);
-    return etlmon::machine_read(state.registers.data(), states, table.owed.data(), state.weak.data(),
-                                state.strong.data());
 }
 
 void Evaluator::judge() {
@@ -364,10 +281,12 @@ void Evaluator::judge() {
             verdicts_[m] = etlmon::Verdict{};
         } else if (monitor.sliding) {
             const Value value = streams_[monitor.stream];
-            verdicts_[m] = etlmon::sliding_verdict(monitor.shifted ? etlmon::shifted(value, monitor.shift) : value);
+            verdicts_[m] = etlmon::sliding_verdict(
+                monitor.shifted ? etlmon::shifted(value, monitor.shift) : value);
         } else if (finished_ == 0) {
             const etlmon::Reading& reading = readings_[monitor.reading];
-            verdicts_[m] = etlmon::prefix_verdict(monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
+            verdicts_[m] = etlmon::prefix_verdict(
+                monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
         }
     }
 }

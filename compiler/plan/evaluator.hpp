@@ -1,6 +1,7 @@
 // The plan, executed: what `etlc run` and calibration step.
-// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the generated class gives,
-// from the same runtime code. Keeps true: constant memory, work per step independent of history.
+// Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the
+// generated class gives, from the same runtime code. Keeps true: constant memory, work per step
+// independent of history.
 #pragma once
 
 #include <cstdint>
@@ -24,11 +25,11 @@ public:
     explicit Evaluator(const Plan& plan);
 
     void reset();
-    /// One time step; `samples` by index of the model's inputs (those that no monitor depends on are not looked at).
-    /// The verdicts are by index of plan.monitors and good until the next call.
+    /// One time step; `samples` by index of the model's inputs (those that no monitor depends on
+    /// are not looked at). The verdicts are by index of plan.monitors and good until the next call.
     const std::vector<etlmon::Verdict>& step(const std::vector<Sample>& samples);
-    /// The trace has ended: sliding monitors report one of their last positions per call, prefix monitors their last
-    /// verdict.
+    /// The trace has ended: sliding monitors report one of their last positions per call, prefix
+    /// monitors their last verdict.
     const std::vector<etlmon::Verdict>& finish();
 
     /// delta of the last step, by index of the model's predicates; NaN where it was unknown.
@@ -37,19 +38,20 @@ public:
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
     std::uint32_t missing_steps() const { return missing_steps_; }
 
-    /// The threshold that the next step uses. An adaptive one moves with the labels that observe() is given and, as in
-    /// generated code, stays through reset(); nobody but its caller gives labels, so `etlc run` has the one that was
-    /// calibrated.
+    /// The threshold that the next step uses. An adaptive one moves with the labels that observe()
+    /// is given and, as in generated code, stays through reset(); nobody but its caller gives
+    /// labels, so `etlc run` has the one that was calibrated.
     float threshold(Index predicate) const { return thresholds_[predicate]; }
     void observe(Index predicate, float distance, bool truth);
 
-    /// What the predicates of the last step were computed from: an input's values after `hold`, null where it is
-    /// missing, and a distance with its nearest row, by index in the model.
+    /// What the predicates of the last step were computed from: an input's values after `hold`,
+    /// null where it is missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
 
-    /// From now on formulas see, of predicates that are measured, this instead of their robustness: calibration reckons
-    /// with what other builds measure. Both ends go through formulas independently; a negation exchanges them.
+    /// From now on formulas see, of predicates that are measured, this instead of their robustness:
+    /// calibration reckons with what other builds measure. Both ends go through formulas
+    /// independently; a negation exchanges them.
     using Literal = std::function<Value(Index predicate)>;
     void replace_literals(Literal literal) { literal_ = std::move(literal); }
 
@@ -96,13 +98,17 @@ private:
 
     const Plan& plan_;
     const check::Model& model_;
-    std::vector<std::vector<float>> points_;    ///< per distance: scratch for vectors of scalars
-    std::vector<std::vector<float>> prepared_;  ///< per target and distance: rows as the kernels want them
-    std::vector<std::vector<float>> widened_;   ///< per distance: what its narrow rows stand for, where it has some
-    std::vector<const float*> inputs_;          ///< per input of the model: this step's values; null: missing
+    std::vector<std::vector<float>> points_;  ///< per distance: scratch for vectors of scalars
+    std::vector<std::vector<float>>
+        prepared_;  ///< per target and distance: rows as the kernels want them
+    std::vector<std::vector<float>>
+        widened_;  ///< per distance: what its narrow rows stand for, where it has some
+    std::vector<const float*>
+        inputs_;  ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<etlmon::Measured> distances_;
-    std::vector<etlmon::Enclosed> enclosed_;  ///< per distance: the same, with what narrow targets leave open
+    std::vector<etlmon::Enclosed>
+        enclosed_;  ///< per distance: the same, with what narrow targets leave open
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<std::uint8_t> integers_;  ///< scratch for an embedding as integers

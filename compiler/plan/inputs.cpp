@@ -9,8 +9,8 @@
 
 namespace etlc::plan {
 
-std::optional<Sample> narrow(const check::Input& input, bool present, const std::vector<double>& numbers,
-                             std::string& why) {
+std::optional<Sample> narrow(const check::Input& input, bool present,
+                             const std::vector<double>& numbers, std::string& why) {
     Sample sample;
     if (!present) return sample;
     sample.present = true;
@@ -24,8 +24,8 @@ std::optional<Sample> narrow(const check::Input& input, bool present, const std:
         if (input.type == check::InputType::f16) number = to_f16(number);
         if (input.type == check::InputType::i8) {
             if (!(number >= -128 && number <= 127 && number == std::floor(number))) {
-                why =
-                    fmt::format("'{}[{}]' is {}, expected an int8: an integer from -128 to 127", input.name, i, number);
+                why = fmt::format("'{}[{}]' is {}, expected an int8: an integer from -128 to 127",
+                                  input.name, i, number);
                 return std::nullopt;
             }
             sample.values.push_back(static_cast<float>(number) * input.scale);

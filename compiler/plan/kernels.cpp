@@ -13,7 +13,8 @@ etlmon::MetricId metric_id(const check::Distance& distance) {
         case angular: return etlmon::MetricId::angular;
         case mahalanobis: break;
     }
-    return distance.weights_diagonal ? etlmon::MetricId::mahalanobis_diagonal : etlmon::MetricId::mahalanobis;
+    return distance.weights_diagonal ? etlmon::MetricId::mahalanobis_diagonal
+                                     : etlmon::MetricId::mahalanobis;
 }
 
 std::vector<float> prepared_rows(const check::Model& model, const check::Distance& distance) {

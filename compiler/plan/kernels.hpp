@@ -1,6 +1,7 @@
 // What the runtime's kernels are called with.
-// Takes: a distance of the model. Gives: the rows of its target set in the form that the kernel wants, and its name
-// there. Keeps true: computed in double and in fixed order, so every machine makes the same constants.
+// Takes: a distance of the model. Gives: the rows of its target set in the form that the kernel
+// wants, and its name there. Keeps true: computed in double and in fixed order, so every machine
+// makes the same constants.
 #pragma once
 
 #include <string>

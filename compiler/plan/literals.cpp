@@ -10,7 +10,8 @@ namespace {
 using check::Values;
 using etlmon::Value;
 
-etlmon::Truth comparison(const check::Predicate& predicate, float delta, float epsilon, etlmon::Truth range) {
+etlmon::Truth comparison(const check::Predicate& predicate, float delta, float epsilon,
+                         etlmon::Truth range) {
     switch (predicate.comparison) {
         case check::Comparison::less_equal: return etlmon::is_at_most(delta, epsilon, range);
         case check::Comparison::less: return etlmon::is_below(delta, epsilon, range);
@@ -20,8 +21,8 @@ etlmon::Truth comparison(const check::Predicate& predicate, float delta, float e
     return etlmon::is_above(delta, epsilon, range);
 }
 
-/// A comparison changes its answer at most once on the way from the least delta to the greatest, and on the way from
-/// the least epsilon to the greatest: the corners have all answers.
+/// A comparison changes its answer at most once on the way from the least delta to the greatest,
+/// and on the way from the least epsilon to the greatest: the corners have all answers.
 etlmon::Truth truth_range(const check::Predicate& predicate) {
     const check::Range thresholds = predicate.threshold.range();
     etlmon::Truth range{true, false};
@@ -34,20 +35,24 @@ etlmon::Truth truth_range(const check::Predicate& predicate) {
 }
 
 Value value_of(etlmon::Truth truth) {
-    return {truth.low ? etlmon::kTop : etlmon::kBottom, truth.high ? etlmon::kTop : etlmon::kBottom};
+    return {truth.low ? etlmon::kTop : etlmon::kBottom,
+            truth.high ? etlmon::kTop : etlmon::kBottom};
 }
 
 }  // namespace
 
 Value unseen_range(const check::Predicate& predicate, Values values) {
-    if (values == Values::robustness) return etlmon::between(predicate.robustness.low, predicate.robustness.high);
+    if (values == Values::robustness)
+        return etlmon::between(predicate.robustness.low, predicate.robustness.high);
     return value_of(truth_range(predicate));
 }
 
 Value literal(const check::Predicate& predicate, float delta, float epsilon, Values values) {
-    if (values == Values::boolean) return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
+    if (values == Values::boolean)
+        return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
     const Value range = unseen_range(predicate, values);
-    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range) : etlmon::at_least(delta, epsilon, range);
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
+                                   : etlmon::at_least(delta, epsilon, range);
 }
 
 float observed(const check::Predicate& predicate, float epsilon, float distance) {
@@ -58,13 +63,14 @@ float observed(const check::Predicate& predicate, float epsilon, float distance)
 
 etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool upper_bound) {
     const float sign = upper_bound ? 1.0F : -1.0F;
-    return {adaptation.range.low, adaptation.range.high, sign * adaptation.widen, -sign * adaptation.tighten,
-            adaptation.grid};
+    return {adaptation.range.low, adaptation.range.high, sign * adaptation.widen,
+            -sign * adaptation.tighten, adaptation.grid};
 }
 
 Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
     const Value range = unseen_range(predicate, Values::robustness);
-    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range) : etlmon::at_least(delta, epsilon, range);
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
+                                   : etlmon::at_least(delta, epsilon, range);
 }
 
 }  // namespace etlc::plan

@@ -1,7 +1,7 @@
 // What predicates come to as values: in robustness, or in truth values.
-// Takes: a predicate and its delta. Gives: the value that its literal has at this step, and the one that stands for all
-// it may come to. Keeps true: truth values are +inf and -inf, so that everything above works on one type; a NaN delta
-// is unknown, which is the whole range.
+// Takes: a predicate and its delta. Gives: the value that its literal has at this step, and the one
+// that stands for all it may come to. Keeps true: truth values are +inf and -inf, so that
+// everything above works on one type; a NaN delta is unknown, which is the whole range.
 #pragma once
 
 #include "check/model.hpp"
@@ -10,14 +10,17 @@
 
 namespace etlc::plan {
 
-/// The lowest and highest value of a predicate: the range of its robustness or, in truth values, what its comparison
-/// can say over the range of its expression and that of its threshold.
+/// The lowest and highest value of a predicate: the range of its robustness or, in truth values,
+/// what its comparison can say over the range of its expression and that of its threshold.
 etlmon::Value unseen_range(const check::Predicate& predicate, check::Values values);
 
-/// The value of a predicate whose distance or expression came to delta, with the threshold that it has at this step.
-etlmon::Value literal(const check::Predicate& predicate, float delta, float epsilon, check::Values values);
+/// The value of a predicate whose distance or expression came to delta, with the threshold that it
+/// has at this step.
+etlmon::Value literal(const check::Predicate& predicate, float delta, float epsilon,
+                      check::Values values);
 /// Its robustness, where the distance is known within bounds.
-etlmon::Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon);
+etlmon::Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta,
+                      float epsilon);
 
 /// The threshold of an adaptive predicate after a positive frame of that distance.
 float observed(const check::Predicate& predicate, float epsilon, float distance);

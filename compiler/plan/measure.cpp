@@ -1,4 +1,5 @@
-// The measuring half of the evaluator: distances and expressions of one step, through the runtime's own kernels.
+// The measuring half of the evaluator: distances and expressions of one step, through the runtime's
+// own kernels.
 #include <algorithm>
 
 #include "etlmon/dynamic_enclosed.hpp"
@@ -65,7 +66,8 @@ void Evaluator::measure_distances() {
         if (!present) continue;
         const float* z = inputs_[distance.point[0]];
         if (distance.point_is_vector) {
-            for (std::size_t i = 0; i < distance.point.size(); ++i) points_[d][i] = *inputs_[distance.point[i]];
+            for (std::size_t i = 0; i < distance.point.size(); ++i)
+                points_[d][i] = *inputs_[distance.point[i]];
             z = points_[d].data();
         }
         enclosed_[d] = measure(d, z);
@@ -73,16 +75,17 @@ void Evaluator::measure_distances() {
     }
 }
 
-/// On narrow rows where there are some; where these leave a comparison open, or there are none, on float32. The kernels
-/// give narrow rows the bits that they give what these widen to (tests/runtime/test_narrow_*.cpp), so one kernel does.
+/// On narrow rows where there are some; where these leave a comparison open, or there are none, on
+/// float32. The kernels give narrow rows the bits that they give what these widen to
+/// (tests/runtime/test_narrow_*.cpp), so one kernel does.
 etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     const check::Distance& distance = model_.distances[d];
     const check::Target& target = model_.targets[distance.target];
     const etlmon::MetricId metric = metric_id(distance);
     const etlmon::AggregationId aggregation = aggregation_id(distance.aggregation);
     const auto measured_on = [&](const std::vector<float>& rows) {
-        return etlmon::measure(metric, aggregation, distance.kth, z, rows.data(), target.rows, target.dimension,
-                               distance.weights.data(), scratch_.data());
+        return etlmon::measure(metric, aggregation, distance.kth, z, rows.data(), target.rows,
+                               target.dimension, distance.weights.data(), scratch_.data());
     };
     const NarrowSet* set = narrow_set(plan_, d);
     if (set == nullptr) return etlmon::exactly(measured_on(prepared_[d]));
@@ -90,10 +93,12 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     const auto in_bytes = [&] {
         const etlmon::ByteRows rows{set->bytes.data(), set->sums.data(), set->scale,
                                     set->moved,        set->rows,        set->dimension};
-        return etlmon::measure_bytes(metric, aggregation, distance.kth, z, rows, integers_.data(), scratch_.data());
+        return etlmon::measure_bytes(metric, aggregation, distance.kth, z, rows, integers_.data(),
+                                     scratch_.data());
     };
     const auto widened = [&] {
-        return etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows, set->dimension);
+        return etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows,
+                               set->dimension);
     };
     const etlmon::Enclosed enclosed = in_integers(*set) ? in_bytes() : widened();
     return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;

@@ -35,10 +35,12 @@ std::uint16_t half_bits(double half) {
     const double magnitude = std::abs(half);
     if (magnitude == 0) return sign;
     const int exponent = std::max(std::ilogb(magnitude), kLeastExponent);
-    // Subnormal ones have no implicit bit: their fraction stays below 2^10 and carries nothing into the exponent.
-    const auto fraction = static_cast<std::uint32_t>(std::ldexp(magnitude, kFractionBits - exponent));
-    return static_cast<std::uint16_t>(sign + fraction +
-                                      (static_cast<std::uint32_t>(exponent - kLeastExponent) << kFractionBits));
+    // Subnormal ones have no implicit bit: their fraction stays below 2^10 and carries nothing into
+    // the exponent.
+    const auto fraction =
+        static_cast<std::uint32_t>(std::ldexp(magnitude, kFractionBits - exponent));
+    return static_cast<std::uint16_t>(
+        sign + fraction + (static_cast<std::uint32_t>(exponent - kLeastExponent) << kFractionBits));
 }
 
 bool full_weights(const check::Distance& distance) {
@@ -57,11 +59,15 @@ public:
         else if (distance_.metric == linf)
             sum_ = std::max(sum_, std::abs(e));
         else
-            sum_ += e * e * (distance_.metric == mahalanobis ? static_cast<double>(distance_.weights[i]) : 1.0);
+            sum_ +=
+                e * e *
+                (distance_.metric == mahalanobis ? static_cast<double>(distance_.weights[i]) : 1.0);
     }
     double value() const {
-        constexpr double kSlack = 1 + 1e-9;  // of the sums here, in double, over up to 2^20 elements
-        const bool plain = distance_.metric == check::Metric::l1 || distance_.metric == check::Metric::linf;
+        constexpr double kSlack =
+            1 + 1e-9;  // of the sums here, in double, over up to 2^20 elements
+        const bool plain =
+            distance_.metric == check::Metric::l1 || distance_.metric == check::Metric::linf;
         return (plain ? sum_ : std::sqrt(sum_)) * kSlack;
     }
 
@@ -79,7 +85,8 @@ public:
           set_(set),
           rows_(prepared_rows(model, distance_)) {}
 
-    /// The first row with an element that float16 cannot hold; the number of rows where there is none.
+    /// The first row with an element that float16 cannot hold; the number of rows where there is
+    /// none.
     std::uint32_t run() {
         set_.rows = target_.rows;
         set_.dimension = target_.dimension;
@@ -91,7 +98,8 @@ private:
         std::vector<double> narrow;
         for (const float g : rows_) {
             const double half = to_f16(static_cast<double>(g));
-            if (std::abs(half) > kLargestHalf) return static_cast<std::uint32_t>(narrow.size() / target_.dimension);
+            if (std::abs(half) > kLargestHalf)
+                return static_cast<std::uint32_t>(narrow.size() / target_.dimension);
             set_.halves.push_back(half_bits(half));
             narrow.push_back(half);
         }
@@ -99,8 +107,8 @@ private:
         return target_.rows;
     }
 
-    /// One scale for the whole set. What an integer stands for is scale x integer, rounded to float32 by some kernels
-    /// and not by others: that rounding counts as a move.
+    /// One scale for the whole set. What an integer stands for is scale x integer, rounded to
+    /// float32 by some kernels and not by others: that rounding counts as a move.
     std::uint32_t to_bytes() {
         constexpr double kLargest = 127;
         float greatest = 0;
@@ -108,17 +116,19 @@ private:
         set_.scale = std::max(rounded_up(static_cast<double>(greatest) / kLargest), FLT_MIN);
         std::vector<double> narrow;
         for (const float g : rows_) {
-            const double q = std::nearbyint(static_cast<double>(g) / static_cast<double>(set_.scale));
+            const double q =
+                std::nearbyint(static_cast<double>(g) / static_cast<double>(set_.scale));
             set_.bytes.push_back(static_cast<std::int8_t>(std::clamp(q, -kLargest, kLargest)));
-            narrow.push_back(static_cast<double>(set_.scale * static_cast<float>(set_.bytes.back())));
+            narrow.push_back(
+                static_cast<double>(set_.scale * static_cast<float>(set_.bytes.back())));
         }
         set_move(narrow);
         if (pays_in_integers()) set_sums();
         return target_.rows;
     }
 
-    /// What etlmon/bytes.hpp measures. It has no use for directions of which a row moved by 1/5 (z moves as well), and
-    /// leaves scales to float32 of which squares would overflow or vanish.
+    /// What etlmon/bytes.hpp measures. It has no use for directions of which a row moved by 1/5 (z
+    /// moves as well), and leaves scales to float32 of which squares would overflow or vanish.
     bool pays_in_integers() const {
         using enum check::Metric;
         constexpr float kLeastScale = 1e-11F;
@@ -140,8 +150,9 @@ private:
     }
 
     void set_move(const std::vector<double>& narrow) {
-        const bool lossless = std::equal(narrow.begin(), narrow.end(), rows_.begin(),
-                                         [](double a, float b) { return a == static_cast<double>(b); });
+        const bool lossless =
+            std::equal(narrow.begin(), narrow.end(), rows_.begin(),
+                       [](double a, float b) { return a == static_cast<double>(b); });
         const double rounding = set_.storage == Storage::i8 ? 0x1p-24 : 0;
         double moved = 0;
         for (std::size_t row = 0; row < target_.rows; ++row) {
@@ -157,7 +168,8 @@ private:
         set_.moved = rounded_up(moved);
     }
 
-    /// The row that the distance is defined by: of length 1, to the precision of double, for cosine and angular.
+    /// The row that the distance is defined by: of length 1, to the precision of double, for cosine
+    /// and angular.
     std::vector<double> exact_row(std::size_t row) const {
         const auto* begin = target_.values.data() + row * target_.dimension;
         std::vector<double> exact(begin, begin + target_.dimension);
@@ -174,9 +186,10 @@ private:
     std::vector<float> rows_;
 };
 
-/// Where the robustness of a predicate changes its sign, and where it passes the shift of a monitor that is calibrated
-/// as a whole, with or without a negation before it: status and finality are decided there and nowhere else. Around a
-/// shift the float32 subtractions leave a few roundings open.
+/// Where the robustness of a predicate changes its sign, and where it passes the shift of a monitor
+/// that is calibrated as a whole, with or without a negation before it: status and finality are
+/// decided there and nowhere else. Around a shift the float32 subtractions leave a few roundings
+/// open.
 void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<Cut>& cuts) {
     const float epsilon = predicate.threshold.value;
     const auto add = [&](Cut cut) {
@@ -186,7 +199,8 @@ void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<C
     add({epsilon, epsilon});
     for (const Monitor& monitor : plan.monitors) {
         if (!monitor.shifted) continue;
-        const double slack = (std::abs(static_cast<double>(monitor.shift)) + std::abs(static_cast<double>(epsilon))) *
+        const double slack = (std::abs(static_cast<double>(monitor.shift)) +
+                              std::abs(static_cast<double>(epsilon))) *
                                  4 * static_cast<double>(FLT_EPSILON) +
                              4 * static_cast<double>(FLT_MIN);
         for (const float shift : {monitor.shift, -monitor.shift}) {
@@ -214,8 +228,9 @@ bool compared_as_it_is(const Plan& plan, Index distance) {
 void refuse_row(const Plan& plan, const NarrowSet& set, std::uint32_t row, diag::Sink& sink) {
     const check::Target& target = plan.model->targets[plan.model->distances[set.distance].target];
     sink.report(Code::targets_not_narrow, target.span,
-                fmt::format("row {} (from 0) of target '{}' has an element beyond {}, the largest float16", row,
-                            target.name, kLargestHalf))
+                fmt::format(
+                    "row {} (from 0) of target '{}' has an element beyond {}, the largest float16",
+                    row, target.name, kLargestHalf))
         .note("leave --targets-as out, or use --targets-as i8, which has a scale for each set");
 }
 
@@ -234,7 +249,8 @@ void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
     if (storage == Storage::f32) return;
     for (const Index d : plan.distances) {
         const bool in_file = stored_set(plan, d) != nullptr;
-        if (in_file || full_weights(plan.model->distances[d]) || !compared_as_it_is(plan, d)) continue;
+        if (in_file || full_weights(plan.model->distances[d]) || !compared_as_it_is(plan, d))
+            continue;
         NarrowSet set{.distance = d, .storage = storage};
         if (const std::uint32_t row = Narrowing(*plan.model, set).run(); row < set.rows) {
             refuse_row(plan, set, row, sink);
@@ -247,9 +263,11 @@ void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
         plan.narrow.push_back(std::move(set));
     }
     if (!plan.narrow.empty() || sink.has_errors()) return;
-    sink.report(Code::targets_not_narrow, {}, fmt::format("--targets-as {} changes nothing here", word(storage)))
+    sink.report(Code::targets_not_narrow, {},
+                fmt::format("--targets-as {} changes nothing here", word(storage)))
         .note(
-            "it is for distances that a predicate compares with a threshold as they are, not for expressions, adaptive "
+            "it is for distances that a predicate compares with a threshold as they are, not for "
+            "expressions, adaptive "
             "thresholds or mahalanobis with full weights");
 }
 

@@ -1,7 +1,8 @@
 // Target sets in float16 or int8: `--targets-as`.
-// Takes: a plan, and the storage asked for. Gives: per distance the narrow rows, how far the narrowing moved a row, and
-// the numbers at which a comparison turns. Keeps true: `moved` is never below the true distance between a float32 row
-// and its narrow copy, in the norm that etlmon/enclosed.hpp reckons with; where no row moved, nothing else is kept.
+// Takes: a plan, and the storage asked for. Gives: per distance the narrow rows, how far the
+// narrowing moved a row, and the numbers at which a comparison turns. Keeps true: `moved` is never
+// below the true distance between a float32 row and its narrow copy, in the norm that
+// etlmon/enclosed.hpp reckons with; where no row moved, nothing else is kept.
 #pragma once
 
 #include <cstdint>
@@ -15,9 +16,9 @@ namespace etlc::plan {
 /// The nearest float16, ties to even, as a double; infinite beyond 65504.
 double to_f16(double x);
 
-/// Fills plan.narrow with every distance that can be measured on narrow rows: those that predicates compare with a
-/// number as they are. Expressions, adaptive thresholds and mahalanobis with full weights keep float32. Reports what
-/// makes it impossible.
+/// Fills plan.narrow with every distance that can be measured on narrow rows: those that predicates
+/// compare with a number as they are. Expressions, adaptive thresholds and mahalanobis with full
+/// weights keep float32. Reports what makes it impossible.
 void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink);
 
 /// The narrow rows of a distance; null where it is measured on float32.

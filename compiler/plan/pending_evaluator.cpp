@@ -28,21 +28,24 @@ void PendingEvaluator::reset() {
 etlmon::Reading PendingEvaluator::advance(std::uint32_t step, const std::vector<Value>& streams) {
     const std::uint32_t count = std::min(step, pending_.horizon) + 1;
     evaluate_parts(count, streams);
-    return pending_.is_fold ? advance_fold(step, count, streams) : advance_machine(step, count, streams);
+    return pending_.is_fold ? advance_fold(step, count, streams)
+                            : advance_machine(step, count, streams);
 }
 
 void PendingEvaluator::evaluate_parts(std::uint32_t count, const std::vector<Value>& streams) {
     for (std::size_t i = 0; i < pending_.parts.size(); ++i) evaluate_part(i, count, streams);
 }
 
-void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count, const std::vector<Value>& streams) {
+void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
+                                     const std::vector<Value>& streams) {
     const Pending::Part& part = pending_.parts[index];
     Readings& out = parts_[index];
     if (part.leaf != kNone) {
         auto& leaf = leaves_[index];
         if (leaf.size() > pending_.horizon) leaf.erase(leaf.begin());
         leaf.push_back(streams[part.leaf]);
-        std::transform(leaf.begin(), leaf.end(), out.begin(), [](Value value) { return etlmon::settled(value); });
+        std::transform(leaf.begin(), leaf.end(), out.begin(),
+                       [](Value value) { return etlmon::settled(value); });
         return;
     }
     if (part.unseen == kNone) {
@@ -56,13 +59,16 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count, con
         }
         return;
     }
-    const etlmon::Reading* left = part.operands.size() == 2 ? parts_[part.operands[0]].data() : nullptr;
+    const etlmon::Reading* left =
+        part.operands.size() == 2 ? parts_[part.operands[0]].data() : nullptr;
     const etlmon::Reading* right = parts_[part.operands.back()].data();
     const auto [low, high] = part.interval;
     if (ir::takes_max(part.op))
-        etlmon::pending_at_each<etlmon::Seeking>(left, right, out.data(), count, low, high, streams[part.unseen].high);
+        etlmon::pending_at_each<etlmon::Seeking>(left, right, out.data(), count, low, high,
+                                                 streams[part.unseen].high);
     else
-        etlmon::pending_at_each<etlmon::Guarding>(left, right, out.data(), count, low, high, streams[part.unseen].low);
+        etlmon::pending_at_each<etlmon::Guarding>(left, right, out.data(), count, low, high,
+                                                  streams[part.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count,
@@ -72,10 +78,12 @@ etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t
     const etlmon::Reading* right = parts_[fold.right].data();
     const auto [low, high] = fold.interval;
     if (ir::takes_max(fold.op))
-        return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left, right, count, step,
-                                                           pending_.horizon, low, high, streams[fold.unseen].high);
-    return etlmon::pending_from_start<etlmon::Guarding>(registers_[0], registers_[1], left, right, count, step,
-                                                        pending_.horizon, low, high, streams[fold.unseen].low);
+        return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left,
+                                                           right, count, step, pending_.horizon,
+                                                           low, high, streams[fold.unseen].high);
+    return etlmon::pending_from_start<etlmon::Guarding>(registers_[0], registers_[1], left, right,
+                                                        count, step, pending_.horizon, low, high,
+                                                        streams[fold.unseen].low);
 }
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
@@ -93,9 +101,10 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
     const std::size_t states = registers_.size();
     Readings scratch(2 * states);
     std::vector<Value> values(width + states);
-    return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states), guards.data(),
-                                   static_cast<std::uint32_t>(width), count, step >= pending_.horizon,
-                                   table_.transitions.data(), table_.ends.data(), table_.owed.data(), weak.data(),
+    return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states),
+                                   guards.data(), static_cast<std::uint32_t>(width), count,
+                                   step >= pending_.horizon, table_.transitions.data(),
+                                   table_.ends.data(), table_.owed.data(), weak.data(),
                                    strong.data(), scratch.data(), values.data());
 }
 

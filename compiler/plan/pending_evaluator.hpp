@@ -1,6 +1,6 @@
 // A pending reading, executed: the last positions of the prefix anew at every step.
-// Takes: this step's streams. Gives: the reading. Keeps true: constant memory; the same runtime loops as generated
-// code.
+// Takes: this step's streams. Gives: the reading. Keeps true: constant memory; the same runtime
+// loops as generated code.
 #pragma once
 
 #include <cstdint>
@@ -25,14 +25,17 @@ private:
 
     void evaluate_parts(std::uint32_t count, const std::vector<Value>& streams);
     void evaluate_part(std::size_t index, std::uint32_t count, const std::vector<Value>& streams);
-    etlmon::Reading advance_fold(std::uint32_t step, std::uint32_t count, const std::vector<Value>& streams);
-    etlmon::Reading advance_machine(std::uint32_t step, std::uint32_t count, const std::vector<Value>& streams);
+    etlmon::Reading advance_fold(std::uint32_t step, std::uint32_t count,
+                                 const std::vector<Value>& streams);
+    etlmon::Reading advance_machine(std::uint32_t step, std::uint32_t count,
+                                    const std::vector<Value>& streams);
 
     const Pending& pending_;
     Table table_;
-    std::vector<std::vector<Value>> leaves_;  ///< per part: the last horizon + 1 values, oldest first
-    std::vector<Readings> parts_;             ///< per part: at the same positions
-    std::vector<Value> registers_;            ///< where everything is settled
+    std::vector<std::vector<Value>>
+        leaves_;                    ///< per part: the last horizon + 1 values, oldest first
+    std::vector<Readings> parts_;   ///< per part: at the same positions
+    std::vector<Value> registers_;  ///< where everything is settled
 };
 
 }  // namespace etlc::plan

@@ -59,10 +59,12 @@ public:
                         .node = program_.monitors[index]};
         if (source.calibration) {
             if (plan_.values == check::Values::boolean) {
-                sink.report(diag::Code::calibration_not_available, source.calibration->threshold.span,
-                            fmt::format("'{}' is calibrated as a whole, which shifts its robustness; with --values "
-                                        "boolean it has none",
-                                        source.name));
+                sink.report(
+                    diag::Code::calibration_not_available, source.calibration->threshold.span,
+                    fmt::format(
+                        "'{}' is calibrated as a whole, which shifts its robustness; with --values "
+                        "boolean it has none",
+                        source.name));
                 return false;
             }
             monitor.shifted = true;
@@ -76,7 +78,8 @@ public:
             const std::size_t known = readings_.oversize().size();
             const auto reading = readings_.of(program_.monitors[index]);
             for (std::size_t i = known; i < readings_.oversize().size(); ++i)
-                refuse_part(source, readings_.oversize()[i], program_.graph, limits_, plan_.values, sink);
+                refuse_part(source, readings_.oversize()[i], program_.graph, limits_, plan_.values,
+                            sink);
             if (!reading) return false;
             monitor.reading = *reading;
         }
@@ -91,22 +94,26 @@ public:
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
-        plan_.counts_steps = plan_.has_sliding || std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
-                             std::any_of(plan_.streams.begin(), plan_.streams.end(),
-                                         [](const Stream& stream) { return stream.op == StreamOp::within; });
+        plan_.counts_steps =
+            plan_.has_sliding ||
+            std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
+            std::any_of(plan_.streams.begin(), plan_.streams.end(),
+                        [](const Stream& stream) { return stream.op == StreamOp::within; });
         add_costs(plan_);
         return std::move(plan_);
     }
 
 private:
     static bool counts(const Reading& reading) {
-        const bool by_position = reading.kind == Reading::Kind::latch || reading.kind == Reading::Kind::response ||
+        const bool by_position = reading.kind == Reading::Kind::latch ||
+                                 reading.kind == Reading::Kind::response ||
                                  reading.kind == Reading::Kind::pending;
         if (by_position) return true;
         return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
     }
 
-    /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what uses them.
+    /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what
+    /// uses them.
     void keep_used_streams() {
         std::vector<bool> used(plan_.streams.size(), false);
         const auto use = [&](const auto& self, Slot slot) -> void {
@@ -159,11 +166,12 @@ private:
 
 }  // namespace
 
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink, check::Values values,
-                         Storage targets_as) {
+std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
+                         check::Values values, Storage targets_as) {
     Planning planning(program, limits, values);
     bool complete = true;
-    for (Index m = 0; m < program.monitors.size(); ++m) complete = planning.add_monitor(m, sink) && complete;
+    for (Index m = 0; m < program.monitors.size(); ++m)
+        complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;
     Plan result = planning.finish(targets_as, sink);
     check_budget(result, program.graph, limits, sink);

@@ -1,7 +1,8 @@
 // What a monitor does at every step, in order: the last form before code.
 // Takes: the graph. Gives: emit/ and the evaluator the same steps to print and to execute.
-// Keeps true: streams and readings stand in an order in which operands come first; each distance, stream and reading is
-// computed once however many monitors use it; the state is fixed here and does not depend on the trace.
+// Keeps true: streams and readings stand in an order in which operands come first; each distance,
+// stream and reading is computed once however many monitors use it; the state is fixed here and
+// does not depend on the trace.
 #pragma once
 
 #include <cstdint>
@@ -25,7 +26,7 @@ using etlmon::Value;
 using ir::NodeId;
 using Slot = std::uint32_t;  ///< index of a stream
 
-// ---- streams: a robustness for one position after the other --------------------------------------------------------
+// ---- streams: a robustness for one position after the other -------------------------------------
 
 enum class StreamOp : std::uint8_t {
     constant,     ///< `value`
@@ -35,8 +36,9 @@ enum class StreamOp : std::uint8_t {
     conjunction,  ///< min of the operands
     disjunction,  ///< max of the operands
     within,       ///< the operand at the positions of `interval`, elsewhere `value`
-    delay,        ///< the operand `length` steps ago: later by `length`, so that operands of different lag meet
-    shift,        ///< the operand `length` positions earlier; `value` where there is none
+    delay,  ///< the operand `length` steps ago: later by `length`, so that operands of different
+            ///< lag meet
+    shift,  ///< the operand `length` positions earlier; `value` where there is none
     running_max,  ///< over all positions so far
     running_min,
     window_max,  ///< over the last `length` positions
@@ -58,15 +60,16 @@ struct Stream {
     std::uint32_t length = 0;       ///< of delays, shifts, windows and widenings
     std::uint32_t from_length = 0;  ///< widening: of the operand's window
     ir::Interval interval;          ///< within: of positions
-    /// constant; shift: where there is no earlier position; within: elsewhere; since, trigger: before the first
-    /// position
+    /// constant; shift: where there is no earlier position; within: elsewhere; since, trigger:
+    /// before the first position
     Value value{};
-    std::uint32_t lag = 0;          ///< after step i the stream tells about position i - lag
-    std::uint32_t operand_lag = 0;  ///< and its operands about position i - operand_lag; a constant is of any lag
-    NodeId node = kNone;            ///< the formula it is, for comments; kNone for the values in between
+    std::uint32_t lag = 0;  ///< after step i the stream tells about position i - lag
+    std::uint32_t operand_lag =
+        0;  ///< and its operands about position i - operand_lag; a constant is of any lag
+    NodeId node = kNone;  ///< the formula it is, for comments; kNone for the values in between
 };
 
-// ---- readings: what prefix monitors say about position 0 -----------------------------------------------------------
+// ---- readings: what prefix monitors say about position 0 ----------------------------------------
 
 /// A formula without future at the top: its value at step 0, for good.
 struct Latch {
@@ -82,20 +85,23 @@ struct Fold {
     Slot unseen = 0;  ///< lowest and highest unseen value of `right`
 };
 
-/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. What the positions whose window
-/// is still open say is one recurrence, pending = max(min(pending, f), g), true before the first position. And they are
-/// settled by the same value: the window of some position passed without an answer exactly where pending stayed low for
-/// b - a + 1 steps on end, so settled = min(settled, the max of the last b - a + 1 pendings). (Both sides are made of
-/// min and max, so it is enough to compare them where f and g are only true or false: a run of false pendings begins
-/// with a position that asks and lasts until an answer.) Without f and from every position, pending is g itself and the
-/// body's own stream settles.
+/// G[A,B] (f || F[a,b] g) and its dual F[A,B] (f && G[a,b] g), f and g without future. What the
+/// positions whose window is still open say is one recurrence, pending = max(min(pending, f), g),
+/// true before the first position. And they are settled by the same value: the window of some
+/// position passed without an answer exactly where pending stayed low for b - a + 1 steps on end,
+/// so settled = min(settled, the max of the last b - a + 1 pendings). (Both sides are made of min
+/// and max, so it is enough to compare them where f and g are only true or false: a run of false
+/// pendings begins with a position that asks and lasts until an answer.) Without f and from every
+/// position, pending is g itself and the body's own stream settles.
 struct Response {
     bool of_always = true;  ///< else the dual
     ir::Interval outer;
-    ir::Interval inner;      ///< bounded
-    Slot passed = 0;         ///< what the windows that close at this step came to
-    Slot pending = kNone;    ///< what open windows say; kNone: none has begun at the last positions, which is hopeless
-    Slot recent = kNone;     ///< what speaks for positions whose windows have not begun; kNone: nothing, or none such
+    ir::Interval inner;    ///< bounded
+    Slot passed = 0;       ///< what the windows that close at this step came to
+    Slot pending = kNone;  ///< what open windows say; kNone: none has begun at the last positions,
+                           ///< which is hopeless
+    Slot recent = kNone;   ///< what speaks for positions whose windows have not begun; kNone:
+                           ///< nothing, or none such
     Slot unseen_answer = 0;  ///< lowest and highest unseen value of g
     Slot unseen_body = 0;
 };
@@ -103,9 +109,10 @@ struct Response {
 /// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.
 struct Machine {
     struct State {
-        bool strong = false;         ///< owes an F or U
-        bool always_true = false;    ///< its register never leaves +inf and is not kept
-        Slot weak_unseen = kNone;    ///< lowest unseen value of what it owes, weakly all of it; else kNone
+        bool strong = false;       ///< owes an F or U
+        bool always_true = false;  ///< its register never leaves +inf and is not kept
+        Slot weak_unseen =
+            kNone;  ///< lowest unseen value of what it owes, weakly all of it; else kNone
         Slot strong_unseen = kNone;  ///< highest unseen value of what it owes strongly
     };
     Automaton automaton;
@@ -113,9 +120,10 @@ struct Machine {
     std::vector<std::vector<Slot>> guards;  ///< per guard of the automaton, its literals as streams
 };
 
-/// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled `horizon` steps late; at
-/// the positions since, they are evaluated anew at every step on the prefix as it ends now (etlmon/pending.hpp), and
-/// the registers, which stand where everything is settled, are carried over them.
+/// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled
+/// `horizon` steps late; at the positions since, they are evaluated anew at every step on the
+/// prefix as it ends now (etlmon/pending.hpp), and the registers, which stand where everything is
+/// settled, are carried over them.
 struct Pending {
     struct Part {
         NodeId node = kNone;
@@ -134,7 +142,15 @@ struct Pending {
 };
 
 struct Reading {
-    enum class Kind : std::uint8_t { latch, fold, response, machine, pending, conjunction, disjunction };
+    enum class Kind : std::uint8_t {
+        latch,
+        fold,
+        response,
+        machine,
+        pending,
+        conjunction,
+        disjunction
+    };
     Kind kind = Kind::latch;
     NodeId node = 0;
     Latch latch;
@@ -148,7 +164,7 @@ struct Reading {
 /// Every place in a reading that names a stream; some may be kNone.
 std::vector<Slot*> slots_of(Reading& reading);
 
-// ---- the plan ------------------------------------------------------------------------------------------------------
+// ---- the plan -----------------------------------------------------------------------------------
 
 struct Monitor {
     std::string name;
@@ -162,7 +178,8 @@ struct Monitor {
     float shift = 0;
 };
 
-/// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is counted in each).
+/// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is
+/// counted in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
     std::uint64_t stack_bytes = 0;          ///< arrays of a step: positions that are evaluated anew
@@ -197,11 +214,12 @@ struct NarrowSet {
     std::uint32_t dimension = 0;
     std::vector<std::uint16_t> halves;  ///< f16: IEEE bits
     std::vector<std::int8_t> bytes;     ///< i8
-    std::vector<std::int32_t> sums;     ///< i8 measured in integers: per row the sum of squares, then per row the sum
-    float scale = 1;                    ///< i8: value = scale x integer
-    float moved = 0;                    ///< no row is farther from its float32 row, in the distance's norm
-    bool lossless = false;              ///< every element widens to the float32 it was: no other copy is kept
-    std::vector<Cut> cuts;              ///< of the distance: where some predicate's comparison turns
+    std::vector<std::int32_t>
+        sums;         ///< i8 measured in integers: per row the sum of squares, then per row the sum
+    float scale = 1;  ///< i8: value = scale x integer
+    float moved = 0;  ///< no row is farther from its float32 row, in the distance's norm
+    bool lossless = false;  ///< every element widens to the float32 it was: no other copy is kept
+    std::vector<Cut> cuts;  ///< of the distance: where some predicate's comparison turns
 };
 
 struct Plan {
@@ -226,14 +244,17 @@ struct Limits {
     std::uint64_t state_bytes = 1U << 20U;  ///< and the stack of a step with it
     std::uint64_t code_bytes = 64U << 10U;
     std::uint64_t operations = 1U << 20U;
-    std::uint64_t inline_target_bytes = 256U << 10U;  ///< larger target sets go to a file beside the header
+    std::uint64_t inline_target_bytes =
+        256U << 10U;  ///< larger target sets go to a file beside the header
 };
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
 std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
-                         check::Values values = check::Values::robustness, Storage targets_as = Storage::f32);
+                         check::Values values = check::Values::robustness,
+                         Storage targets_as = Storage::f32);
 
-/// A plan without monitors: the evaluator then only measures these predicates, as it does for monitors that use them.
+/// A plan without monitors: the evaluator then only measures these predicates, as it does for
+/// monitors that use them.
 Plan measuring(const check::Model& model, const std::vector<Index>& predicates);
 
 /// The plan as text: `--emit plan`.

@@ -18,13 +18,15 @@ bool left_to_kernels(const Plan& plan, Index embedding) {
         return distance.point_is_vector || distance.point[0] != embedding || checks_point(plan, d);
     };
     const check::Input& input = plan.model->inputs[embedding];
-    return input.is_embedding() && input.hold == 0 && std::all_of(plan.distances.begin(), plan.distances.end(), leaves);
+    return input.is_embedding() && input.hold == 0 &&
+           std::all_of(plan.distances.begin(), plan.distances.end(), leaves);
 }
 
 bool shares_direction(const Plan& plan, Index embedding) {
     const auto needs = [&](Index d) {
         const check::Distance& distance = plan.model->distances[d];
-        return !distance.point_is_vector && distance.point[0] == embedding && !rows_as_given(distance);
+        return !distance.point_is_vector && distance.point[0] == embedding &&
+               !rows_as_given(distance);
     };
     return plan.values != check::Values::boolean &&
            std::count_if(plan.distances.begin(), plan.distances.end(), needs) > 1;

@@ -1,14 +1,15 @@
-// What a step has to find out about an embedding before kernels are called with it, and what they find out themselves.
-// Takes: a plan. Gives: who looks whether a point is there and finite, and who finds its length. Keeps true: nothing is
-// looked at twice where a kernel can see it in what it computes anyway.
+// What a step has to find out about an embedding before kernels are called with it, and what they
+// find out themselves. Takes: a plan. Gives: who looks whether a point is there and finite, and who
+// finds its length. Keeps true: nothing is looked at twice where a kernel can see it in what it
+// computes anyway.
 #pragma once
 
 #include "plan/plan.hpp"
 
 namespace etlc::plan {
 
-/// The distance's kernel finds out by itself whether all elements of the point are finite: one that measures every row
-/// as it stands in the header. Others are called where they are.
+/// The distance's kernel finds out by itself whether all elements of the point are finite: one that
+/// measures every row as it stands in the header. Others are called where they are.
 bool checks_point(const Plan& plan, Index distance);
 
 /// All kernels that an embedding goes to do; where it is held, step() has to know before.

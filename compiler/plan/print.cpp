@@ -61,8 +61,10 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     if (s.length != 0) text += fmt::format(" over {}", s.length);
     if (s.op == StreamOp::within)
         text += fmt::format(" positions {} to {}, else {}", s.interval.low,
-                            s.interval.bounded() ? fmt::format("{}", s.interval.high) : "the end", value_text(s.value));
-    const bool has_past = s.op == StreamOp::shift || s.op == StreamOp::since || s.op == StreamOp::trigger;
+                            s.interval.bounded() ? fmt::format("{}", s.interval.high) : "the end",
+                            value_text(s.value));
+    const bool has_past =
+        s.op == StreamOp::shift || s.op == StreamOp::since || s.op == StreamOp::trigger;
     if (has_past) text += " from " + value_text(s.value);
     if (s.lag != 0) text += fmt::format(", {} steps late", s.lag);
     if (s.node != kNone) text += fmt::format("  // {}", graph.text(s.node));
@@ -78,8 +80,9 @@ std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations)
 
 std::string machine_text(const Machine& machine, const ir::Graph& graph) {
     const Automaton& automaton = machine.automaton;
-    std::string text = fmt::format("state machine of {} states, {} transitions, {}\n", automaton.states.size(),
-                                   automaton.transitions.size(), unrolled(machine) ? "unrolled" : "as a table");
+    std::string text =
+        fmt::format("state machine of {} states, {} transitions, {}\n", automaton.states.size(),
+                    automaton.transitions.size(), unrolled(machine) ? "unrolled" : "as a table");
     for (std::size_t state = 0; state < automaton.states.size(); ++state) {
         text += fmt::format("       q{}: {}{}\n", state, owed(graph, automaton.states[state]),
                             machine.states[state].always_true ? ", always +inf" : "");
@@ -111,18 +114,22 @@ std::string pending_text(const Pending& pending, const ir::Graph& graph) {
 std::string reading_text(const Reading& reading, const ir::Graph& graph) {
     std::string text;
     switch (reading.kind) {
-        case Reading::Kind::latch: return fmt::format("latch of s{} at step 0\n", reading.latch.operand);
+        case Reading::Kind::latch:
+            return fmt::format("latch of s{} at step 0\n", reading.latch.operand);
         case Reading::Kind::fold:
             text = fmt::format("fold {} over", ir::info(reading.fold.op).symbol);
             if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
-            return text + fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
+            return text +
+                   fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
         case Reading::Kind::pending: return pending_text(reading.pending, graph);
         case Reading::Kind::response:
             text = fmt::format("response, passed s{}", reading.response.passed);
-            if (reading.response.pending != kNone) text += fmt::format(", pending s{}", reading.response.pending);
-            if (reading.response.recent != kNone) text += fmt::format(", recent s{}", reading.response.recent);
-            return text +
-                   fmt::format(", unseen s{} s{}\n", reading.response.unseen_answer, reading.response.unseen_body);
+            if (reading.response.pending != kNone)
+                text += fmt::format(", pending s{}", reading.response.pending);
+            if (reading.response.recent != kNone)
+                text += fmt::format(", recent s{}", reading.response.recent);
+            return text + fmt::format(", unseen s{} s{}\n", reading.response.unseen_answer,
+                                      reading.response.unseen_body);
         case Reading::Kind::machine: return machine_text(reading.machine, graph);
         case Reading::Kind::conjunction:
         case Reading::Kind::disjunction: break;
@@ -145,8 +152,8 @@ std::string print(const Plan& plan, const ir::Graph& graph) {
     }
     text += "monitors\n";
     for (const Monitor& monitor : plan.monitors) {
-        text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n", monitor.name,
-                                              monitor.stream, monitor.horizon)
+        text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n",
+                                              monitor.name, monitor.stream, monitor.horizon)
                                 : fmt::format("  {} = r{}\n", monitor.name, monitor.reading);
     }
     return text;

@@ -12,8 +12,9 @@ using ir::Op;
 
 namespace {
 
-/// What all state machines of a plan may take to build, for each transition that one of them may have: 2^27 steps at
-/// the default limits, some tenths of a second. A count and not a time, so that a spec has one answer everywhere.
+/// What all state machines of a plan may take to build, for each transition that one of them may
+/// have: 2^27 steps at the default limits, some tenths of a second. A count and not a time, so that
+/// a spec has one answer everywhere.
 constexpr std::uint64_t kWorkPerTransition = 8192;
 /// No machine takes more than its share, so that there is some for others.
 constexpr std::uint64_t kShares = 2;
@@ -38,7 +39,8 @@ std::uint64_t total_work(const Limits& limits) {
 /// What the limits allow a single automaton; the whole plan is weighed afterwards.
 AutomatonLimits machine_limits(const Limits& limits) {
     AutomatonLimits result;
-    result.states = static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
+    result.states =
+        static_cast<std::size_t>(std::min(kNumbered, limits.state_bytes / (2 * sizeof(Value)) + 1));
     result.transitions = static_cast<std::size_t>(most_transitions(limits));
     result.work = total_work(limits) / kShares;
     return result;
@@ -46,20 +48,23 @@ AutomatonLimits machine_limits(const Limits& limits) {
 
 AutomatonLimits small_machine_limits(const Limits& limits) {
     const AutomatonLimits any = machine_limits(limits);
-    return {std::min(any.states, kSmallMachineStates), std::min(any.transitions, kSmallMachineTransitions),
-            total_work(limits) / kSmallShares};
+    return {std::min(any.states, kSmallMachineStates),
+            std::min(any.transitions, kSmallMachineTransitions), total_work(limits) / kSmallShares};
 }
 
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
 bool loops_freely(const Automaton& automaton, std::uint32_t state) {
     return std::any_of(automaton.transitions.begin(), automaton.transitions.end(),
-                       [&](const Transition& t) { return t.source == state && t.target == state && t.guard == 0; });
+                       [&](const Transition& t) {
+                           return t.source == state && t.target == state && t.guard == 0;
+                       });
 }
 
 }  // namespace
 
-ReadingBuilder::ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
-                               const Limits& limits, check::Values values)
+ReadingBuilder::ReadingBuilder(ir::Graph& graph, StreamBuilder& streams,
+                               std::vector<Reading>& readings, const Limits& limits,
+                               check::Values values)
     : graph_(graph),
       streams_(streams),
       readings_(readings),
@@ -75,7 +80,8 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
         reading = latch(id);
     else if (ir::info(node.op).arity == ir::Arity::many)
         reading = combination(node, id);
-    else if (std::none_of(node.operands.begin(), node.operands.end(), [&](NodeId o) { return graph_[o].has_future; }))
+    else if (std::none_of(node.operands.begin(), node.operands.end(),
+                          [&](NodeId o) { return graph_[o].has_future; }))
         reading = fold(node, id);
     else if (auto body = response(node))
         reading = add({.kind = Reading::Kind::response, .node = id, .response = *body});
@@ -112,7 +118,8 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     std::vector<NodeId> present;
     if (with_excuse) {
         future.clear();
-        for (NodeId operand : graph_[body].operands) (graph_[operand].has_future ? future : present).push_back(operand);
+        for (NodeId operand : graph_[body].operands)
+            (graph_[operand].has_future ? future : present).push_back(operand);
     }
     if (future.size() != 1) return std::nullopt;
     const Node inner = graph_[future[0]];
@@ -124,7 +131,8 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     const Slot answer = streams_.of(inner.operands[0]);
     result.unseen_answer = streams_.unseen(inner.operands[0]);
     result.unseen_body = streams_.unseen(body);
-    const etlmon::Value idle = of_always ? etlmon::kTrue : etlmon::kFalse;  // where nothing is asked
+    const etlmon::Value idle =
+        of_always ? etlmon::kTrue : etlmon::kFalse;  // where nothing is asked
     const etlmon::Value urgent = of_always ? etlmon::kFalse : etlmon::kTrue;
     const auto [low, high] = inner.interval;
     if (present.empty() && node.interval == ir::Interval{}) {
@@ -133,11 +141,12 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
         return result;
     }
     const Slot stated =
-        present.empty()
-            ? streams_.constant(urgent)
-            : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction, present, node.span));
+        present.empty() ? streams_.constant(urgent)
+                        : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction,
+                                                     present, node.span));
     const Slot excuse = streams_.within(stated, node.interval, idle);
-    result.pending = streams_.pending(of_always, streams_.shift(excuse, low, 0, idle, kNone), answer);
+    result.pending =
+        streams_.pending(of_always, streams_.shift(excuse, low, 0, idle, kNone), answer);
     const StreamOp best = of_always ? StreamOp::window_max : StreamOp::window_min;
     const StreamOp worst = of_always ? StreamOp::window_min : StreamOp::window_max;
     result.passed = streams_.recent(best, result.pending, high - low + 1);
@@ -160,9 +169,11 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
         if (!complete && splitting_) return std::nullopt;
         if (part) parts.push_back(*part);
     }
-    if (!present.empty()) parts.push_back(*of(graph_.combine(node.op, std::move(present), node.span)));
+    if (!present.empty())
+        parts.push_back(*of(graph_.combine(node.op, std::move(present), node.span)));
     if (!complete) return std::nullopt;
-    const auto kind = node.op == Op::conjunction ? Reading::Kind::conjunction : Reading::Kind::disjunction;
+    const auto kind =
+        node.op == Op::conjunction ? Reading::Kind::conjunction : Reading::Kind::disjunction;
     return add({.kind = kind, .node = id, .operands = std::move(parts)});
 }
 
@@ -188,8 +199,8 @@ Machine ReadingBuilder::machine_of(Automaton automaton) {
     return machine;
 }
 
-std::optional<Automaton> ReadingBuilder::automaton(NodeId id, Literals literals, AutomatonLimits limits,
-                                                   AutomatonSize& reached) {
+std::optional<Automaton> ReadingBuilder::automaton(NodeId id, Literals literals,
+                                                   AutomatonLimits limits, AutomatonSize& reached) {
     limits.work = std::min(limits.work, work_left_);
     auto result = build_automaton(graph_, id, literals, limits, reached);
     work_left_ -= std::min(work_left_, reached.work);
@@ -213,7 +224,8 @@ std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits&
 }
 
 /// The part of `pending` that is this formula, with its operands before it.
-std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id) {
+std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known,
+                                           NodeId id) {
     if (const auto found = known.find(id); found != known.end()) return found->second;
     const Node node = graph_[id];
     Pending::Part part{.node = id};
@@ -222,8 +234,10 @@ std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, st
     } else {
         part.op = node.op;
         part.interval = node.interval;
-        for (NodeId operand : node.operands) part.operands.push_back(pending_part(pending, known, operand));
-        if (ir::info(node.op).tense == ir::Tense::future) part.unseen = streams_.unseen(node.operands.back());
+        for (NodeId operand : node.operands)
+            part.operands.push_back(pending_part(pending, known, operand));
+        if (ir::info(node.op).tense == ir::Tense::future)
+            part.unseen = streams_.unseen(node.operands.back());
     }
     pending.horizon = std::max(pending.horizon, node.horizon);
     pending.parts.push_back(std::move(part));
@@ -235,11 +249,13 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     Reading reading{.kind = Reading::Kind::pending, .node = id};
     Pending& pending = reading.pending;
     std::map<NodeId, std::uint32_t> known;
-    pending.is_fold = std::all_of(node.operands.begin(), node.operands.end(),
-                                  [&](NodeId operand) { return graph_[operand].horizon != kUnbounded; });
+    pending.is_fold = std::all_of(node.operands.begin(), node.operands.end(), [&](NodeId operand) {
+        return graph_[operand].horizon != kUnbounded;
+    });
     if (pending.is_fold) {
         pending.fold = {.op = node.op, .interval = node.interval};
-        if (node.operands.size() == 2) pending.fold.left = pending_part(pending, known, node.operands[0]);
+        if (node.operands.size() == 2)
+            pending.fold.left = pending_part(pending, known, node.operands[0]);
         pending.fold.right = pending_part(pending, known, node.operands.back());
         pending.fold.unseen = streams_.unseen(node.operands.back());
         return reading;
@@ -256,8 +272,10 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     return reading;
 }
 
-/// The formula with its windows split, where that can be read with fewer operations; else nothing is added.
-std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id, std::uint64_t operations) {
+/// The formula with its windows split, where that can be read with fewer operations; else nothing
+/// is added.
+std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id,
+                                                                std::uint64_t operations) {
     const NodeId split = split_windows(graph_, id);
     if (split == id || splitting_) return std::nullopt;
     const std::size_t before = readings_.size();
@@ -267,23 +285,26 @@ std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id, std::
     splitting_ = false;
     oversize_.resize(failures);
     Cost cost;
-    for (std::size_t r = before; r < readings_.size(); ++r) cost = cost + cost_of(readings_[r], values_);
+    for (std::size_t r = before; r < readings_.size(); ++r)
+        cost = cost + cost_of(readings_[r], values_);
     if (reading && within(cost, limits_) && cost.operations < operations) return reading;
     readings_.resize(before);
     std::erase_if(known_, [&](const auto& entry) { return entry.second >= before; });
     return std::nullopt;
 }
 
-/// A small machine where there is one, else what takes the fewest operations: pending positions, the formula with its
-/// windows split, a machine up to the limits.
+/// A small machine where there is one, else what takes the fewest operations: pending positions,
+/// the formula with its windows split, a machine up to the limits.
 std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
     const auto as_reading = [&](Machine machine) {
         return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
     };
     const std::size_t failures = oversize_.size();
-    if (auto small = machine(id, small_machine_limits(limits_))) return add(as_reading(std::move(*small)));
+    if (auto small = machine(id, small_machine_limits(limits_)))
+        return add(as_reading(std::move(*small)));
     std::optional<Reading> best = pending(node, id);
-    if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_))) best.reset();
+    if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_)))
+        best.reset();
     oversize_.resize(failures);
     if (splitting_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
     if (!best || cost_of(*best, values_).operations > kMuchWork)
@@ -292,7 +313,8 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
             if (!best || cost_of(reading, values_).operations < cost_of(*best, values_).operations)
                 best = std::move(reading);
         }
-    const std::uint64_t operations = best ? cost_of(*best, values_).operations : limits_.operations + 1;
+    const std::uint64_t operations =
+        best ? cost_of(*best, values_).operations : limits_.operations + 1;
     if (operations > kMuchWork)
         if (const auto split = with_split_windows(id, operations)) {
             oversize_.resize(failures);
@@ -313,7 +335,9 @@ std::vector<Slot*> slots_of(Reading& reading) {
     std::vector<Slot*> slots;
     switch (reading.kind) {
         case Reading::Kind::latch: slots = {&reading.latch.operand}; break;
-        case Reading::Kind::fold: slots = {&reading.fold.left, &reading.fold.right, &reading.fold.unseen}; break;
+        case Reading::Kind::fold:
+            slots = {&reading.fold.left, &reading.fold.right, &reading.fold.unseen};
+            break;
         case Reading::Kind::response: {
             Response& r = reading.response;
             slots = {&r.passed, &r.pending, &r.recent, &r.unseen_answer, &r.unseen_body};

@@ -1,7 +1,7 @@
 // Prefix formulas as readings: the part of the plan that speaks about position 0.
-// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a latch, a fold, or
-// the automaton. Keeps true: equal readings stand once; a formula too large for the limits is reported, never
-// approximated.
+// Takes: nodes of the graph. Gives: indices of readings. Picks per sub-formula what is smallest: a
+// latch, a fold, or the automaton. Keeps true: equal readings stand once; a formula too large for
+// the limits is reported, never approximated.
 #pragma once
 
 #include <map>
@@ -13,8 +13,8 @@ namespace etlc::plan {
 
 class ReadingBuilder {
 public:
-    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings, const Limits& limits,
-                   check::Values values);
+    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
+                   const Limits& limits, check::Values values);
 
     /// A sub-formula whose automaton would exceed the limits.
     struct Oversize {
@@ -40,7 +40,8 @@ private:
     std::uint32_t add(Reading reading);
     Machine::State state(const std::vector<NodeId>& obligations);
     Machine machine_of(Automaton automaton);
-    std::optional<Automaton> automaton(NodeId id, Literals literals, AutomatonLimits limits, AutomatonSize& reached);
+    std::optional<Automaton> automaton(NodeId id, Literals literals, AutomatonLimits limits,
+                                       AutomatonSize& reached);
 
     ir::Graph& graph_;
     StreamBuilder& streams_;

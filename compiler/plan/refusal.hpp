@@ -1,6 +1,6 @@
 // What is said of a formula or a class over the limits.
-// Takes: the part or the plan, and the limits. Gives: diagnostics with all three figures, and notes at the operators
-// that need them. Keeps true: a plan within the limits passes without a word.
+// Takes: the part or the plan, and the limits. Gives: diagnostics with all three figures, and notes
+// at the operators that need them. Keeps true: a plan within the limits passes without a word.
 #pragma once
 
 #include "plan/plan.hpp"
@@ -9,8 +9,9 @@
 namespace etlc::plan {
 
 /// A part of a monitor whose state machine would be larger than the limits.
-void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part, const ir::Graph& graph,
-                 const Limits& limits, check::Values values, diag::Sink& sink);
+void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part,
+                 const ir::Graph& graph, const Limits& limits, check::Values values,
+                 diag::Sink& sink);
 
 /// A plan over the limits.
 void check_budget(const Plan& plan, const ir::Graph& graph, const Limits& limits, diag::Sink& sink);

@@ -27,8 +27,10 @@ Literals unite(const Literals& a, const Literals& b) {
     return result;
 }
 
-/// An order of count > 0 states that puts `first` before `second` for each pair; empty where there is none.
-std::vector<std::uint32_t> sorted(std::size_t count, const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
+/// An order of count > 0 states that puts `first` before `second` for each pair; empty where there
+/// is none.
+std::vector<std::uint32_t> sorted(std::size_t count,
+                                  const std::set<std::pair<std::uint32_t, std::uint32_t>>& before) {
     std::vector<std::size_t> waiting_for(count, 0);
     for (const auto& [first, second] : before) ++waiting_for[second];
     std::vector<std::uint32_t> order;
@@ -47,7 +49,8 @@ public:
         for (const Transition& t : machine.automaton.transitions) {
             Literals literals = machine.guards[t.guard];
             std::sort(literals.begin(), literals.end());
-            ways_[t.target].push_back({machine.states[t.source].always_true ? kNone : t.source, std::move(literals)});
+            ways_[t.target].push_back(
+                {machine.states[t.source].always_true ? kNone : t.source, std::move(literals)});
         }
         original_ = ways_;
         updated_.resize(machine.states.size());
@@ -67,9 +70,11 @@ private:
     bool all_lead_on(std::uint32_t from, const Literals& through, std::uint32_t target) const {
         return std::all_of(original_[from].begin(), original_[from].end(), [&](const Way& way) {
             const Literals whole = unite(way.literals, through);
-            return std::any_of(original_[target].begin(), original_[target].end(), [&](const Way& other) {
-                return (other.source == way.source || other.source == kNone) && contains(whole, other.literals);
-            });
+            return std::any_of(original_[target].begin(), original_[target].end(),
+                               [&](const Way& other) {
+                                   return (other.source == way.source || other.source == kNone) &&
+                                          contains(whole, other.literals);
+                               });
         });
     }
 
@@ -77,9 +82,11 @@ private:
     void follow(std::uint32_t target, const Way& way) {
         if (!all_lead_on(way.source, way.literals, target)) return;
         const auto covered = [&](const Way& other) {
-            return std::any_of(original_[way.source].begin(), original_[way.source].end(), [&](const Way& into) {
-                return into.source == other.source && contains(other.literals, unite(into.literals, way.literals));
-            });
+            return std::any_of(
+                original_[way.source].begin(), original_[way.source].end(), [&](const Way& into) {
+                    return into.source == other.source &&
+                           contains(other.literals, unite(into.literals, way.literals));
+                });
         };
         if (std::count_if(ways_[target].begin(), ways_[target].end(), covered) < 2) return;
         Pairs order = fresh_;
@@ -94,12 +101,14 @@ private:
         Pairs in_place = fresh_;
         for (std::uint32_t target = 0; target < ways_.size(); ++target)
             for (const Way& way : ways_[target])
-                if (way.source != kNone && way.source != target) in_place.emplace(target, way.source);
+                if (way.source != kNone && way.source != target)
+                    in_place.emplace(target, way.source);
         std::vector<std::uint32_t> order = sorted(ways_.size(), in_place);
         RegisterProgram result{{}, !order.empty()};
         if (order.empty()) order = sorted(ways_.size(), fresh_);
         for (std::uint32_t state : order)
-            if (!machine_.states[state].always_true) result.updates.push_back({state, terms(state)});
+            if (!machine_.states[state].always_true)
+                result.updates.push_back({state, terms(state)});
         return result;
     }
 
@@ -107,8 +116,9 @@ private:
     std::vector<Term> terms(std::uint32_t state) const {
         std::vector<Term> result;
         const auto term_through = [&](const Literals& literals) -> Term& {
-            const auto found =
-                std::find_if(result.begin(), result.end(), [&](const Term& term) { return term.literals == literals; });
+            const auto found = std::find_if(result.begin(), result.end(), [&](const Term& term) {
+                return term.literals == literals;
+            });
             return found != result.end() ? *found : result.emplace_back(Term{{}, literals});
         };
         std::set<Literals> unconditional;  // through these alone, whatever the registers
@@ -118,7 +128,8 @@ private:
             else
                 term_through(way.literals).sources.push_back({way.source, false});
         }
-        for (const Way& way : updated_[state]) term_through(way.literals).sources.push_back({way.source, true});
+        for (const Way& way : updated_[state])
+            term_through(way.literals).sources.push_back({way.source, true});
         for (const Literals& literals : unconditional) term_through(literals).sources.clear();
         return result;
     }
@@ -127,7 +138,7 @@ private:
     std::vector<std::vector<Way>> original_;
     std::vector<std::vector<Way>> ways_;     ///< that still read old values
     std::vector<std::vector<Way>> updated_;  ///< that read new ones
-    Pairs fresh_;                            ///< updates that must come before others that read their result
+    Pairs fresh_;  ///< updates that must come before others that read their result
 };
 
 }  // namespace
@@ -141,7 +152,8 @@ std::size_t operations(const RegisterProgram& program) {
     for (const Update& update : program.updates) {
         count += update.terms.empty() ? 0 : update.terms.size() - 1;
         for (const Term& term : update.terms) {
-            const std::size_t factors = term.literals.size() + (term.sources.empty() ? 0 : term.sources.size());
+            const std::size_t factors =
+                term.literals.size() + (term.sources.empty() ? 0 : term.sources.size());
             count += factors == 0 ? 0 : factors - 1;
         }
     }

@@ -1,9 +1,11 @@
 // The registers of a small state machine, updated by straight-line code.
-// Takes: a machine of the plan. Gives: an order of updates, each a max of min(max of registers, literals).
-// Keeps true: after all updates the registers are what machine_advance would have made of them.
+// Takes: a machine of the plan. Gives: an order of updates, each a max of min(max of registers,
+// literals). Keeps true: after all updates the registers are what machine_advance would have made
+// of them.
 //
-// Where every way into S followed by the guard h is also a way into T, those ways are one: min(S after its update, h).
-// So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the transitions alone give a triangle.
+// Where every way into S followed by the guard h is also a way into T, those ways are one: min(S
+// after its update, h). So F (a && F b) is S = max(S, a); T = max(T, min(S, b)): a chain where the
+// transitions alone give a triangle.
 #pragma once
 
 #include <cstdint>
@@ -21,7 +23,8 @@ struct Source {
     bool operator==(const Source&) const = default;
 };
 
-/// min(max of the sources, literals); without sources the literals alone: a source that is always true adds nothing.
+/// min(max of the sources, literals); without sources the literals alone: a source that is always
+/// true adds nothing.
 struct Term {
     std::vector<Source> sources;
     std::vector<Slot> literals;
@@ -34,7 +37,8 @@ struct Update {
 
 struct RegisterProgram {
     std::vector<Update> updates;
-    /// No update reads the old value of a register that an earlier one has written: no copies are needed.
+    /// No update reads the old value of a register that an earlier one has written: no copies are
+    /// needed.
     bool in_place = false;
 };
 

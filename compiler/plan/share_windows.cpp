@@ -8,12 +8,13 @@ namespace etlc::plan {
 
 namespace {
 
-/// Windows that take the same element at each step, also while finish() reports the last positions: one without lag
-/// goes on beyond the end of the trace, since no position of its own lies there.
+/// Windows that take the same element at each step, also while finish() reports the last positions:
+/// one without lag goes on beyond the end of the trace, since no position of its own lies there.
 using Signal = std::tuple<StreamOp, std::vector<Slot>, std::uint32_t, bool>;
 
 bool is_shared_kind(const Stream& stream) {
-    return (stream.op == StreamOp::window_max || stream.op == StreamOp::window_min) && stream.length > 1;
+    return (stream.op == StreamOp::window_max || stream.op == StreamOp::window_min) &&
+           stream.length > 1;
 }
 
 void widen(Stream& stream, Slot from, std::uint32_t from_length) {
@@ -31,11 +32,13 @@ void share_windows(Plan& plan) {
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
         const Stream& stream = plan.streams[slot];
         if (is_shared_kind(stream))
-            watching[{stream.op, stream.operands, stream.operand_lag, stream.lag == 0}].push_back(slot);
+            watching[{stream.op, stream.operands, stream.operand_lag, stream.lag == 0}].push_back(
+                slot);
     }
     for (auto& [signal, windows] : watching) {
         const auto length = [&](Slot slot) { return plan.streams[slot].length; };
-        std::stable_sort(windows.begin(), windows.end(), [&](Slot a, Slot b) { return length(a) < length(b); });
+        std::stable_sort(windows.begin(), windows.end(),
+                         [&](Slot a, Slot b) { return length(a) < length(b); });
         for (std::size_t i = windows.size(); i-- > 1;) {
             const Slot from = windows[i - 1];
             const bool longer = length(from) < length(windows[i]);

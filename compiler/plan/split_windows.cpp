@@ -21,9 +21,10 @@ constexpr int kMostSteps = 2000;
 
 struct TooMany {};
 
-/// The rules are written for U and F; with `seeks` false they are those of R and G, where U and R, && and ||, true and
-/// false change places. They hold for truth values at every position k of every prefix 0..i, and so for min and max:
-/// both only compare. A formula is settled where its future is bounded.
+/// The rules are written for U and F; with `seeks` false they are those of R and G, where U and R,
+/// && and ||, true and false change places. They hold for truth values at every position k of every
+/// prefix 0..i, and so for min and max: both only compare. A formula is settled where its future is
+/// bounded.
 class Splitting {
 public:
     explicit Splitting(ir::Graph& graph) : graph_(graph) {}
@@ -49,7 +50,8 @@ private:
     static Op both(bool seeks) { return either(!seeks); }
 
     NodeId rebuild(const Node& node, std::vector<NodeId> operands) {
-        if (ir::info(node.op).arity == ir::Arity::many) return combine(node.op, std::move(operands), node.span);
+        if (ir::info(node.op).arity == ir::Arity::many)
+            return combine(node.op, std::move(operands), node.span);
         const bool seeks = ir::takes_max(node.op);
         const NodeId left = operands.size() == 2 ? operands[0] : graph_.constant(seeks);
         return until(seeks, node.interval, left, operands.back(), node.span);
@@ -79,26 +81,30 @@ private:
         NodeId q;
     };
 
-    std::optional<NodeId> by_right(bool seeks, Interval interval, NodeId left, NodeId right, Span span) {
+    std::optional<NodeId> by_right(bool seeks, Interval interval, NodeId left, NodeId right,
+                                   Span span) {
         const Node node = graph_[right];
         if (left == graph_.constant(seeks) && interval.low == interval.high)
             return shift(seeks, interval.high, right, span);
         if (node.op == either(seeks)) {
             std::vector<NodeId> parts;
-            for (NodeId part : node.operands) parts.push_back(until(seeks, interval, left, part, span));
+            for (NodeId part : node.operands)
+                parts.push_back(until(seeks, interval, left, part, span));
             return combine(node.op, std::move(parts), span);
         }
         std::vector<NodeId> beside;
         NodeId chosen = right;
         if (node.op == both(seeks)) {
             beside = node.operands;
-            const auto unsettled = std::find_if(beside.begin(), beside.end(), [&](NodeId o) { return !settled(o); });
+            const auto unsettled =
+                std::find_if(beside.begin(), beside.end(), [&](NodeId o) { return !settled(o); });
             chosen = *unsettled;
             beside.erase(unsettled);
             if (graph_[chosen].op == either(seeks)) {  // s && (x || y): both alternatives
                 std::vector<NodeId> parts;
                 for (NodeId part : std::vector<NodeId>(graph_[chosen].operands))
-                    parts.push_back(until(seeks, interval, left, with(seeks, beside, part, span), span));
+                    parts.push_back(
+                        until(seeks, interval, left, with(seeks, beside, part, span), span));
                 return combine(either(seeks), std::move(parts), span);
             }
         }
@@ -113,8 +119,8 @@ private:
         return combine(both(seeks), std::move(beside), span);
     }
 
-    /// An operator over [c,inf] by one over [0,inf]: F[c,inf] q is F F[c,c] q, p U[c,inf] q is G[0,c-1] p &&
-    /// F[c,c] (p U q). Nothing where c is 0.
+    /// An operator over [c,inf] by one over [0,inf]: F[c,inf] q is F F[c,c] q, p U[c,inf] q is
+    /// G[0,c-1] p && F[c,c] (p U q). Nothing where c is 0.
     std::optional<NodeId> from_now(NodeId id) {
         const Node x = graph_[id];
         if (x.interval.low == 0) return std::nullopt;
@@ -122,22 +128,26 @@ private:
         const std::uint32_t steps = x.interval.low;
         if (x.operands.size() == 1)  // kept apart, where the graph would put the windows together
             return graph_.keep(x.op, {}, {shift(seeks, steps, x.operands[0], x.span)}, x.span);
-        const NodeId held = until(!seeks, {0, steps - 1}, graph_.constant(!seeks), x.operands[0], x.span);
-        const NodeId there = shift(seeks, steps, graph_.binary(x.op, {}, x.operands[0], x.operands[1], x.span), x.span);
+        const NodeId held =
+            until(!seeks, {0, steps - 1}, graph_.constant(!seeks), x.operands[0], x.span);
+        const NodeId there = shift(
+            seeks, steps, graph_.binary(x.op, {}, x.operands[0], x.operands[1], x.span), x.span);
         return combine(both(seeks), {held, there}, x.span);
     }
 
-    /// l U[a,b] (s && x) with x = p U q: the window's end is at e = k+b. Either q comes before e, then
-    /// l U[a,b] (s && (p U[0,b-a] q)). Or x holds at e, and from some start on p lasts until e, which, as x holds
-    /// there, is l U[a,b] (s && (q R[0,b-a] (p || q))).
-    /// With x = p R q: either q is released before e, then l U[a,b] (s && (q U[0,b-a] (p && q))). Or x holds at e,
-    /// which is no demand on a prefix that ends before, and from some start on q lasts until there:
-    /// l U[a,b] (s && (p R[0,b-a] q)).
-    NodeId split(bool seeks, Interval interval, NodeId left, const std::vector<NodeId>& beside, NodeId x, Span span) {
+    /// l U[a,b] (s && x) with x = p U q: the window's end is at e = k+b. Either q comes before e,
+    /// then l U[a,b] (s && (p U[0,b-a] q)). Or x holds at e, and from some start on p lasts until
+    /// e, which, as x holds there, is l U[a,b] (s && (q R[0,b-a] (p || q))). With x = p R q: either
+    /// q is released before e, then l U[a,b] (s && (q U[0,b-a] (p && q))). Or x holds at e, which
+    /// is no demand on a prefix that ends before, and from some start on q lasts until there: l
+    /// U[a,b] (s && (p R[0,b-a] q)).
+    NodeId split(bool seeks, Interval interval, NodeId left, const std::vector<NodeId>& beside,
+                 NodeId x, Span span) {
         const Node node = graph_[x];
         const bool same = ir::takes_max(node.op) == seeks;
         const NodeId q = node.operands.back();
-        const NodeId p = node.operands.size() == 2 ? node.operands[0] : graph_.constant(ir::takes_max(node.op));
+        const NodeId p =
+            node.operands.size() == 2 ? node.operands[0] : graph_.constant(ir::takes_max(node.op));
         const Interval rest{0, interval.high - interval.low};
         const bool only = beside.empty() && left == graph_.constant(seeks);
         const auto start = [&](NodeId right) {
@@ -146,17 +156,21 @@ private:
         const NodeId at_end = shift(same == seeks, interval.high, x, span);
         if (same && only) return combine(either(seeks), {start(q), at_end}, span);
         const NodeId strong = same ? q : combine(both(seeks), {p, q}, span);
-        const NodeId early = only ? start(strong) : start(until(seeks, rest, same ? p : q, strong, node.span));
-        const NodeId lasting = same ? until(!seeks, rest, q, combine(either(seeks), {p, q}, span), node.span)
-                                    : until(!seeks, rest, p, q, node.span);
-        return combine(either(seeks), {early, combine(both(seeks), {at_end, start(lasting)}, span)}, span);
+        const NodeId early =
+            only ? start(strong) : start(until(seeks, rest, same ? p : q, strong, node.span));
+        const NodeId lasting =
+            same ? until(!seeks, rest, q, combine(either(seeks), {p, q}, span), node.span)
+                 : until(!seeks, rest, p, q, node.span);
+        return combine(either(seeks), {early, combine(both(seeks), {at_end, start(lasting)}, span)},
+                       span);
     }
 
     // ---- an unbounded future on the left
 
-    /// l U[a,b] g is (g, where a = 0) || h U[a-1,b-1] (l && F[1,1] g): l at all positions before g is l at the last of
-    /// them and h, what l demands of each position on the way, at the others.
-    std::optional<NodeId> by_left(bool seeks, Interval interval, NodeId left, NodeId right, Span span) {
+    /// l U[a,b] g is (g, where a = 0) || h U[a-1,b-1] (l && F[1,1] g): l at all positions before g
+    /// is l at the last of them and h, what l demands of each position on the way, at the others.
+    std::optional<NodeId> by_left(bool seeks, Interval interval, NodeId left, NodeId right,
+                                  Span span) {
         if (interval.high == 0) return right;
         const auto held = on_the_way(seeks, left);
         if (!held) return std::nullopt;
@@ -179,7 +193,8 @@ private:
             }
             return combine(node.op, std::move(parts), node.span);
         }
-        if (ir::info(node.op).tense != ir::Tense::future || node.interval != Interval{}) return std::nullopt;
+        if (ir::info(node.op).tense != ir::Tense::future || node.interval != Interval{})
+            return std::nullopt;
         if (ir::takes_max(node.op) != seeks) return node.operands.back();
         const NodeId p = node.operands.size() == 2 ? node.operands[0] : graph_.constant(seeks);
         return combine(either(seeks), {p, node.operands.back()}, node.span);
@@ -187,8 +202,9 @@ private:
 
     // ---- single steps
 
-    /// F[b,b] x. F[b,b] (p U q) is G[b,b] p U F[b,b] q, and F[b,b] (p R q) is (F[b,b] p R G[b,b] q) && F[b,b] q: the
-    /// last part is what makes it false where the prefix ends before; for R[c,d] with c > 0 it is F[b,b] true.
+    /// F[b,b] x. F[b,b] (p U q) is G[b,b] p U F[b,b] q, and F[b,b] (p R q) is (F[b,b] p R G[b,b] q)
+    /// && F[b,b] q: the last part is what makes it false where the prefix ends before; for R[c,d]
+    /// with c > 0 it is F[b,b] true.
     NodeId shift(bool seeks, std::uint32_t steps, NodeId operand, Span span) {
         count_step();
         const Interval at{steps, steps};
@@ -202,12 +218,15 @@ private:
         }
         const bool max = ir::takes_max(x.op);
         const NodeId right = shift(max, steps, x.operands.back(), span);
-        const NodeId left = x.operands.size() == 2 ? shift(!max, steps, x.operands[0], span) : graph_.constant(max);
-        const NodeId shifted = graph_.binary(x.op == Op::always || x.op == Op::release ? Op::release : Op::until,
-                                             x.interval, left, right, x.span);
+        const NodeId left =
+            x.operands.size() == 2 ? shift(!max, steps, x.operands[0], span) : graph_.constant(max);
+        const NodeId shifted =
+            graph_.binary(x.op == Op::always || x.op == Op::release ? Op::release : Op::until,
+                          x.interval, left, right, x.span);
         if (max == seeks) return shifted;
-        const NodeId there = x.interval.low == 0 ? shift(seeks, steps, x.operands.back(), span)
-                                                 : graph_.unary(one, at, graph_.constant(seeks), span);
+        const NodeId there = x.interval.low == 0
+                                 ? shift(seeks, steps, x.operands.back(), span)
+                                 : graph_.unary(one, at, graph_.constant(seeks), span);
         return combine(both(seeks), {shifted, there}, span);
     }
 

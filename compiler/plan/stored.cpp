@@ -22,14 +22,15 @@ void fill(const check::Target& target, const StoredSet& set, std::size_t first, 
     rows.assign(target.values.begin() + static_cast<std::ptrdiff_t>(first * width),
                 target.values.begin() + static_cast<std::ptrdiff_t>(end * width));
     if (!set.as_given)
-        etlmon::prepare(etlmon::MetricId::cosine, rows.data(), static_cast<std::uint32_t>(end - first),
-                        target.dimension);
+        etlmon::prepare(etlmon::MetricId::cosine, rows.data(),
+                        static_cast<std::uint32_t>(end - first), target.dimension);
     piece.assign((end - first) * stride, 0.0F);
     for (std::size_t row = 0; row < end - first; ++row)
         std::copy_n(rows.data() + row * width, width, piece.data() + row * stride);
     if constexpr (std::endian::native == std::endian::big) {
         auto* bytes = reinterpret_cast<std::uint8_t*>(piece.data());
-        for (std::size_t i = 0; i < piece.size(); ++i) std::reverse(bytes + 4 * i, bytes + 4 * i + 4);
+        for (std::size_t i = 0; i < piece.size(); ++i)
+            std::reverse(bytes + 4 * i, bytes + 4 * i + 4);
     }
 }
 
@@ -46,7 +47,8 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
             return set.target == distance.target && set.as_given == as_given;
         });
         if (known || target.values.size() * sizeof(float) <= inline_bytes) continue;
-        sets.push_back({distance.target, as_given, offset, etlmon::detail::padded(target.dimension) * sizeof(float)});
+        sets.push_back({distance.target, as_given, offset,
+                        etlmon::detail::padded(target.dimension) * sizeof(float)});
         offset += target.rows * sets.back().row_bytes;
     }
     return sets;
@@ -54,15 +56,17 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
 
 const StoredSet* stored_set(const Plan& plan, Index d) {
     const check::Distance& distance = plan.model->distances[d];
-    const auto found = std::find_if(plan.stored.begin(), plan.stored.end(), [&](const StoredSet& set) {
-        return set.target == distance.target && set.as_given == rows_as_given(distance);
-    });
+    const auto found =
+        std::find_if(plan.stored.begin(), plan.stored.end(), [&](const StoredSet& set) {
+            return set.target == distance.target && set.as_given == rows_as_given(distance);
+        });
     return found == plan.stored.end() ? nullptr : &*found;
 }
 
 bool searches(const Plan& plan, Index d) {
     const check::Distance& distance = plan.model->distances[d];
-    if (distance.aggregation != check::Aggregation::min || stored_set(plan, d) == nullptr) return false;
+    if (distance.aggregation != check::Aggregation::min || stored_set(plan, d) == nullptr)
+        return false;
     const std::uint32_t rows = plan.model->targets[distance.target].rows;
     switch (metric_id(distance)) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \
@@ -75,7 +79,8 @@ bool searches(const Plan& plan, Index d) {
 }
 
 std::uint64_t search_bytes(const check::Target& target) {
-    return sizeof(float) * (target.dimension + std::uint64_t{etlmon::detail::blocks_of(target.rows)} + 2);
+    return sizeof(float) *
+           (target.dimension + std::uint64_t{etlmon::detail::blocks_of(target.rows)} + 2);
 }
 
 std::uint64_t stored_bytes(const Plan& plan) {
@@ -84,7 +89,8 @@ std::uint64_t stored_bytes(const Plan& plan) {
     return last.offset + plan.model->targets[last.target].rows * last.row_bytes;
 }
 
-bool store(const Plan& plan, const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take) {
+bool store(const Plan& plan,
+           const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take) {
     std::vector<float> rows;
     std::vector<float> piece;
     for (const StoredSet& set : plan.stored) {
@@ -92,7 +98,9 @@ bool store(const Plan& plan, const std::function<bool(const std::uint8_t* bytes,
         const std::size_t at_once = std::max<std::size_t>(1, kPieceBytes / set.row_bytes);
         for (std::size_t row = 0; row < target.rows; row += at_once) {
             fill(target, set, row, std::min<std::size_t>(row + at_once, target.rows), rows, piece);
-            if (!take(reinterpret_cast<const std::uint8_t*>(piece.data()), piece.size() * sizeof(float))) return false;
+            if (!take(reinterpret_cast<const std::uint8_t*>(piece.data()),
+                      piece.size() * sizeof(float)))
+                return false;
         }
     }
     return true;

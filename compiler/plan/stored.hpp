@@ -1,7 +1,8 @@
-// Target sets that are not spelled out in the header: they lie in a file beside it, which the monitor is given.
-// Takes: a plan. Gives: which sets, where in the file each begins, and the bytes of the file. Keeps true: rows are
-// little-endian float32 in the form that the kernels want, each padded with zeros to a multiple of 64 bytes; sets stand
-// in the order of the plan's distances; the same plan gives the same bytes on every machine.
+// Target sets that are not spelled out in the header: they lie in a file beside it, which the
+// monitor is given. Takes: a plan. Gives: which sets, where in the file each begins, and the bytes
+// of the file. Keeps true: rows are little-endian float32 in the form that the kernels want, each
+// padded with zeros to a multiple of 64 bytes; sets stand in the order of the plan's distances; the
+// same plan gives the same bytes on every machine.
 #pragma once
 
 #include <cstdint>
@@ -19,7 +20,8 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
 /// Where the distance's set lies in the file; null where it stands in the header.
 const StoredSet* stored_set(const Plan& plan, Index distance);
 
-/// The monitor searches the distance's set, which takes state (etlmon/search.hpp), and does not measure all of it.
+/// The monitor searches the distance's set, which takes state (etlmon/search.hpp), and does not
+/// measure all of it.
 bool searches(const Plan& plan, Index distance);
 
 /// What such a search remembers.
@@ -29,7 +31,8 @@ std::uint64_t search_bytes(const check::Target& target);
 std::uint64_t stored_bytes(const Plan& plan);
 
 /// The file, piece by piece, for as long as `take` says true. Gives whether it always did.
-bool store(const Plan& plan, const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take);
+bool store(const Plan& plan,
+           const std::function<bool(const std::uint8_t* bytes, std::size_t size)>& take);
 
 /// The file's XXH64.
 std::uint64_t stored_hash(const Plan& plan);

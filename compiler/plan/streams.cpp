@@ -28,7 +28,8 @@ Slot StreamBuilder::intern(Stream stream) {
     Identity identity{stream.op,           stream.operands,     stream.index, stream.length,
                       stream.value.low,    stream.value.high,   stream.lag,   stream.operand_lag,
                       stream.interval.low, stream.interval.high};
-    const auto [entry, added] = interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
+    const auto [entry, added] =
+        interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added)
         streams_.push_back(std::move(stream));
     else if (streams_[entry->second].node == kNone)
@@ -89,7 +90,8 @@ Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     if (kept.size() == 1) return kept.front();
-    return intern({.op = op, .operands = std::move(kept), .lag = lag, .operand_lag = lag, .node = node});
+    return intern(
+        {.op = op, .operands = std::move(kept), .lag = lag, .operand_lag = lag, .node = node});
 }
 
 Slot StreamBuilder::delayed(Slot slot, std::uint32_t steps) {
@@ -123,7 +125,8 @@ Slot StreamBuilder::running(StreamOp op, Slot slot, NodeId node) {
     return intern({.op = op, .operands = {slot}, .lag = lag, .operand_lag = lag, .node = node});
 }
 
-Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node) {
+Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before,
+                          NodeId node) {
     if (steps == 0) return slot;
     return intern({.op = StreamOp::shift,
                    .operands = {slot},
@@ -134,8 +137,8 @@ Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Val
                    .node = node});
 }
 
-Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag,
-                           std::uint32_t lag, NodeId node) {
+Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length,
+                           std::uint32_t operand_lag, std::uint32_t lag, NodeId node) {
     return intern({.op = op,
                    .operands = std::move(operands),
                    .length = length,
@@ -146,7 +149,8 @@ Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_
 
 Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere) {
     if (interval == ir::Interval{}) return slot;
-    return intern({.op = StreamOp::within, .operands = {slot}, .interval = interval, .value = elsewhere});
+    return intern(
+        {.op = StreamOp::within, .operands = {slot}, .interval = interval, .value = elsewhere});
 }
 
 /// "Since the last answer", but satisfied where nothing has been asked yet.
@@ -171,7 +175,8 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     if (high == kUnbounded)
         slot = running(max ? StreamOp::running_max : StreamOp::running_min, operand, inner);
     else if (high > low)
-        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1, lag, lag, inner);
+        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1,
+                      lag, lag, inner);
     return shift(slot, low, lag, max ? kFalse : kTrue, id);
 }
 
@@ -191,8 +196,8 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
                        .operand_lag = lag,
                        .node = inner});
     else if (high > low)
-        slot =
-            window(max ? StreamOp::window_since : StreamOp::window_trigger, operands, high - low + 1, lag, lag, inner);
+        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands,
+                      high - low + 1, lag, lag, inner);
     if (low == 0) return slot;
     const Slot earlier = shift(slot, low, lag, max ? kFalse : kTrue, kNone);
     const StreamOp all = max ? StreamOp::window_min : StreamOp::window_max;
@@ -200,8 +205,8 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {earlier, held}, id);
 }
 
-/// F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of one position still counts:
-/// where the trace ends before it there is no such position.
+/// F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of one
+/// position still counts: where the trace ends before it there is no such position.
 Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
@@ -218,13 +223,13 @@ Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
     const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
     const std::uint32_t length = high - low + 1;
     const NodeId inner = low == 0 ? id : kNone;
-    const Slot until =
-        window(max ? StreamOp::window_until : StreamOp::window_release, operands, length, lag, lag + high - low, inner);
+    const Slot until = window(max ? StreamOp::window_until : StreamOp::window_release, operands,
+                              length, lag, lag + high - low, inner);
     if (low == 0) return until;
-    const Slot from_there =
-        window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1, lag + high - low, lag + high, kNone);
-    const Slot held = window(max ? StreamOp::window_min : StreamOp::window_max, {delayed(operands[0], length)}, low,
-                             lag + length, lag + high, kNone);
+    const Slot from_there = window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1,
+                                   lag + high - low, lag + high, kNone);
+    const Slot held = window(max ? StreamOp::window_min : StreamOp::window_max,
+                             {delayed(operands[0], length)}, low, lag + length, lag + high, kNone);
     return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {from_there, held}, id);
 }
 
@@ -246,7 +251,8 @@ Slot StreamBuilder::unseen(NodeId id) {
             std::vector<Slot> parts;
             for (NodeId operand : node.operands) parts.push_back(unseen(operand));
             slot =
-                combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction, std::move(parts));
+                combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction,
+                        std::move(parts));
             break;
         }
         default: slot = unseen_temporal(node, id);
@@ -255,20 +261,24 @@ Slot StreamBuilder::unseen(NodeId id) {
     return slot;
 }
 
-/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H and the dual of S:
-/// the other way round. What is known of the operand stays in sight of a past operator.
+/// F, U, O, S: lowest that of the last operand if a = 0, else -inf; highest the operand's. G, R, H
+/// and the dual of S: the other way round. What is known of the operand stays in sight of a past
+/// operator.
 Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
     const StreamOp narrow = max ? StreamOp::conjunction : StreamOp::disjunction;
     const StreamOp widen = max ? StreamOp::disjunction : StreamOp::conjunction;
     const Slot operand = unseen(node.operands.back());
     Slot slot = operand;
-    if (node.interval.low > 0) slot = combine(narrow, {operand, constant(kAnything)});  // one end gives way to infinity
+    if (node.interval.low > 0)
+        slot = combine(narrow, {operand, constant(kAnything)});  // one end gives way to infinity
     if (ir::info(node.op).tense != ir::Tense::past) return slot;
     const bool unary = ir::info(node.op).arity == ir::Arity::unary;
     if (unary && node.interval == ir::Interval{}) return combine(widen, {slot, of(id)});
-    if (streams_[operand].op == StreamOp::constant) return slot;  // nothing known lies outside a constant range
-    const Slot known = running(max ? StreamOp::running_max : StreamOp::running_min, of(node.operands.back()), kNone);
+    if (streams_[operand].op == StreamOp::constant)
+        return slot;  // nothing known lies outside a constant range
+    const Slot known = running(max ? StreamOp::running_max : StreamOp::running_min,
+                               of(node.operands.back()), kNone);
     return combine(widen, {slot, combine(narrow, {known, constant(kAnything)})});
 }
 

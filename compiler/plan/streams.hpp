@@ -1,7 +1,7 @@
 // Formulas as streams: the part of the plan that runs at every step for every position.
-// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a formula without
-// future is known at once and a bounded future one as soon as its last sample is there. Keeps true: equal streams stand
-// once; operands stand before what uses them.
+// Takes: nodes of the graph. Gives: slots of streams; a stream of node f lags by f's horizon, so a
+// formula without future is known at once and a bounded future one as soon as its last sample is
+// there. Keeps true: equal streams stand once; operands stand before what uses them.
 #pragma once
 
 #include <map>
@@ -19,8 +19,9 @@ public:
 
     /// The stream of rho(node, k, i) at k = i - lag, lag = the node's horizon, which is bounded.
     Slot of(NodeId node);
-    /// The lowest and highest unseen value of a formula, as the definition "Bounds over every continuation" gives them
-    /// after this step; constant unless an unbounded past operator narrows them.
+    /// The lowest and highest unseen value of a formula, as the definition "Bounds over every
+    /// continuation" gives them after this step; constant unless an unbounded past operator narrows
+    /// them.
     Slot unseen(NodeId node);
     /// The min or max of streams of equal lag; constants are folded.
     Slot combine(StreamOp op, std::vector<Slot> operands, NodeId node = kNone);
@@ -32,8 +33,8 @@ public:
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
     /// A stream without lag at the positions of the interval, `elsewhere` at others.
     Slot within(Slot slot, ir::Interval interval, Value elsewhere);
-    /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that ask (plan::Response).
-    /// Of G (excuse || F answer), or of its dual; both without lag.
+    /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that
+    /// ask (plan::Response). Of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
     /// Over the last `length` positions of a stream without lag.
     Slot recent(StreamOp op, Slot slot, std::uint32_t length);
@@ -46,8 +47,8 @@ private:
     Slot past_binary(const ir::Node& node, NodeId id);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
-    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length, std::uint32_t operand_lag,
-                std::uint32_t lag, NodeId node);
+    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length,
+                std::uint32_t operand_lag, std::uint32_t lag, NodeId node);
     Slot running(StreamOp op, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
@@ -57,8 +58,8 @@ private:
     check::Values values_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t,
-                                std::uint32_t, std::uint32_t, std::uint32_t>;
+    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key,
+                                std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };
 

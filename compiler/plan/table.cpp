@@ -21,12 +21,15 @@ Table make_table(const Machine& machine) {
     Table table;
     table.ends.assign(machine.states.size(), 0);
     for (const Transition& t : machine.automaton.transitions) {  // sorted by target
-        table.transitions.push_back({static_cast<std::uint16_t>(t.source), static_cast<std::uint16_t>(t.guard)});
+        table.transitions.push_back(
+            {static_cast<std::uint16_t>(t.source), static_cast<std::uint16_t>(t.guard)});
         table.ends[t.target] = static_cast<std::uint32_t>(table.transitions.size());
     }
-    for (std::size_t q = 1; q < table.ends.size(); ++q) table.ends[q] = std::max(table.ends[q], table.ends[q - 1]);
+    for (std::size_t q = 1; q < table.ends.size(); ++q)
+        table.ends[q] = std::max(table.ends[q], table.ends[q - 1]);
     for (const Machine::State& state : machine.states) {
-        const std::uint16_t weak = state.strong ? etlmon::kStrongly : index_of(table.weak, state.weak_unseen);
+        const std::uint16_t weak =
+            state.strong ? etlmon::kStrongly : index_of(table.weak, state.weak_unseen);
         table.owed.push_back({weak, index_of(table.strong, state.strong_unseen)});
     }
     return table;

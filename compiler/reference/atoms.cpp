@@ -11,17 +11,19 @@ using check::Expr;
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-/// "a sample with any element not finite, or a scalar outside its declared range, counts as missing".
-/// The range is a range of float32 values, so the sample is narrowed first.
+/// "a sample with any element not finite, or a scalar outside its declared range, counts as
+/// missing". The range is a range of float32 values, so the sample is narrowed first.
 bool valid(const check::Input& input, const std::vector<float>& sample) {
     for (const float element : sample) {
         if (!std::isfinite(element)) return false;
-        if (input.has_range && (element < input.range.low || element > input.range.high)) return false;
+        if (input.has_range && (element < input.range.low || element > input.range.high))
+            return false;
     }
     return true;
 }
 
-/// Arithmetic in double; a NaN anywhere below makes the whole expression NaN, also through min and max.
+/// Arithmetic in double; a NaN anywhere below makes the whole expression NaN, also through min and
+/// max.
 double evaluate(const check::Model& model, const Expr& expr, const Samples& samples) {
     std::vector<double> a;
     for (const Expr& argument : expr.arguments) {
@@ -30,7 +32,8 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
     }
     switch (expr.kind) {
         case Expr::Kind::number: return expr.number32;
-        case Expr::Kind::scalar: return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
+        case Expr::Kind::scalar:
+            return samples[expr.index].empty() ? kUnknown : samples[expr.index][0];
         case Expr::Kind::distance:
             return distance(model, model.distances[expr.index], samples).delta.value_or(kUnknown);
         case Expr::Kind::negate: return -a[0];
@@ -51,7 +54,7 @@ double evaluate(const check::Model& model, const Expr& expr, const Samples& samp
 std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
     std::vector<Samples> result;
     std::vector<std::vector<float>> last(model.inputs.size());  // the last present sample
-    std::vector<std::uint32_t> held(model.inputs.size(), 0);    // steps in a row that it has stood in
+    std::vector<std::uint32_t> held(model.inputs.size(), 0);  // steps in a row that it has stood in
     for (const Step& step : trace) {
         Samples samples(model.inputs.size());
         for (std::size_t n = 0; n < model.inputs.size(); ++n) {
@@ -60,7 +63,8 @@ std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
                 last[n] = samples[n];
                 held[n] = 0;
             } else {
-                // "where a sample is missing, the last one present stands in for at most N steps in a row"
+                // "where a sample is missing, the last one present stands in for at most N steps in
+                // a row"
                 samples[n].clear();
                 if (held[n] < model.inputs[n].hold) {
                     ++held[n];
@@ -73,8 +77,10 @@ std::vector<Samples> accept(const check::Model& model, const Trace& trace) {
     return result;
 }
 
-Measurement measure(const check::Model& model, const check::Predicate& predicate, const Samples& samples) {
-    if (predicate.plain_distance()) return distance(model, model.distances[predicate.expression.index], samples);
+Measurement measure(const check::Model& model, const check::Predicate& predicate,
+                    const Samples& samples) {
+    if (predicate.plain_distance())
+        return distance(model, model.distances[predicate.expression.index], samples);
     const double delta = evaluate(model, predicate.expression, samples);
     if (std::isnan(delta)) return {};
     return {delta, 0};

@@ -1,7 +1,8 @@
 // From a trace to the values of predicates and bools.
-// Takes: the spec and the samples as recorded. Gives: per step every predicate's delta and robustness, and every bool.
-// Keeps true: inputs, targets and literals are float32, everything computed from them is double; what is missing,
-// invalid or has no value is unknown, never a number.
+// Takes: the spec and the samples as recorded. Gives: per step every predicate's delta and
+// robustness, and every bool. Keeps true: inputs, targets and literals are float32, everything
+// computed from them is double; what is missing, invalid or has no value is unknown, never a
+// number.
 #pragma once
 
 #include <optional>
@@ -23,10 +24,12 @@ struct Measurement {
     std::optional<double> delta;
     std::uint32_t nearest = 0;
 };
-Measurement measure(const check::Model& model, const check::Predicate& predicate, const Samples& samples);
+Measurement measure(const check::Model& model, const check::Predicate& predicate,
+                    const Samples& samples);
 
-/// d aggregated over the target set, with the row of the smallest d; nothing where the point is missing, or the zero
-/// vector under cosine and angular.
-Measurement distance(const check::Model& model, const check::Distance& distance, const Samples& samples);
+/// d aggregated over the target set, with the row of the smallest d; nothing where the point is
+/// missing, or the zero vector under cosine and angular.
+Measurement distance(const check::Model& model, const check::Distance& distance,
+                     const Samples& samples);
 
 }  // namespace etlc::reference

@@ -49,8 +49,8 @@ double cosine(const Vector& a, const Vector& b) {
     return std::clamp(1.0 - dot(a, b) / (norm(a) * norm(b)), 0.0, 2.0);
 }
 
-/// The angle between a and b in [0, pi], as 2 atan2(|u - v|, |u + v|) of the unit vectors (Kahan): acos of the cosine
-/// similarity loses half the digits near 0 and pi.
+/// The angle between a and b in [0, pi], as 2 atan2(|u - v|, |u + v|) of the unit vectors (Kahan):
+/// acos of the cosine similarity loses half the digits near 0 and pi.
 double angular(const Vector& a, const Vector& b) {
     const Vector u = unit(a);
     const Vector v = unit(b);
@@ -93,8 +93,10 @@ double aggregate(const check::Distance& distance, Vector distances) {
         case Aggregation::min: return distances.front();
         case Aggregation::max: return distances.back();
         case Aggregation::mean:
-            return std::accumulate(distances.begin(), distances.end(), 0.0) / static_cast<double>(distances.size());
-        case Aggregation::kth: return distances[distance.kth - 1];  // "the n-th smallest distance, from 1"
+            return std::accumulate(distances.begin(), distances.end(), 0.0) /
+                   static_cast<double>(distances.size());
+        case Aggregation::kth:
+            return distances[distance.kth - 1];  // "the n-th smallest distance, from 1"
     }
     return std::nan("");
 }
@@ -115,10 +117,12 @@ bool is_zero(const Vector& point) {
 
 }  // namespace
 
-Measurement distance(const check::Model& model, const check::Distance& distance, const Samples& samples) {
+Measurement distance(const check::Model& model, const check::Distance& distance,
+                     const Samples& samples) {
     const Vector point = point_of(distance, samples);
     if (point.empty()) return {};
-    const bool needs_direction = distance.metric == Metric::cosine || distance.metric == Metric::angular;
+    const bool needs_direction =
+        distance.metric == Metric::cosine || distance.metric == Metric::angular;
     if (needs_direction && is_zero(point)) return {};
 
     const check::Target& target = model.targets[distance.target];

@@ -37,7 +37,8 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     if (atom.kind == Node::Kind::predicate) {
         const check::Predicate& predicate = model.predicates[atom.index];
         range = {predicate.robustness.low, predicate.robustness.high};
-        if (values == Values::boolean) {  // a comparison is true on one side only, of delta and of epsilon
+        if (values ==
+            Values::boolean) {  // a comparison is true on one side only, of delta and of epsilon
             bool always = true;
             bool ever = false;
             const check::Range thresholds = predicate.threshold.range();
@@ -52,7 +53,8 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     return atom.negated ? negate(range) : range;
 }
 
-/// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is unknown.
+/// rho of the atom without its negation: epsilon - delta or delta - epsilon; nothing where it is
+/// unknown.
 std::optional<double> rho_of(const check::Model& model, const Node& atom, const Samples& samples,
                              const std::vector<Telemetry>& telemetry, Values values,
                              const std::vector<double>& thresholds) {
@@ -70,8 +72,8 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
 }
 
-/// The literal's four numbers: "with known samples (v, v)"; "its literal contributes (low, low, high, high) of its
-/// range".
+/// The literal's four numbers: "with known samples (v, v)"; "its literal contributes (low, low,
+/// high, high) of its range".
 Value literal(std::optional<double> rho, bool negated, const Unseen& range) {
     if (!rho) return {range.lowest, range.lowest, range.highest, range.highest};
     const double v = negated ? -*rho : *rho;
@@ -85,7 +87,9 @@ Verdict verdict(const Value& value) {
     result.robustness_high = value.rho_high;
     result.upper = value.upper;
     // "satisfied where rho >= 0, violated where rho_high < 0, else unknown"
-    result.status = value.rho >= 0 ? Status::satisfied : value.rho_high < 0 ? Status::violated : Status::unknown;
+    result.status = value.rho >= 0       ? Status::satisfied
+                    : value.rho_high < 0 ? Status::violated
+                                         : Status::unknown;
     return result;
 }
 
@@ -95,7 +99,8 @@ Verdict prefix_verdict(const Value& value) {
     return result;
 }
 
-/// "A sliding verdict has lower = rho, upper = rho_high"; it is about a position that no later step changes.
+/// "A sliding verdict has lower = rho, upper = rho_high"; it is about a position that no later step
+/// changes.
 Verdict sliding_verdict(const Value& value) {
     Verdict result = verdict({value.rho, value.rho, value.rho_high, value.rho_high});
     result.final = true;
@@ -104,7 +109,8 @@ Verdict sliding_verdict(const Value& value) {
 
 class Evaluation {
 public:
-    Evaluation(const check::Model& model, const Trace& trace, Values values, const Thresholds& thresholds)
+    Evaluation(const check::Model& model, const Trace& trace, Values values,
+               const Thresholds& thresholds)
         : model_(model),
           values_(values),
           thresholds_(thresholds),
@@ -137,7 +143,8 @@ private:
             std::vector<Telemetry> step;
             for (const check::Predicate& predicate : model_.predicates) {
                 const Measurement m = measure(model_, predicate, samples);
-                step.push_back({m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
+                step.push_back(
+                    {m.delta.value_or(std::numeric_limits<double>::quiet_NaN()), m.nearest});
             }
             run_.telemetry.push_back(std::move(step));
             std::vector<bool> present;
@@ -155,13 +162,15 @@ private:
             if (!node.is_atom()) continue;
             literals_.ranges[n] = range_of(model_, node, values_);
             for (std::size_t step = 0; step < samples_.size(); ++step) {
-                const auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step], values_,
-                                        thresholds_.empty() ? std::vector<double>{} : thresholds_[step]);
+                const auto rho =
+                    rho_of(model_, node, samples_[step], run_.telemetry[step], values_,
+                           thresholds_.empty() ? std::vector<double>{} : thresholds_[step]);
                 literals_.values[n].push_back(literal(rho, node.negated, literals_.ranges[n]));
                 if (!rho) lacking[step] = true;
             }
         }
-        run_.missing_steps = static_cast<std::uint32_t>(std::count(lacking.begin(), lacking.end(), true));
+        run_.missing_steps =
+            static_cast<std::uint32_t>(std::count(lacking.begin(), lacking.end(), true));
     }
 
     std::vector<Verdict> after(std::uint64_t i) {
@@ -172,15 +181,17 @@ private:
             if (!model_.monitors[n].sliding)
                 result.push_back(prefix_verdict(prefix.at(form_.roots[n], 0)));  // rho(f, 0, i)
             else if (i >= h)
-                result.push_back(sliding_verdict(prefix.at(form_.roots[n], i - h)));  // rho(f, i-h, i)
+                result.push_back(
+                    sliding_verdict(prefix.at(form_.roots[n], i - h)));  // rho(f, i-h, i)
             else
                 result.push_back({});  // "for i < h it is undecided"
         }
         return result;
     }
 
-    /// "`finish()` reports the last h positions, cut at the end of the trace, one per call". Positions before 0 and
-    /// calls after a monitor's last position are undecided; a prefix monitor repeats its last verdict.
+    /// "`finish()` reports the last h positions, cut at the end of the trace, one per call".
+    /// Positions before 0 and calls after a monitor's last position are undecided; a prefix monitor
+    /// repeats its last verdict.
     void finish() {
         if (samples_.empty() || horizons_.empty()) return;
         const std::uint64_t length = samples_.size();
@@ -192,7 +203,9 @@ private:
                 if (!model_.monitors[n].sliding) continue;
                 const std::uint64_t h = horizons_[n];
                 const bool has_position = call < h && length + call >= h;
-                result[n] = has_position ? sliding_verdict(prefix.at(form_.roots[n], length - h + call)) : Verdict{};
+                result[n] = has_position
+                                ? sliding_verdict(prefix.at(form_.roots[n], length - h + call))
+                                : Verdict{};
             }
             run_.finish.push_back(std::move(result));
         }
@@ -201,7 +214,8 @@ private:
 
 }  // namespace
 
-Run evaluate(const check::Model& model, const Trace& trace, Values values, const Thresholds& thresholds) {
+Run evaluate(const check::Model& model, const Trace& trace, Values values,
+             const Thresholds& thresholds) {
     return Evaluation(model, trace, values, thresholds).run();
 }
 

@@ -85,21 +85,33 @@ private:
             case FormulaKind::predicate: return literal(NodeKind::predicate, negated, f.index);
             case FormulaKind::boolean_input: return literal(NodeKind::boolean, negated, f.index);
             case FormulaKind::negation: return build(f.operands[0], !negated);
-            case FormulaKind::conjunction: return connective(f, negated, negated ? NodeKind::any : NodeKind::all);
-            case FormulaKind::disjunction: return connective(f, negated, negated ? NodeKind::all : NodeKind::any);
-            case FormulaKind::implication: return implication(f.operands[0], f.operands[1], negated);
-            case FormulaKind::equivalence: return equivalence(f.operands[0], f.operands[1], negated);
+            case FormulaKind::conjunction:
+                return connective(f, negated, negated ? NodeKind::any : NodeKind::all);
+            case FormulaKind::disjunction:
+                return connective(f, negated, negated ? NodeKind::all : NodeKind::any);
+            case FormulaKind::implication:
+                return implication(f.operands[0], f.operands[1], negated);
+            case FormulaKind::equivalence:
+                return equivalence(f.operands[0], f.operands[1], negated);
             case FormulaKind::weak_until: return weak_until(f.operands[0], f.operands[1], negated);
-            // `X f` is F[1,1] f; `!X f` is G[1,1] !f. The model gives next and previous the interval [1, 1].
+            // `X f` is F[1,1] f; `!X f` is G[1,1] !f. The model gives next and previous the
+            // interval [1, 1].
             case FormulaKind::next:
-            case FormulaKind::eventually: return temporal(f, negated, NodeKind::eventually, NodeKind::always);
-            case FormulaKind::always: return temporal(f, negated, NodeKind::always, NodeKind::eventually);
-            case FormulaKind::until: return temporal(f, negated, NodeKind::until, NodeKind::release);
-            case FormulaKind::release: return temporal(f, negated, NodeKind::release, NodeKind::until);
+            case FormulaKind::eventually:
+                return temporal(f, negated, NodeKind::eventually, NodeKind::always);
+            case FormulaKind::always:
+                return temporal(f, negated, NodeKind::always, NodeKind::eventually);
+            case FormulaKind::until:
+                return temporal(f, negated, NodeKind::until, NodeKind::release);
+            case FormulaKind::release:
+                return temporal(f, negated, NodeKind::release, NodeKind::until);
             case FormulaKind::previous:
-            case FormulaKind::once: return temporal(f, negated, NodeKind::once, NodeKind::historically);
-            case FormulaKind::historically: return temporal(f, negated, NodeKind::historically, NodeKind::once);
-            case FormulaKind::since: return temporal(f, negated, NodeKind::since, NodeKind::trigger);
+            case FormulaKind::once:
+                return temporal(f, negated, NodeKind::once, NodeKind::historically);
+            case FormulaKind::historically:
+                return temporal(f, negated, NodeKind::historically, NodeKind::once);
+            case FormulaKind::since:
+                return temporal(f, negated, NodeKind::since, NodeKind::trigger);
         }
         return literal(NodeKind::constant, negated);
     }
@@ -110,7 +122,8 @@ private:
 NormalForm normal_form(const check::Model& model) {
     NormalForm result;
     Builder builder(model);
-    for (const check::Monitor& monitor : model.monitors) result.roots.push_back(builder.build(monitor.formula, false));
+    for (const check::Monitor& monitor : model.monitors)
+        result.roots.push_back(builder.build(monitor.formula, false));
     result.nodes = builder.take();
     return result;
 }

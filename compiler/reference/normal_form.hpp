@@ -1,6 +1,7 @@
 // Negation normal form: the formulas of the monitors with negation on literals only.
-// Takes: the formulas of the model. Gives: nodes over fewer operators, each with its dual beside it. Keeps true: a
-// node's operands have smaller indices than the node; equal (formula, polarity) pairs are one node.
+// Takes: the formulas of the model. Gives: nodes over fewer operators, each with its dual beside
+// it. Keeps true: a node's operands have smaller indices than the node; equal (formula, polarity)
+// pairs are one node.
 #pragma once
 
 #include <cstdint>
@@ -45,7 +46,8 @@ struct NormalForm {
 
 NormalForm normal_form(const check::Model& model);
 
-/// The sum of the upper bounds along the deepest path of a formula as written; past operators add nothing.
+/// The sum of the upper bounds along the deepest path of a formula as written; past operators add
+/// nothing.
 std::uint64_t horizon(const check::Model& model, Index formula);
 
 }  // namespace etlc::reference

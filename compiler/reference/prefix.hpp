@@ -1,6 +1,7 @@
 // rho(f, k, i) and its bounds for one prefix 0..i, clause by clause as docs/language.md has them.
-// Takes: the negation normal form, the literals of steps 0..i, and each literal's range. Gives: four numbers per node
-// and position. Keeps true: lower <= rho <= rho_high <= upper; every clause is quoted where it is computed.
+// Takes: the negation normal form, the literals of steps 0..i, and each literal's range. Gives:
+// four numbers per node and position. Keeps true: lower <= rho <= rho_high <= upper; every clause
+// is quoted where it is computed.
 #pragma once
 
 #include <cstdint>

@@ -1,6 +1,7 @@
 // Brute-force semantics straight from docs/language.md: the judge in tests.
-// Takes: the typed spec and a whole trace. Gives: every verdict. Keeps true: shares nothing with ir/ and below and no
-// arithmetic with the runtime; distances are computed in double; clarity before speed (memoised recursion per prefix).
+// Takes: the typed spec and a whole trace. Gives: every verdict. Keeps true: shares nothing with
+// ir/ and below and no arithmetic with the runtime; distances are computed in double; clarity
+// before speed (memoised recursion per prefix).
 #pragma once
 
 #include <cstdint>
@@ -35,7 +36,8 @@ struct Telemetry {
 struct Run {
     /// verdicts[step][monitor], as after `step` steps have been seen.
     std::vector<std::vector<Verdict>> verdicts;
-    /// finish[call][monitor]: the calls of finish() after the trace, as many as the largest horizon.
+    /// finish[call][monitor]: the calls of finish() after the trace, as many as the largest
+    /// horizon.
     std::vector<std::vector<Verdict>> finish;
     /// telemetry[step][predicate]
     std::vector<std::vector<Telemetry>> telemetry;
@@ -45,14 +47,14 @@ struct Run {
     std::uint32_t missing_steps = 0;
 };
 
-/// thresholds[step][predicate]: the epsilon that each adaptive predicate has at each step; of other predicates it is
-/// not looked at, and of none for no thresholds at all.
+/// thresholds[step][predicate]: the epsilon that each adaptive predicate has at each step; of other
+/// predicates it is not looked at, and of none for no thresholds at all.
 using Thresholds = std::vector<std::vector<double>>;
 
-/// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest and highest unseen
-/// value are what its comparison can say over the range of its expression. Without thresholds, adaptive ones stay where
-/// they start.
-Run evaluate(const check::Model& model, const Trace& trace, check::Values values = check::Values::robustness,
-             const Thresholds& thresholds = {});
+/// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest
+/// and highest unseen value are what its comparison can say over the range of its expression.
+/// Without thresholds, adaptive ones stay where they start.
+Run evaluate(const check::Model& model, const Trace& trace,
+             check::Values values = check::Values::robustness, const Thresholds& thresholds = {});
 
 }  // namespace etlc::reference

@@ -91,14 +91,16 @@ std::optional<std::string> depfile_path(std::string_view path, InRule place) {
     std::string result;
     for (const char c : path) {
         const auto byte = static_cast<unsigned char>(c);
-        const bool read = byte >= 0x80 || std::isalnum(byte) != 0 || kRead.find(c) != std::string_view::npos;
+        const bool read =
+            byte >= 0x80 || std::isalnum(byte) != 0 || kRead.find(c) != std::string_view::npos;
         if (!read || (c == '%' && place == InRule::target)) return std::nullopt;
         if (c == ' ' || c == '#' || c == ':') result += '\\';
         if (c == '$') result += '$';
         result += c;
     }
     // A home folder; a member of an archive; an end that one of them takes for its own.
-    if (path.empty() || path[0] == '~' || std::string_view(") :").find(path.back()) != std::string_view::npos)
+    if (path.empty() || path[0] == '~' ||
+        std::string_view(") :").find(path.back()) != std::string_view::npos)
         return std::nullopt;
     return result;
 }

@@ -7,7 +7,8 @@ namespace etlc::source {
 
 namespace {
 
-/// Code points are counted once per block, so that a position costs the same wherever it is in a line of megabytes.
+/// Code points are counted once per block, so that a position costs the same wherever it is in a
+/// line of megabytes.
 constexpr std::uint32_t kBlock = 1024;
 
 std::uint32_t count_code_points(std::string_view text) {
@@ -43,7 +44,8 @@ std::string_view File::text(Span span) const {
 
 std::uint32_t File::code_points_before(std::uint32_t offset) const {
     const std::uint32_t block = offset / kBlock;
-    const std::string_view rest = std::string_view(text_).substr(block * kBlock, offset - block * kBlock);
+    const std::string_view rest =
+        std::string_view(text_).substr(block * kBlock, offset - block * kBlock);
     return code_points_before_[block] + count_code_points(rest);
 }
 
@@ -56,7 +58,8 @@ Position File::position(std::uint32_t offset) const {
 
 std::string_view File::line_text(std::uint32_t line) const {
     const std::uint32_t begin = line_begins_[line - 1];
-    std::uint32_t end = line < line_count() ? line_begins_[line] : static_cast<std::uint32_t>(text_.size());
+    std::uint32_t end =
+        line < line_count() ? line_begins_[line] : static_cast<std::uint32_t>(text_.size());
     while (end > begin && (text_[end - 1] == '\n' || text_[end - 1] == '\r')) --end;
     return std::string_view(text_).substr(begin, end - begin);
 }

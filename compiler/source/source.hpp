@@ -1,6 +1,7 @@
 // The text of one input file and the places in it.
 // Takes: a path and its bytes. Gives: spans (byte ranges), and their line and column.
-// Keeps true: every offset in [0, size] has a position; lines end at \n or \r\n; columns count code points from 1.
+// Keeps true: every offset in [0, size] has a position; lines end at \n or \r\n; columns count code
+// points from 1.
 #pragma once
 
 #include <cstdint>
@@ -48,7 +49,8 @@ private:
     std::string path_;
     std::string text_;
     std::vector<std::uint32_t> line_begins_{0};
-    std::vector<std::uint32_t> code_points_before_{0};  ///< entry i: in the first i blocks of 1024 bytes
+    std::vector<std::uint32_t> code_points_before_{
+        0};  ///< entry i: in the first i blocks of 1024 bytes
 };
 
 }  // namespace etlc::source

@@ -15,7 +15,8 @@ std::size_t utf8_length(std::string_view text) {
     if (text.size() < length) return 0;
     for (std::size_t i = 1; i < length; ++i)
         if ((byte(i) & 0xC0U) != 0x80U) return 0;
-    // The second byte rules out what a shorter form could say, surrogates, and values above U+10FFFF.
+    // The second byte rules out what a shorter form could say, surrogates, and values above
+    // U+10FFFF.
     const bool overlong = (lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xF0 && byte(1) < 0x90);
     const bool surrogate = lead == 0xED && byte(1) >= 0xA0;
     const bool too_large = lead == 0xF4 && byte(1) >= 0x90;
@@ -33,7 +34,9 @@ std::size_t first_invalid_utf8(std::string_view text) {
 }
 
 char32_t code_point(std::string_view character) {
-    const auto byte = [character](std::size_t i) { return static_cast<unsigned char>(character[i]); };
+    const auto byte = [character](std::size_t i) {
+        return static_cast<unsigned char>(character[i]);
+    };
     if (character.size() == 1) return byte(0);
     char32_t value = byte(0) & (0x7FU >> character.size());
     for (std::size_t i = 1; i < character.size(); ++i) value = (value << 6U) | (byte(i) & 0x3FU);
@@ -44,8 +47,9 @@ bool is_hidden(char32_t character) {
     struct Range {
         char32_t first, last;
     };
-    // C0; DEL and C1; soft hyphen; Arabic letter mark; fillers; Mongolian vowel separators; zero widths, directions;
-    // separators, embeddings; joiners, isolates; byte order mark; annotations; tags.
+    // C0; DEL and C1; soft hyphen; Arabic letter mark; fillers; Mongolian vowel separators; zero
+    // widths, directions; separators, embeddings; joiners, isolates; byte order mark; annotations;
+    // tags.
     constexpr std::array<Range, 15> kHidden{{{0, 0x1F},
                                              {0x7F, 0x9F},
                                              {0xAD, 0xAD},
@@ -61,8 +65,9 @@ bool is_hidden(char32_t character) {
                                              {0xFFA0, 0xFFA0},
                                              {0xFFF0, 0xFFFB},
                                              {0xE0000, 0xE0FFF}}};
-    return std::any_of(kHidden.begin(), kHidden.end(),
-                       [character](Range r) { return r.first <= character && character <= r.last; });
+    return std::any_of(kHidden.begin(), kHidden.end(), [character](Range r) {
+        return r.first <= character && character <= r.last;
+    });
 }
 
 }  // namespace etlc::source

@@ -21,13 +21,20 @@ constexpr int kNumberOverflow = 406;  ///< nlohmann's id of this error
 /// Builds the tree from nlohmann's events. Returning false stops the parser.
 class Builder {
 public:
-    Builder(const std::string& text, std::uint64_t max_values) : text_(text), max_values_(max_values) {}
+    Builder(const std::string& text, std::uint64_t max_values)
+        : text_(text), max_values_(max_values) {}
 
     bool null() { return add({}) != nullptr; }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
-    bool number_integer(std::int64_t value) { return leaf(Json::Kind::number, std::to_string(value)); }
-    bool number_unsigned(std::uint64_t value) { return leaf(Json::Kind::number, std::to_string(value)); }
-    bool number_float(double, const std::string& written) { return leaf(Json::Kind::number, written); }
+    bool number_integer(std::int64_t value) {
+        return leaf(Json::Kind::number, std::to_string(value));
+    }
+    bool number_unsigned(std::uint64_t value) {
+        return leaf(Json::Kind::number, std::to_string(value));
+    }
+    bool number_float(double, const std::string& written) {
+        return leaf(Json::Kind::number, written);
+    }
     bool string(std::string& value) { return leaf(Json::Kind::string, std::move(value)); }
     bool binary(nlohmann::json::binary_t&) { return false; }  // JSON text has none
 
@@ -38,23 +45,26 @@ public:
 
     bool key(std::string& name) {
         if (!seen_.back().insert(name).second) {
-            failure_ = Failure{Code::invalid_thresholds,
-                               fmt::format("key {} stands twice in one object", data::in_quotes(name))};
+            failure_ =
+                Failure{Code::invalid_thresholds,
+                        fmt::format("key {} stands twice in one object", data::in_quotes(name))};
             return false;
         }
         open_.back()->keys.push_back(std::move(name));
         return true;
     }
 
-    bool parse_error(std::size_t position, const std::string&, const nlohmann::json::exception& error) {
+    bool parse_error(std::size_t position, const std::string&,
+                     const nlohmann::json::exception& error) {
         std::string what = "its end";
         if (error.id == kNumberOverflow)
             what = "a number that no double holds";
         else if (position <= text_.size())  // counts the bytes read, the unexpected one included
             what = data::in_quotes(character(position > 0 ? position - 1 : 0));
         const source::Position place = place_of(position);
-        failure_ = Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what), place.line,
-                           place.column};
+        failure_ =
+            Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what),
+                    place.line, place.column};
         return false;
     }
 
@@ -71,7 +81,8 @@ private:
 
     bool open(Json::Kind kind) {
         if (open_.size() == kMaxJsonDepth) {
-            failure_ = Failure{Code::malformed_thresholds, fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
+            failure_ = Failure{Code::malformed_thresholds,
+                               fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
             return false;
         }
         Json json;
@@ -92,8 +103,9 @@ private:
     /// Pointers to open arrays and objects stay good: only the innermost one grows.
     Json* add(Json json) {
         if (values_ == max_values_) {
-            failure_ = Failure{Code::malformed_thresholds,
-                               fmt::format("holds more than {} values, the most that are read", max_values_)};
+            failure_ = Failure{
+                Code::malformed_thresholds,
+                fmt::format("holds more than {} values, the most that are read", max_values_)};
             return nullptr;
         }
         ++values_;
@@ -116,12 +128,14 @@ private:
     }
 
     source::Position place_of(std::size_t position) const {
-        const std::string_view before = std::string_view(text_).substr(0, position > 0 ? position - 1 : 0);
+        const std::string_view before =
+            std::string_view(text_).substr(0, position > 0 ? position - 1 : 0);
         const auto lines = std::count(before.begin(), before.end(), '\n');
         const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
         const std::string_view line = before.substr(line_begin);
-        const auto columns = static_cast<std::size_t>(line.end() - line.begin()) -
-                             static_cast<std::size_t>(std::count_if(line.begin(), line.end(), continuation));
+        const auto columns =
+            static_cast<std::size_t>(line.end() - line.begin()) -
+            static_cast<std::size_t>(std::count_if(line.begin(), line.end(), continuation));
         return {static_cast<std::uint32_t>(lines + 1), static_cast<std::uint32_t>(columns + 1)};
     }
 

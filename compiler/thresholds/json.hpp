@@ -1,6 +1,7 @@
 // JSON as a tree that keeps the text of its numbers.
-// Takes: text. Gives: the tree, or where and why it is not JSON. Keeps true: a key stands once in an object, nesting
-// and the number of values are limited before memory is spent on them, and a number is never rounded on the way.
+// Takes: text. Gives: the tree, or where and why it is not JSON. Keeps true: a key stands once in
+// an object, nesting and the number of values are limited before memory is spent on them, and a
+// number is never rounded on the way.
 #pragma once
 
 #include <cstdint>
@@ -14,7 +15,7 @@ namespace etlc::thresholds {
 struct Json {
     enum class Kind : std::uint8_t { null, boolean, number, string, array, object };
     Kind kind = Kind::null;
-    std::string text;               ///< number: as written; string: its content; boolean: true or false
+    std::string text;  ///< number: as written; string: its content; boolean: true or false
     std::vector<std::string> keys;  ///< object
     std::vector<Json> items;        ///< array: elements; object: values, one per key
 

@@ -49,9 +49,9 @@ private:
     void check_format(const Json& root) {
         const Json* format = member(root, "", "format", Json::Kind::number, "1");
         if (format != nullptr && format->text != "1")
-            failure_ =
-                Failure{Code::unknown_thresholds_format,
-                        fmt::format("'format' is {}, expected 1, the one this version reads", in_quotes(format->text))};
+            failure_ = Failure{Code::unknown_thresholds_format,
+                               fmt::format("'format' is {}, expected 1, the one this version reads",
+                                           in_quotes(format->text))};
     }
 
     /// `what` is the key of the canonical text: "predicate" or "formula".
@@ -73,7 +73,8 @@ private:
         result.method = method(json, path);
         const bool ranked = result.method != "f1";
         const bool of_monitor = what == "formula";
-        std::vector<std::string> keys{"method", "alpha", "epsilon", "n", "k", "scores", what, "truth", "targets"};
+        std::vector<std::string> keys{"method", "alpha", "epsilon", "n",      "k",
+                                      "scores", what,    "truth",   "targets"};
         if (of_monitor) keys.insert(keys.end(), {"against", "episodes"});
         check_keys(json, path, keys);
         if (ranked || json.find("alpha") != nullptr) result.alpha = alpha(json, path, ranked);
@@ -82,7 +83,8 @@ private:
         result.k = count(json, path, "k");
         if (!failure_ && ranked != (result.k > 0))
             fail(path + ".k", *json.find("k"), ranked ? "a rank from 1" : "0 for f1");
-        if (result.k > result.n) fail(path + ".k", *json.find("k"), fmt::format("at most n, which is {}", result.n));
+        if (result.k > result.n)
+            fail(path + ".k", *json.find("k"), fmt::format("at most n, which is {}", result.n));
         result.scores = scores(json, path);
         result.predicate = text(json, path, what);
         result.truth = text(json, path, "truth");
@@ -95,9 +97,11 @@ private:
 
     std::string method(const Json& json, const std::string& path) {
         std::string value = text(json, path, "method");
-        const bool known = value == "f1" || value == "conformal" || value == "class_conditional" || value == "adaptive";
+        const bool known = value == "f1" || value == "conformal" || value == "class_conditional" ||
+                           value == "adaptive";
         if (!failure_ && !known)
-            fail(path + ".method", *json.find("method"), "'f1', 'conformal', 'class_conditional' or 'adaptive'");
+            fail(path + ".method", *json.find("method"),
+                 "'f1', 'conformal', 'class_conditional' or 'adaptive'");
         return value;
     }
 
@@ -116,8 +120,10 @@ private:
         if (value == nullptr) return 0;
         float result = 0;
         const std::string& digits = value->text;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result);
-        if (error != std::errc() || end != digits.data() + digits.size()) fail(path + ".epsilon", *value, expected);
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), result);
+        if (error != std::errc() || end != digits.data() + digits.size())
+            fail(path + ".epsilon", *value, expected);
         return result;
     }
 
@@ -127,8 +133,10 @@ private:
         if (value == nullptr) return 0;
         std::uint64_t result = 0;
         const std::string& digits = value->text;
-        const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), result);
-        if (error != std::errc() || end != digits.data() + digits.size()) fail(path + "." + key, *value, expected);
+        const auto [end, error] =
+            std::from_chars(digits.data(), digits.data() + digits.size(), result);
+        if (error != std::errc() || end != digits.data() + digits.size())
+            fail(path + "." + key, *value, expected);
         return result;
     }
 
@@ -137,7 +145,8 @@ private:
         std::vector<double> result;
         for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
             const Json& item = array->items[i];
-            const bool infinite = item.kind == Json::Kind::string && (item.text == "inf" || item.text == "-inf");
+            const bool infinite =
+                item.kind == Json::Kind::string && (item.text == "inf" || item.text == "-inf");
             if (item.kind != Json::Kind::number && !infinite)
                 fail(fmt::format("{}.scores[{}]", path, i), item, "a number, 'inf' or '-inf'");
             else
@@ -150,7 +159,8 @@ private:
         const Json* object = member(json, path, "targets", Json::Kind::object, "an object");
         std::map<std::string, std::string> result;
         for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i)
-            result[object->keys[i]] = hash(object->items[i], fmt::format("{}.targets.{}", path, object->keys[i]));
+            result[object->keys[i]] =
+                hash(object->items[i], fmt::format("{}.targets.{}", path, object->keys[i]));
         return result;
     }
 
@@ -162,15 +172,18 @@ private:
     }
 
     std::vector<std::string> episodes(const Json& object, const std::string& path) {
-        const Json* array = member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
+        const Json* array =
+            member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
         std::vector<std::string> result;
         for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i)
-            result.push_back(hash(array->items[i], fmt::format("{}{}episodes[{}]", path, path.empty() ? "" : ".", i)));
+            result.push_back(hash(array->items[i], fmt::format("{}{}episodes[{}]", path,
+                                                               path.empty() ? "" : ".", i)));
         return result;
     }
 
     std::string hash(const Json& json, const std::string& path) {
-        if (json.kind != Json::Kind::string || !is_hash(json.text)) fail(path, json, "a content hash of 16 hex digits");
+        if (json.kind != Json::Kind::string || !is_hash(json.text))
+            fail(path, json, "a content hash of 16 hex digits");
         return json.text;
     }
 
@@ -179,15 +192,17 @@ private:
         return value != nullptr ? value->text : std::string();
     }
 
-    /// The value of a key that has to be there and of this kind; null, after a failure, where it is not.
-    const Json* member(const Json& object, const std::string& path, const std::string& key, Json::Kind kind,
-                       const std::string& expected) {
+    /// The value of a key that has to be there and of this kind; null, after a failure, where it is
+    /// not.
+    const Json* member(const Json& object, const std::string& path, const std::string& key,
+                       Json::Kind kind, const std::string& expected) {
         if (failure_) return nullptr;
         const std::string place = path.empty() ? key : fmt::format("{}.{}", path, key);
         const Json* value = object.find(key);
         if (value == nullptr) {
-            failure_ = Failure{Code::invalid_thresholds,
-                               fmt::format("key {} is missing, expected {}", in_quotes(place), expected)};
+            failure_ =
+                Failure{Code::invalid_thresholds,
+                        fmt::format("key {} is missing, expected {}", in_quotes(place), expected)};
             return nullptr;
         }
         if (value->kind == kind) return value;
@@ -195,12 +210,13 @@ private:
         return nullptr;
     }
 
-    void check_keys(const Json& object, const std::string& path, const std::vector<std::string>& known) {
+    void check_keys(const Json& object, const std::string& path,
+                    const std::vector<std::string>& known) {
         for (const std::string& key : object.keys) {
             if (failure_) return;
             if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-            std::string message =
-                fmt::format("unknown key {}", in_quotes(path.empty() ? key : fmt::format("{}.{}", path, key)));
+            std::string message = fmt::format(
+                "unknown key {}", in_quotes(path.empty() ? key : fmt::format("{}.{}", path, key)));
             if (auto nearest = diag::nearest_name(key, known))
                 message += fmt::format("; did you mean {}?", in_quotes(*nearest));
             failure_ = Failure{Code::invalid_thresholds, message};
@@ -210,8 +226,8 @@ private:
     void fail(const std::string& place, const Json& found, const std::string& expected) {
         if (failure_) return;
         const std::string subject = place.empty() ? "the file" : in_quotes(place);
-        failure_ =
-            Failure{Code::invalid_thresholds, fmt::format("{} is {}, expected {}", subject, describe(found), expected)};
+        failure_ = Failure{Code::invalid_thresholds, fmt::format("{} is {}, expected {}", subject,
+                                                                 describe(found), expected)};
     }
 
     std::optional<Failure> failure_;

@@ -1,7 +1,7 @@
 // The thresholds file: what `etlc calibrate` found, with where it came from.
-// Takes: JSON of format 1. Gives: one entry per calibrated predicate. Keeps true: every float32 in it reads back to the
-// same bits, and writing what was read gives the same text; whether an entry fits the spec is check/'s question, which
-// compares `predicate` and `targets`.
+// Takes: JSON of format 1. Gives: one entry per calibrated predicate. Keeps true: every float32 in
+// it reads back to the same bits, and writing what was read gives the same text; whether an entry
+// fits the spec is check/'s question, which compares `predicate` and `targets`.
 #pragma once
 
 #include <cstdint>
@@ -18,17 +18,20 @@ inline constexpr std::uint64_t kMaxFileBytes = 64ULL << 20U;
 inline constexpr std::uint64_t kMaxValues = 1ULL << 21U;
 
 struct Entry {
-    std::string method;          ///< f1, conformal, class_conditional
-    std::string alpha;           ///< decimal text exactly as in the spec, a JSON number; empty for f1
-    float epsilon = 0;           ///< finite
-    std::uint64_t n = 0;         ///< demonstrations (conformal) or frames (class_conditional, f1) that gave scores
+    std::string method;  ///< f1, conformal, class_conditional
+    std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
+    float epsilon = 0;   ///< finite
+    std::uint64_t n =
+        0;  ///< demonstrations (conformal) or frames (class_conditional, f1) that gave scores
     std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
     std::vector<double> scores;  ///< may be infinite, not NaN
-    std::string predicate;       ///< canonical text, check::Predicate::text; of a monitor the text of its formula
-    std::string truth;           ///< canonical text of the truth formula, or "array"
+    std::string predicate;  ///< canonical text, check::Predicate::text; of a monitor the text of
+                            ///< its formula
+    std::string truth;      ///< canonical text of the truth formula, or "array"
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
     std::string against;                         ///< monitors: missed_alarm or missed_success
-    std::vector<std::string> episodes;           ///< monitors: hashes of the episodes that it was calibrated on
+    std::vector<std::string>
+        episodes;  ///< monitors: hashes of the episodes that it was calibrated on
 };
 
 struct File {
@@ -37,13 +40,15 @@ struct File {
     std::string etlc;  ///< version that wrote it
     std::map<std::string, Entry> predicates;
     std::map<std::string, Entry> monitors;
-    std::vector<std::string> episodes;  ///< content hashes of the episodes behind `predicates`, 16 hex digits each
+    std::vector<std::string>
+        episodes;  ///< content hashes of the episodes behind `predicates`, 16 hex digits each
 };
 
 /// Of all episodes that some threshold was calibrated on.
 std::vector<std::string> all_episodes(const File& file);
 
-/// Failures are E06; their messages name the key, not the path: `data::in_file` (data/file.hpp) adds it.
+/// Failures are E06; their messages name the key, not the path: `data::in_file` (data/file.hpp)
+/// adds it.
 diag::Result<File> read(const std::string& path);
 diag::Result<File> parse(const std::string& json, const std::string& path);
 

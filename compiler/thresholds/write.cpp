@@ -10,10 +10,12 @@
 namespace etlc::thresholds {
 namespace {
 
-/// The shortest decimal text that reads back to the same bits; infinities as text, which JSON has no number for.
+/// The shortest decimal text that reads back to the same bits; infinities as text, which JSON has
+/// no number for.
 template <class Number>
 std::string number(Number value) {
-    if (value == 0 && std::signbit(value)) return "-0.0";  // -0 is an integer to JSON readers, and has no sign
+    if (value == 0 && std::signbit(value))
+        return "-0.0";  // -0 is an integer to JSON readers, and has no sign
     if (std::isinf(value)) return value > 0 ? "\"inf\"" : "\"-inf\"";
     std::array<char, 64> buffer;
     const auto [end, error] = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value);
@@ -38,7 +40,8 @@ std::string object(const std::map<std::string, std::string>& members, std::size_
     if (members.empty()) return "{}";
     std::string result = "{";
     for (const auto& [key, value] : members)
-        result += fmt::format("{}\n{:{}}{}: {}", result.size() > 1 ? "," : "", "", indent + 2, text(key), value);
+        result += fmt::format("{}\n{:{}}{}: {}", result.size() > 1 ? "," : "", "", indent + 2,
+                              text(key), value);
     return result + fmt::format("\n{:{}}}}", "", indent);
 }
 
@@ -46,7 +49,8 @@ std::string episodes(const std::vector<std::string>& hashes, std::size_t indent)
     if (hashes.empty()) return "[]";
     std::string result = "[";
     for (const std::string& hash : hashes)
-        result += fmt::format("{}\n{:{}}{}", result.size() > 1 ? "," : "", "", indent + 2, text(hash));
+        result +=
+            fmt::format("{}\n{:{}}{}", result.size() > 1 ? "," : "", "", indent + 2, text(hash));
     return result + fmt::format("\n{:{}}]", "", indent);
 }
 
@@ -84,7 +88,8 @@ std::string entries(const std::map<std::string, Entry>& all, const std::string& 
 
 std::string write(const File& file) {
     return fmt::format(
-        "{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": {},\n  \"monitors\": {},\n  \"episodes\": {},\n"
+        "{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": {},\n  \"monitors\": {},\n  "
+        "\"episodes\": {},\n"
         "  \"etlc\": {}\n}}\n",
         text(file.spec), entries(file.predicates, "predicate"), entries(file.monitors, "formula"),
         episodes(file.episodes, 2), text(file.etlc));

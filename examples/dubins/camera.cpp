@@ -23,7 +23,8 @@ double pixel(const Car& car, int row, int column) {
     double sum = 0;
     for (int i = 0; i < kSamples; ++i) {
         for (int j = 0; j < kSamples; ++j) {
-            const double x = -kHalfWidth + (column + (j + 0.5) / kSamples) * kPixel - car.position.x;
+            const double x =
+                -kHalfWidth + (column + (j + 0.5) / kSamples) * kPixel - car.position.x;
             const double y = kHalfWidth - (row + (i + 0.5) / kSamples) * kPixel - car.position.y;
             sum += brightness(c * x + s * y, c * y - s * x);
         }
@@ -39,9 +40,10 @@ Image photograph(const Car& car) {
     const int reach = static_cast<int>(kNoseAhead / kPixel) + 1;
     const int centre_row = static_cast<int>((kHalfWidth - car.position.y) / kPixel);
     const int centre_column = static_cast<int>((car.position.x + kHalfWidth) / kPixel);
-    for (int row = std::max(0, centre_row - reach); row <= std::min(kImageSide - 1, centre_row + reach); ++row) {
-        for (int column = std::max(0, centre_column - reach); column <= std::min(kImageSide - 1, centre_column + reach);
-             ++column) {
+    for (int row = std::max(0, centre_row - reach);
+         row <= std::min(kImageSide - 1, centre_row + reach); ++row) {
+        for (int column = std::max(0, centre_column - reach);
+             column <= std::min(kImageSide - 1, centre_column + reach); ++column) {
             image[static_cast<std::size_t>(row * kImageSide + column)] =
                 static_cast<std::uint8_t>(std::lround(255 * pixel(car, row, column)));
         }

@@ -1,8 +1,8 @@
-// drift FOLDER: recorded drives in the order of their names, as dubins_record --sagging writes them, past the class
-// that etlc made of drift.etl, compiled with its thresholds. Every step gets its label two seconds late. Gives: for
-// each tenth of the drives, how many of the frames inside A either predicate missed, and how many outside it took for
-// A. Needs nothing but the generated header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER
-// drift.cpp
+// drift FOLDER: recorded drives in the order of their names, as dubins_record --sagging writes
+// them, past the class that etlc made of drift.etl, compiled with its thresholds. Every step gets
+// its label two seconds late. Gives: for each tenth of the drives, how many of the frames inside A
+// either predicate missed, and how many outside it took for A. Needs nothing but the generated
+// header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER drift.cpp
 #include <algorithm>
 #include <cstdio>
 #include <deque>
@@ -70,7 +70,8 @@ private:
         inputs.z = frame.z;
         monitor_.step(inputs);
         const float distance = monitor_.distance_a_adaptive();
-        counts.add(inside, monitor_.distance_a_fixed() <= dubins_drift::Monitor::threshold_a_fixed(),
+        counts.add(inside,
+                   monitor_.distance_a_fixed() <= dubins_drift::Monitor::threshold_a_fixed(),
                    distance <= threshold);
         labels_.push_back({distance, inside});
         if (labels_.size() <= kLateness) return;
@@ -84,7 +85,7 @@ private:
     dubins_drift::Monitor monitor_;
     std::deque<Label> labels_;  // of whoever labels; the monitor keeps none
     int labelled_ = 0;          // frames inside A
-    int missed_ = 0;            // by the threshold at the time of the label: what the guarantee is about
+    int missed_ = 0;  // by the threshold at the time of the label: what the guarantee is about
 };
 
 double percent(int part, int of) {
@@ -92,10 +93,11 @@ double percent(int part, int of) {
 }
 
 void print(const char* name, const Counts& counts, float threshold) {
-    std::printf("%-10s  %12d  %12.1f %%  %14.1f %%  %12.2f %%  %14.2f %%  %18.3f\n", name, counts.inside,
-                percent(counts.missed_fixed, counts.inside), percent(counts.missed_adaptive, counts.inside),
-                percent(counts.false_fixed, counts.outside), percent(counts.false_adaptive, counts.outside),
-                static_cast<double>(threshold));
+    std::printf("%-10s  %12d  %12.1f %%  %14.1f %%  %12.2f %%  %14.2f %%  %18.3f\n", name,
+                counts.inside, percent(counts.missed_fixed, counts.inside),
+                percent(counts.missed_adaptive, counts.inside),
+                percent(counts.false_fixed, counts.outside),
+                percent(counts.false_adaptive, counts.outside), static_cast<double>(threshold));
 }
 
 }  // namespace
@@ -106,11 +108,13 @@ int main(int argc, char** argv) {
         return 2;
     }
     std::vector<std::filesystem::path> drives;
-    for (const auto& entry : std::filesystem::directory_iterator(argv[1])) drives.push_back(entry.path());
+    for (const auto& entry : std::filesystem::directory_iterator(argv[1]))
+        drives.push_back(entry.path());
     std::sort(drives.begin(), drives.end());
 
-    std::printf("%-10s  %12s  %14s  %16s  %14s  %16s  %18s\n", "drives", "frames in A", "missed, fixed",
-                "missed, adaptive", "false, fixed", "false, adaptive", "adaptive threshold");
+    std::printf("%-10s  %12s  %14s  %16s  %14s  %16s  %18s\n", "drives", "frames in A",
+                "missed, fixed", "missed, adaptive", "false, fixed", "false, adaptive",
+                "adaptive threshold");
     Watch watch;
     std::printf("%-10s  %12s  %14s  %16s  %14s  %16s  %18.3f\n", "before", "", "", "", "", "",
                 static_cast<double>(watch.threshold()));
@@ -123,9 +127,11 @@ int main(int argc, char** argv) {
             std::fprintf(stderr, "drift: %s cannot be read\n", drives[n].c_str());
             return 1;
         }
-        print((std::to_string(begin + 1) + " to " + std::to_string(end)).c_str(), counts, watch.threshold());
+        print((std::to_string(begin + 1) + " to " + std::to_string(end)).c_str(), counts,
+              watch.threshold());
     }
     std::printf(
-        "\n%d frames inside A were labelled; the adaptive threshold missed %d of them when the label came (%.1f %%)\n",
+        "\n%d frames inside A were labelled; the adaptive threshold missed %d of them when the "
+        "label came (%.1f %%)\n",
         watch.labelled(), watch.missed(), percent(watch.missed(), watch.labelled()));
 }

@@ -10,8 +10,9 @@ constexpr double kLookAhead = 0.1;     // s
 constexpr double kWaypointSize = 0.1;  // m
 
 bool is_free(const Tour& tour, Point p) {
-    return inside_world(p, kWallMargin) && std::none_of(tour.forbidden.begin(), tour.forbidden.end(),
-                                                        [&](const Disc& disc) { return disc.contains(p); });
+    return inside_world(p, kWallMargin) &&
+           std::none_of(tour.forbidden.begin(), tour.forbidden.end(),
+                        [&](const Disc& disc) { return disc.contains(p); });
 }
 
 /// Whether the car could circle left or right for ever.
@@ -44,7 +45,9 @@ Route::Route(Tour tour) : tour_(std::move(tour)) {
 
 double Driver::turn_rate(const Car& car) {
     const std::vector<Point>& waypoints = route_.tour().waypoints;
-    while (next_ < waypoints.size() && distance(car.position, waypoints[next_]) < route_.tour().reach) ++next_;
+    while (next_ < waypoints.size() &&
+           distance(car.position, waypoints[next_]) < route_.tour().reach)
+        ++next_;
     const TimeField& field = route_.leg(next_);
 
     double best = kMaxTurnRate;

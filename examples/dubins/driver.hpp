@@ -1,6 +1,7 @@
-// The feedback controller: drives a tour of waypoints, keeps to the world and out of what is forbidden.
-// Takes: the car's state at each step. Gives: the turn rate that leads soonest to the waypoint ahead.
-// Keeps true: without disturbance the car never leaves the world, not even after its last waypoint.
+// The feedback controller: drives a tour of waypoints, keeps to the world and out of what is
+// forbidden. Takes: the car's state at each step. Gives: the turn rate that leads soonest to the
+// waypoint ahead. Keeps true: without disturbance the car never leaves the world, not even after
+// its last waypoint.
 #pragma once
 
 #include <cstddef>
@@ -16,7 +17,8 @@ struct Tour {
     double reach = 0.15;  ///< a waypoint counts as visited within this distance, m
 };
 
-/// A tour with the fields that lead along it. Solving them takes a while: one route serves any number of drives.
+/// A tour with the fields that lead along it. Solving them takes a while: one route serves any
+/// number of drives.
 class Route {
 public:
     explicit Route(Tour tour);
@@ -36,7 +38,8 @@ class Driver {
 public:
     explicit Driver(const Route& route) : route_(route) {}
 
-    /// The turn rate for the next step; after the last waypoint the tour is over and the car circles.
+    /// The turn rate for the next step; after the last waypoint the tour is over and the car
+    /// circles.
     double turn_rate(const Car& car);
 
 private:

@@ -48,14 +48,17 @@ Eigen::VectorXf blurred(const Image& image) {
 
 Encoder Encoder::fit(const std::vector<Image>& images) {
     Eigen::MatrixXf rows(static_cast<Eigen::Index>(images.size()), kPixels);
-    for (std::size_t i = 0; i < images.size(); ++i) rows.row(static_cast<Eigen::Index>(i)) = blurred(images[i]);
+    for (std::size_t i = 0; i < images.size(); ++i)
+        rows.row(static_cast<Eigen::Index>(i)) = blurred(images[i]);
 
     Encoder encoder;
     encoder.mean_ = rows.colwise().mean();
     rows.rowwise() -= encoder.mean_.transpose();
-    const Eigen::MatrixXd covariance = (rows.transpose() * rows).cast<double>() / static_cast<double>(images.size());
+    const Eigen::MatrixXd covariance =
+        (rows.transpose() * rows).cast<double>() / static_cast<double>(images.size());
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);  // eigenvalues ascend
-    encoder.components_ = solver.eigenvectors().rightCols(kDimension).rowwise().reverse().transpose().cast<float>();
+    encoder.components_ =
+        solver.eigenvectors().rightCols(kDimension).rowwise().reverse().transpose().cast<float>();
     encoder.kept_ = solver.eigenvalues().tail(kDimension).sum() / solver.eigenvalues().sum();
     return encoder;
 }
@@ -74,7 +77,8 @@ void Encoder::save(const std::string& folder) const {
 
 Embedding Encoder::encode(const Image& image) const {
     Embedding embedding;
-    Eigen::Map<Eigen::Matrix<float, kDimension, 1>>(embedding.data()) = components_ * (blurred(image) - mean_);
+    Eigen::Map<Eigen::Matrix<float, kDimension, 1>>(embedding.data()) =
+        components_ * (blurred(image) - mean_);
     return embedding;
 }
 

@@ -1,6 +1,7 @@
 // A small learned encoder: blur, then principal components.
 // Takes: camera images. Gives: embeddings of 32 float32 numbers, the `input z` of dubins.etl.
-// Keeps true: the same components encode the targets and the frames, so their distances mean something.
+// Keeps true: the same components encode the targets and the frames, so their distances mean
+// something.
 #pragma once
 
 #include <Eigen/Core>
@@ -19,7 +20,8 @@ class Encoder {
 public:
     /// Principal components of the blurred images (PCA by the eigenvectors of their covariance).
     static Encoder fit(const std::vector<Image>& images);
-    /// Reads `mean.npy` (1 x 1024) and `components.npy` (32 x 1024). Throws std::runtime_error with the reason.
+    /// Reads `mean.npy` (1 x 1024) and `components.npy` (32 x 1024). Throws std::runtime_error with
+    /// the reason.
     static Encoder load(const std::string& folder);
 
     void save(const std::string& folder) const;

@@ -57,13 +57,15 @@ Car random_state(Random& random) {
 Car random_start(const Route& route, Random& random) {
     for (;;) {
         const Car car = random_state(random);
-        const bool away = distance(car.position, kGoalA.centre) > 0.5 && distance(car.position, kGoalB.centre) > 0.5 &&
+        const bool away = distance(car.position, kGoalA.centre) > 0.5 &&
+                          distance(car.position, kGoalB.centre) > 0.5 &&
                           distance(car.position, kObstacleC.centre) > 0.7;
         if (away && route.can_start(car)) return car;
     }
 }
 
-/// One drive. A slowly wandering disturbance acts on the steering; empty if it pushed the car out of the world.
+/// One drive. A slowly wandering disturbance acts on the steering; empty if it pushed the car out
+/// of the world.
 std::vector<Car> drive(const Route& route, int steps, Random& random) {
     Car car = random_start(route, random);
     Driver driver(route);
@@ -103,7 +105,8 @@ std::vector<Car> wander(std::uint64_t seed, int count) {
         Car car = random_state(random);
         for (int step = 0; step < kStepsEach && inside_world(car.position); ++step) {
             states.push_back(car);
-            for (int i = 0; i < 5; ++i) car = car.moved(random.uniform(-kMaxTurnRate, kMaxTurnRate), kTimeStep);
+            for (int i = 0; i < 5; ++i)
+                car = car.moved(random.uniform(-kMaxTurnRate, kMaxTurnRate), kTimeStep);
         }
     }
     states.resize(static_cast<std::size_t>(count));

@@ -19,7 +19,8 @@ struct Episode {
 /// `count` tours of `steps` steps each, from the seed alone.
 std::vector<Episode> drive_tours(std::uint64_t seed, int count, int steps);
 
-/// States of cars that steer at random, spread evenly over the world: what the encoder is fitted on.
+/// States of cars that steer at random, spread evenly over the world: what the encoder is fitted
+/// on.
 std::vector<Car> wander(std::uint64_t seed, int count);
 
 }  // namespace demo

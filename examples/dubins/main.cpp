@@ -1,6 +1,7 @@
 // dubins [OUTPUT_FOLDER [DRIVE]]: a hundred drives past the generated monitor of dubins.etl.
-// Gives: on standard output a line per drive, then how often verdicts and truth agree; in OUTPUT_FOLDER (default: the
-// current one) dubins.svg, a picture of one drive, and dubins.csv, the same drive as a trace for `etlc run`.
+// Gives: on standard output a line per drive, then how often verdicts and truth agree; in
+// OUTPUT_FOLDER (default: the current one) dubins.svg, a picture of one drive, and dubins.csv, the
+// same drive as a trace for `etlc run`.
 #include <fmt/core.h>
 
 #include <charconv>
@@ -47,14 +48,17 @@ void show(const std::string& folder, int pictured) {
         write_csv(folder + "/dubins.csv", recording.episode.states, embeddings);
     }
     report.summary();
-    fmt::print("\ndrive {} is drawn in {}/dubins.svg and recorded in {}/dubins.csv\n", pictured, folder, folder);
+    fmt::print("\ndrive {} is drawn in {}/dubins.svg and recorded in {}/dubins.csv\n", pictured,
+               folder, folder);
 }
 
 int drive_number(std::string_view text) {
     int number = 0;
     const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
-    if (error != std::errc() || end != text.data() + text.size() || number < 1 || number > kDrives) {
-        throw std::invalid_argument(fmt::format("the drive is a number from 1 to {}, not {}", kDrives, text));
+    if (error != std::errc() || end != text.data() + text.size() || number < 1 ||
+        number > kDrives) {
+        throw std::invalid_argument(
+            fmt::format("the drive is a number from 1 to {}, not {}", kDrives, text));
     }
     return number;
 }

@@ -7,7 +7,8 @@
 
 namespace demo {
 
-const std::array<float, 3> kThresholds{dubins::Monitor::threshold_at_a(), dubins::Monitor::threshold_at_b(),
+const std::array<float, 3> kThresholds{dubins::Monitor::threshold_at_a(),
+                                       dubins::Monitor::threshold_at_b(),
                                        dubins::Monitor::threshold_near_c()};
 
 namespace {
@@ -49,7 +50,8 @@ Recording monitor_drive(Episode episode, const Encoder& encoder) {
 
         step.claims = {claim(verdicts.reach), claim(verdicts.avoid), claim(verdicts.reach_avoid),
                        claim(verdicts.sequential)};
-        step.distances = {monitor.distance_at_a(), monitor.distance_at_b(), monitor.distance_near_c()};
+        step.distances = {monitor.distance_at_a(), monitor.distance_at_b(),
+                          monitor.distance_near_c()};
         for (std::size_t i = 0; i < kPredicates.size(); ++i) {
             step.seen[i] = step.distances[i] <= kThresholds[i];
             step.true_now[i] = kRegions[i].disc.contains(car.position);

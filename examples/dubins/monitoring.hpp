@@ -1,7 +1,7 @@
 // One drive as the generated monitor saw it, beside the truth.
-// Takes: an episode and the encoder. Gives: per step the embedding, the distances, and what the monitors said and
-// should have said. Keeps true: the truth comes from the car's position alone, not from anything that the monitor
-// computed.
+// Takes: an episode and the encoder. Gives: per step the embedding, the distances, and what the
+// monitors said and should have said. Keeps true: the truth comes from the car's position alone,
+// not from anything that the monitor computed.
 #pragma once
 
 #include <array>
@@ -15,7 +15,8 @@
 namespace demo {
 
 inline constexpr std::array<std::string_view, 3> kPredicates{"at_a", "at_b", "near_c"};
-inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid", "sequential"};
+inline constexpr std::array<std::string_view, 4> kMonitors{"reach", "avoid", "reach_avoid",
+                                                           "sequential"};
 extern const std::array<float, 3> kThresholds;  ///< per predicate, from the generated class
 
 struct Claim {

@@ -19,10 +19,11 @@ void draw_key(Svg& page, Pixel at) {
 
 std::string picture(const Recording& recording, int number) {
     Svg page(kWidth, kHeight);
-    page.text({32, 42}, fmt::format("Drive {}: {}", number, recording.episode.plan), 21, kInk, Svg::Anchor::start,
-              "font-weight='700'");
+    page.text({32, 42}, fmt::format("Drive {}: {}", number, recording.episode.plan), 21, kInk,
+              Svg::Anchor::start, "font-weight='700'");
     page.text({32, 62},
-              "Cosine distance from the encoded camera image to the nearest target, and what dubins.etl makes of it",
+              "Cosine distance from the encoded camera image to the nearest target, and what "
+              "dubins.etl makes of it",
               12.5, kGrey);
     draw_traces(page, {32, 96, 780, 0}, recording);
     draw_key(page, {124, kHeight - 26});

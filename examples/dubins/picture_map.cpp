@@ -10,13 +10,16 @@ struct MapScale {
 
     double per_metre() const { return area.width / (2 * kHalfWidth); }
     Pixel at(Point p) const {
-        return {area.left + (p.x + kHalfWidth) * per_metre(), area.top + (kHalfWidth - p.y) * per_metre()};
+        return {area.left + (p.x + kHalfWidth) * per_metre(),
+                area.top + (kHalfWidth - p.y) * per_metre()};
     }
 };
 
-void draw_region(Svg& page, const MapScale& scale, const Disc& disc, std::string_view name, std::string_view colour) {
-    page.circle(scale.at(disc.centre), disc.radius * scale.per_metre(),
-                fmt::format("fill='{0}' fill-opacity='0.12' stroke='{0}' stroke-width='1.5'", colour));
+void draw_region(Svg& page, const MapScale& scale, const Disc& disc, std::string_view name,
+                 std::string_view colour) {
+    page.circle(
+        scale.at(disc.centre), disc.radius * scale.per_metre(),
+        fmt::format("fill='{0}' fill-opacity='0.12' stroke='{0}' stroke-width='1.5'", colour));
     Pixel at = scale.at(disc.centre);
     at.y += 6;
     page.text(at, name, 17, colour, Svg::Anchor::middle, "font-weight='700' fill-opacity='0.55'");
@@ -47,7 +50,8 @@ void draw_map(Svg& page, Area area, const Recording& recording) {
     std::vector<Pixel> route;
     for (const Car& car : states) route.push_back(scale.at(car.position));
     page.path(route, fmt::format("stroke='{}' stroke-width='2' stroke-linejoin='round'", kInk));
-    for (int shot = 0; shot < kShots; ++shot) draw_car(page, scale, states[shot_step(shot, states.size())], 8);
+    for (int shot = 0; shot < kShots; ++shot)
+        draw_car(page, scale, states[shot_step(shot, states.size())], 8);
     for (int shot = 0; shot < kShots; ++shot) {
         // The number stands to the left of the car, seen along its heading.
         const Car& car = states[shot_step(shot, states.size())];
@@ -69,10 +73,11 @@ void draw_camera_strip(Svg& page, Area area, const Recording& recording) {
                            area.top + shot / kColumns * (side + kCaption + kGap)};
         page.image(corner, side, side, png_address(photograph(recording.episode.states[step])));
         page.rectangle(corner, side, side, fmt::format("fill='none' stroke='{}'", kTruth));
-        page.text({corner.x, corner.y + side + 13}, fmt::format("{}", shot + 1), 10.5, kInk, Svg::Anchor::start,
-                  "font-weight='700'");
+        page.text({corner.x, corner.y + side + 13}, fmt::format("{}", shot + 1), 10.5, kInk,
+                  Svg::Anchor::start, "font-weight='700'");
         page.text({corner.x + side, corner.y + side + 13},
-                  fmt::format("{:.1f} s", static_cast<double>(step) * kTimeStep), 10.5, kGrey, Svg::Anchor::end);
+                  fmt::format("{:.1f} s", static_cast<double>(step) * kTimeStep), 10.5, kGrey,
+                  Svg::Anchor::end);
     }
 }
 

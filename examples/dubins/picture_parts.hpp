@@ -13,7 +13,8 @@ inline constexpr std::string_view kInk = "#1f2933";
 inline constexpr std::string_view kGrey = "#7b8794";
 inline constexpr std::string_view kRule = "#e4e7eb";
 inline constexpr std::string_view kTruth = "#9aa5b1";
-inline constexpr std::array<std::string_view, 3> kColours{"#2b6cb0", "#2f855a", "#c0392b"};  ///< of A, B and C
+inline constexpr std::array<std::string_view, 3> kColours{"#2b6cb0", "#2f855a",
+                                                          "#c0392b"};  ///< of A, B and C
 
 struct Area {
     double left;

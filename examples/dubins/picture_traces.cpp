@@ -26,7 +26,8 @@ std::string filled(std::string_view colour, double opacity = 1) {
 
 /// Rectangles over the runs of steps where `on` holds.
 template <class Test>
-void draw_runs(Svg& page, const TimeAxis& axis, double top, double height, const std::string& style, Test on) {
+void draw_runs(Svg& page, const TimeAxis& axis, double top, double height, const std::string& style,
+               Test on) {
     for (std::size_t i = 0; i < axis.steps; ++i) {
         if (!on(i)) continue;
         const std::size_t start = i;
@@ -36,7 +37,8 @@ void draw_runs(Svg& page, const TimeAxis& axis, double top, double height, const
     }
 }
 
-void draw_chart(Svg& page, const TimeAxis& axis, double top, const Recording& recording, std::size_t predicate) {
+void draw_chart(Svg& page, const TimeAxis& axis, double top, const Recording& recording,
+                std::size_t predicate) {
     constexpr double kHighest = 1.6;  // of the distances shown
     const auto height = [&](double distance) {
         return top + kChartHeight * (1 - std::clamp(distance / kHighest, 0.0, 1.0));
@@ -44,11 +46,14 @@ void draw_chart(Svg& page, const TimeAxis& axis, double top, const Recording& re
     const std::string_view colour = kColours[predicate];
     const auto threshold = static_cast<double>(kThresholds[predicate]);
     for (const double tick : {0.0, 0.5, 1.0, 1.5}) {
-        page.line({axis.left, height(tick)}, {axis.left + axis.width, height(tick)}, fmt::format("stroke='{}'", kRule));
-        page.text({axis.left - 8, height(tick) + 3.5}, fmt::format("{:.1f}", tick), 10, kGrey, Svg::Anchor::end);
+        page.line({axis.left, height(tick)}, {axis.left + axis.width, height(tick)},
+                  fmt::format("stroke='{}'", kRule));
+        page.text({axis.left - 8, height(tick) + 3.5}, fmt::format("{:.1f}", tick), 10, kGrey,
+                  Svg::Anchor::end);
     }
     const std::string band = filled(colour, 0.10);
-    draw_runs(page, axis, top, kChartHeight, band, [&](std::size_t i) { return recording.steps[i].seen[predicate]; });
+    draw_runs(page, axis, top, kChartHeight, band,
+              [&](std::size_t i) { return recording.steps[i].seen[predicate]; });
     page.line({axis.left, height(threshold)}, {axis.left + axis.width, height(threshold)},
               fmt::format("stroke='{}' stroke-width='1.2' stroke-dasharray='5 4'", colour));
     std::vector<Pixel> curve;
@@ -57,15 +62,16 @@ void draw_chart(Svg& page, const TimeAxis& axis, double top, const Recording& re
         curve.push_back({axis.at(static_cast<double>(i) + 0.5), height(distance)});
     }
     page.path(curve, fmt::format("stroke='{}' stroke-width='2' stroke-linejoin='round'", colour));
-    page.text({axis.left + axis.width + 8, height(threshold) + 3.5}, fmt::format("threshold {:.3g}", threshold), 10.5,
-              colour);
+    page.text({axis.left + axis.width + 8, height(threshold) + 3.5},
+              fmt::format("threshold {:.3g}", threshold), 10.5, colour);
 }
 
 /// A bar for what was said and, close below it, a thinner grey one for what was true.
 template <class Said, class True>
-void draw_bars(Svg& page, const TimeAxis& axis, double top, std::string_view name, std::string_view colour, Said said,
-               True is) {
-    page.text({axis.left - 8, top + kBarHeight}, name, 11.5, kInk, Svg::Anchor::end, "font-weight='600'");
+void draw_bars(Svg& page, const TimeAxis& axis, double top, std::string_view name,
+               std::string_view colour, Said said, True is) {
+    page.text({axis.left - 8, top + kBarHeight}, name, 11.5, kInk, Svg::Anchor::end,
+              "font-weight='600'");
     page.rectangle({axis.left, top}, axis.width, kBarHeight, filled("#f2f4f7"));
     draw_runs(page, axis, top, kBarHeight, filled(colour), said);
     page.rectangle({axis.left, top + kBarHeight + 2}, axis.width, kTruthHeight, filled("#f2f4f7"));
@@ -82,12 +88,15 @@ void draw_seconds(Svg& page, const TimeAxis& axis, double top) {
 }
 
 /// Where the verdict became final: a white mark on its bar.
-void draw_final(Svg& page, const TimeAxis& axis, double top, const Recording& recording, std::size_t monitor) {
+void draw_final(Svg& page, const TimeAxis& axis, double top, const Recording& recording,
+                std::size_t monitor) {
     for (std::size_t i = 0; i < axis.steps; ++i) {
         if (!recording.steps[i].claims[monitor].final) continue;
         const double x = axis.at(static_cast<double>(i));
-        page.line({x, top - 3}, {x, top + kBarHeight + 3}, fmt::format("stroke='{}' stroke-width='2'", kInk));
-        page.text({x + 5, top - 3}, fmt::format("final at {:.2f} s", static_cast<double>(i) * kTimeStep), 9.5, kGrey);
+        page.line({x, top - 3}, {x, top + kBarHeight + 3},
+                  fmt::format("stroke='{}' stroke-width='2'", kInk));
+        page.text({x + 5, top - 3},
+                  fmt::format("final at {:.2f} s", static_cast<double>(i) * kTimeStep), 9.5, kGrey);
         return;
     }
 }
@@ -95,16 +104,19 @@ void draw_final(Svg& page, const TimeAxis& axis, double top, const Recording& re
 }  // namespace
 
 void draw_traces(Svg& page, Area area, const Recording& recording) {
-    const TimeAxis axis{area.left + kLabelWidth, area.width - kLabelWidth - kNoteWidth, recording.steps.size()};
+    const TimeAxis axis{area.left + kLabelWidth, area.width - kLabelWidth - kNoteWidth,
+                        recording.steps.size()};
     constexpr std::string_view kNames[] = {"goal A", "goal B", "obstacle C"};
-    constexpr std::string_view kFormulas[] = {"F at_a", "G !near_c", "F at_a && G !near_c", "F (at_a && F at_b)"};
+    constexpr std::string_view kFormulas[] = {"F at_a", "G !near_c", "F at_a && G !near_c",
+                                              "F (at_a && F at_b)"};
     double top = area.top;
     for (std::size_t p = 0; p < kPredicates.size(); ++p) {
         page.text({axis.left, top + 2}, fmt::format("distance to {}", kNames[p]), 11.5, kGrey);
         draw_chart(page, axis, top + 10, recording, p);
         top += kChartHeight + 18;
         draw_bars(
-            page, axis, top, kPredicates[p], kColours[p], [&](std::size_t i) { return recording.steps[i].seen[p]; },
+            page, axis, top, kPredicates[p], kColours[p],
+            [&](std::size_t i) { return recording.steps[i].seen[p]; },
             [&](std::size_t i) { return recording.steps[i].true_now[p]; });
         top += kBarHeight + kTruthHeight + 22;
     }

@@ -48,12 +48,14 @@ std::string zlib_stored(const std::string& data) {
 }
 
 std::string base64(std::string_view bytes) {
-    constexpr std::string_view kDigits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+    constexpr std::string_view kDigits =
+        "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
     std::string text;
     for (std::size_t i = 0; i < bytes.size(); i += 3) {
         std::uint32_t triple = 0;
         for (std::size_t j = 0; j < 3; ++j) {
-            triple = triple << 8U | (i + j < bytes.size() ? static_cast<std::uint8_t>(bytes[i + j]) : 0U);
+            triple = triple << 8U |
+                     (i + j < bytes.size() ? static_cast<std::uint8_t>(bytes[i + j]) : 0U);
         }
         for (std::size_t j = 0; j < 4; ++j) {
             text += i + j > bytes.size() ? '=' : kDigits[triple >> (18 - 6 * j) & 63U];

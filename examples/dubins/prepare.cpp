@@ -1,7 +1,7 @@
 // dubins_prepare [FOLDER]: makes what the example commits, from seeds alone.
-// Gives: FOLDER/encoder/{mean,components}.npy, FOLDER/targets/*.npy, and on standard output the thresholds for
-// dubins.etl. Keeps true: the encoder is fitted on cars that wander at random, the thresholds on tours that `dubins`
-// does not show.
+// Gives: FOLDER/encoder/{mean,components}.npy, FOLDER/targets/*.npy, and on standard output the
+// thresholds for dubins.etl. Keeps true: the encoder is fitted on cars that wander at random, the
+// thresholds on tours that `dubins` does not show.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -37,9 +37,11 @@ struct Frame {
     bool inside;
 };
 
-/// Of all thresholds between neighbouring observed distances, the one with the best F1 ("F1-Optimal Threshold").
+/// Of all thresholds between neighbouring observed distances, the one with the best F1 ("F1-Optimal
+/// Threshold").
 std::pair<double, Score> best_threshold(std::vector<Frame> frames) {
-    std::sort(frames.begin(), frames.end(), [](const Frame& a, const Frame& b) { return a.distance < b.distance; });
+    std::sort(frames.begin(), frames.end(),
+              [](const Frame& a, const Frame& b) { return a.distance < b.distance; });
     Score score;
     for (const Frame& frame : frames) score.count(false, frame.inside);
     std::pair<double, Score> best{0, score};
@@ -52,14 +54,15 @@ std::pair<double, Score> best_threshold(std::vector<Frame> frames) {
     return best;
 }
 
-std::vector<Frame> measure(const Encoder& encoder, const std::vector<Embedding>& targets, const Disc& disc,
-                           const std::vector<Episode>& tours) {
+std::vector<Frame> measure(const Encoder& encoder, const std::vector<Embedding>& targets,
+                           const Disc& disc, const std::vector<Episode>& tours) {
     std::vector<Frame> frames;
     for (const Episode& tour : tours) {
         for (const Car& car : tour.states) {
             const Embedding seen = encoder.encode(photograph(car));
             double nearest = 2;
-            for (const Embedding& target : targets) nearest = std::min(nearest, cosine_distance(seen, target));
+            for (const Embedding& target : targets)
+                nearest = std::min(nearest, cosine_distance(seen, target));
             frames.push_back({nearest, disc.contains(car.position)});
         }
     }
@@ -83,12 +86,13 @@ void prepare(const std::string& folder) {
         const std::vector<Embedding> rows = target_set(encoder, region.disc.centre);
         Eigen::MatrixXf matrix(static_cast<Eigen::Index>(rows.size()), kDimension);
         for (std::size_t i = 0; i < rows.size(); ++i) {
-            matrix.row(static_cast<Eigen::Index>(i)) = Eigen::Map<const Eigen::RowVectorXf>(rows[i].data(), kDimension);
+            matrix.row(static_cast<Eigen::Index>(i)) =
+                Eigen::Map<const Eigen::RowVectorXf>(rows[i].data(), kDimension);
         }
         write_matrix(fmt::format("{}/targets/{}.npy", folder, region.name), matrix);
         const auto [threshold, score] = best_threshold(measure(encoder, rows, region.disc, tours));
-        fmt::print("{:<9}  {:9.3f}  {:5.3f}  {:9.3f}  {:6.3f}  {}\n", region.predicate, threshold, score.f1(),
-                   score.precision(), score.recall(), score.positives());
+        fmt::print("{:<9}  {:9.3f}  {:5.3f}  {:9.3f}  {:6.3f}  {}\n", region.predicate, threshold,
+                   score.f1(), score.precision(), score.recall(), score.positives());
     }
 }
 

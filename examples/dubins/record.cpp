@@ -1,9 +1,11 @@
 // dubins_record FOLDER SEED...: drives as episodes for `etlc calibrate` and `etlc evaluate`.
-// Gives: for each seed 300 drives, 120 in FOLDER/SEED/calibration, 180 in FOLDER/SEED/test, one .csv each. Keeps true:
-// which drive is on which side is drawn from the seed, whatever its plan, so the two sides are exchangeable.
+// Gives: for each seed 300 drives, 120 in FOLDER/SEED/calibration, 180 in FOLDER/SEED/test, one
+// .csv each. Keeps true: which drive is on which side is drawn from the seed, whatever its plan, so
+// the two sides are exchangeable.
 //
-// dubins_record --sagging FOLDER SEED...: for each seed 300 drives in FOLDER/SEED/sagging, in the order of their names,
-// of a camera whose picture loses contrast: none over the first 100, up to a half over the next, a half over the last.
+// dubins_record --sagging FOLDER SEED...: for each seed 300 drives in FOLDER/SEED/sagging, in the
+// order of their names, of a camera whose picture loses contrast: none over the first 100, up to a
+// half over the next, a half over the last.
 #include <fmt/core.h>
 
 #include <algorithm>
@@ -36,16 +38,19 @@ std::vector<int> shuffled(int n, std::uint64_t seed) {
     Random random(seed);
     std::vector<int> order(static_cast<std::size_t>(n));
     std::iota(order.begin(), order.end(), 0);
-    for (std::size_t i = order.size(); i > 1; --i) std::swap(order[i - 1], order[random.bits() % i]);
+    for (std::size_t i = order.size(); i > 1; --i)
+        std::swap(order[i - 1], order[random.bits() % i]);
     return order;
 }
 
 void record(const std::string& folder, std::uint64_t seed, const Encoder& encoder) {
-    for (const char* side : {"calibration", "test"}) std::filesystem::create_directories(folder + "/" + side);
+    for (const char* side : {"calibration", "test"})
+        std::filesystem::create_directories(folder + "/" + side);
     const std::vector<Episode> drives = drive_tours(seed, kDrives, kSteps);
     const std::vector<int> order = shuffled(kDrives, ~seed);
     for (int place = 0; place < kDrives; ++place) {
-        const Episode& drive = drives[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])];
+        const Episode& drive =
+            drives[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])];
         std::vector<Embedding> embeddings;
         for (const Car& car : drive.states) embeddings.push_back(encoder.encode(photograph(car)));
         const char* side = place < kForCalibration ? "calibration" : "test";
@@ -53,19 +58,22 @@ void record(const std::string& folder, std::uint64_t seed, const Encoder& encode
     }
 }
 
-/// What a camera sees whose mount gave way: the picture moved up, by a share of a row too, and ground below it.
+/// What a camera sees whose mount gave way: the picture moved up, by a share of a row too, and
+/// ground below it.
 Image moved_up(const Image& image, double rows) {
     Image result;
     result.fill(255);
     const int whole = static_cast<int>(rows);
     const double share = rows - whole;
     const auto at = [&](int row, int column) {
-        return row < kImageSide ? image[static_cast<std::size_t>(row * kImageSide + column)] : 255.0;
+        return row < kImageSide ? image[static_cast<std::size_t>(row * kImageSide + column)]
+                                : 255.0;
     };
     for (int row = 0; row < kImageSide; ++row)
         for (int column = 0; column < kImageSide; ++column)
-            result[static_cast<std::size_t>(row * kImageSide + column)] = static_cast<std::uint8_t>(
-                std::lround((1 - share) * at(row + whole, column) + share * at(row + whole + 1, column)));
+            result[static_cast<std::size_t>(row * kImageSide + column)] =
+                static_cast<std::uint8_t>(std::lround((1 - share) * at(row + whole, column) +
+                                                      share * at(row + whole + 1, column)));
     return result;
 }
 
@@ -74,7 +82,8 @@ void record_sagging(const std::string& folder, std::uint64_t seed, const Encoder
     const std::vector<Episode> drives = drive_tours(seed, kDrives, kSteps);
     const std::vector<int> order = shuffled(kDrives, ~seed);
     for (int place = 0; place < kDrives; ++place) {
-        const Episode& drive = drives[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])];
+        const Episode& drive =
+            drives[static_cast<std::size_t>(order[static_cast<std::size_t>(place)])];
         std::vector<Embedding> embeddings;
         for (std::size_t step = 0; step < drive.states.size(); ++step) {
             const double done = (place + static_cast<double>(step) / kSteps) / kDrives;

@@ -30,6 +30,7 @@ inline bool read(const std::string& row, Frame& frame) {
     };
     frame.px = number();
     if (at != nullptr) frame.py = number();
-    for (std::size_t i = 0; i < frame.z.size() && at != nullptr; ++i) frame.z[i] = static_cast<float>(number());
+    for (std::size_t i = 0; i < frame.z.size() && at != nullptr; ++i)
+        frame.z[i] = static_cast<float>(number());
     return at != nullptr;
 }

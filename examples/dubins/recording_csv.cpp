@@ -8,7 +8,8 @@
 
 namespace demo {
 
-void write_csv(const std::string& path, const std::vector<Car>& states, const std::vector<Embedding>& embeddings) {
+void write_csv(const std::string& path, const std::vector<Car>& states,
+               const std::vector<Embedding>& embeddings) {
     std::string text = "px,py";
     for (int i = 0; i < kDimension; ++i) text += fmt::format(",z[{}]", i);
     text += '\n';

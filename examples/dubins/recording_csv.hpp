@@ -10,6 +10,7 @@
 namespace demo {
 
 /// One embedding a state. Throws std::runtime_error where the file cannot be written.
-void write_csv(const std::string& path, const std::vector<Car>& states, const std::vector<Embedding>& embeddings);
+void write_csv(const std::string& path, const std::vector<Car>& states,
+               const std::vector<Embedding>& embeddings);
 
 }  // namespace demo

@@ -1,5 +1,6 @@
 // What the demo prints: a line per drive, then how often the monitors agree with the truth.
-// Keeps true: colour only on a terminal (and not where NO_COLOR is set); widths do not depend on it.
+// Keeps true: colour only on a terminal (and not where NO_COLOR is set); widths do not depend on
+// it.
 #pragma once
 
 #include <array>

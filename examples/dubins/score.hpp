@@ -13,11 +13,15 @@ struct Score {
         ++(said ? is ? true_positives : false_positives : is ? false_negatives : true_negatives);
     }
 
-    long total() const { return true_positives + false_positives + false_negatives + true_negatives; }
+    long total() const {
+        return true_positives + false_positives + false_negatives + true_negatives;
+    }
     long positives() const { return true_positives + false_negatives; }
     double precision() const { return share(true_positives, true_positives + false_positives); }
     double recall() const { return share(true_positives, positives()); }
-    double f1() const { return share(2 * true_positives, 2 * true_positives + false_positives + false_negatives); }
+    double f1() const {
+        return share(2 * true_positives, 2 * true_positives + false_positives + false_negatives);
+    }
     double agreement() const { return share(true_positives + true_negatives, total()); }
 
 private:

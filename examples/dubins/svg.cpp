@@ -34,17 +34,18 @@ Svg::Svg(double width, double height) {
 }
 
 void Svg::rectangle(Pixel corner, double width, double height, std::string_view style) {
-    page_ += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' {}/>\n", corner.x, corner.y, width,
-                         height, style);
+    page_ += fmt::format("<rect x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' {}/>\n",
+                         corner.x, corner.y, width, height, style);
 }
 
 void Svg::line(Pixel from, Pixel to, std::string_view style) {
-    page_ +=
-        fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", from.x, from.y, to.x, to.y, style);
+    page_ += fmt::format("<line x1='{:.1f}' y1='{:.1f}' x2='{:.1f}' y2='{:.1f}' {}/>\n", from.x,
+                         from.y, to.x, to.y, style);
 }
 
 void Svg::circle(Pixel centre, double radius, std::string_view style) {
-    page_ += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", centre.x, centre.y, radius, style);
+    page_ += fmt::format("<circle cx='{:.1f}' cy='{:.1f}' r='{:.1f}' {}/>\n", centre.x, centre.y,
+                         radius, style);
 }
 
 void Svg::path(const std::vector<Pixel>& points, std::string_view style) {
@@ -55,16 +56,18 @@ void Svg::polygon(const std::vector<Pixel>& points, std::string_view style) {
     page_ += fmt::format("<polygon points='{}' {}/>\n", coordinates(points), style);
 }
 
-void Svg::text(Pixel at, std::string_view words, double size, std::string_view colour, Anchor anchor,
-               std::string_view style) {
+void Svg::text(Pixel at, std::string_view words, double size, std::string_view colour,
+               Anchor anchor, std::string_view style) {
     const std::string_view anchors[] = {"start", "middle", "end"};
-    page_ += fmt::format("<text x='{:.1f}' y='{:.1f}' font-size='{}' fill='{}' text-anchor='{}' {}>{}</text>\n", at.x,
-                         at.y, size, colour, anchors[static_cast<int>(anchor)], style, escaped(words));
+    page_ += fmt::format(
+        "<text x='{:.1f}' y='{:.1f}' font-size='{}' fill='{}' text-anchor='{}' {}>{}</text>\n",
+        at.x, at.y, size, colour, anchors[static_cast<int>(anchor)], style, escaped(words));
 }
 
 void Svg::image(Pixel corner, double width, double height, std::string_view address) {
     page_ += fmt::format(
-        "<image x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' image-rendering='pixelated' href='{}'/>\n",
+        "<image x='{:.1f}' y='{:.1f}' width='{:.1f}' height='{:.1f}' image-rendering='pixelated' "
+        "href='{}'/>\n",
         corner.x, corner.y, width, height, address);
 }
 

@@ -27,8 +27,8 @@ public:
     void circle(Pixel centre, double radius, std::string_view style);
     void path(const std::vector<Pixel>& points, std::string_view style);
     void polygon(const std::vector<Pixel>& points, std::string_view style);
-    void text(Pixel at, std::string_view words, double size, std::string_view colour, Anchor anchor = Anchor::start,
-              std::string_view style = "");
+    void text(Pixel at, std::string_view words, double size, std::string_view colour,
+              Anchor anchor = Anchor::start, std::string_view style = "");
     /// A picture given as a data: address.
     void image(Pixel corner, double width, double height, std::string_view address);
 

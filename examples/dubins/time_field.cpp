@@ -7,7 +7,8 @@ namespace demo {
 namespace {
 
 constexpr double kCell = 0.06;  // m
-constexpr int kSide = 57;       // grid points along x and y: the world and a rim of three cells around it
+constexpr int kSide =
+    57;  // grid points along x and y: the world and a rim of three cells around it
 constexpr double kOrigin = -kHalfWidth - 3 * kCell;
 constexpr int kHeadings = 40;
 constexpr double kHeadingStep = 2 * kPi / kHeadings;
@@ -23,7 +24,8 @@ int index_of(int x, int y, int heading) {
 
 }  // namespace
 
-TimeField::TimeField(const std::function<bool(const Car&)>& reached, const std::function<bool(Point)>& free)
+TimeField::TimeField(const std::function<bool(const Car&)>& reached,
+                     const std::function<bool(Point)>& free)
     : values_(kSide * kSide * kHeadings, static_cast<float>(kNever)) {
     std::vector<Stencil> moves;  // per heading and turn rate, from the grid's origin
     for (int heading = 0; heading < kHeadings; ++heading) {
@@ -57,8 +59,8 @@ float TimeField::relax(const std::vector<Stencil>& moves) {
         const std::size_t heading = index / (kSide * kSide);
         const std::size_t corner = index % (kSide * kSide);
         for (std::size_t rate = 0; rate < std::size(kRates); ++rate) {
-            const float there =
-                static_cast<float>(kStep) + interpolate(moves[heading * std::size(kRates) + rate], corner);
+            const float there = static_cast<float>(kStep) +
+                                interpolate(moves[heading * std::size(kRates) + rate], corner);
             if (there >= values_[index]) continue;
             change = std::max(change, values_[index] - there);
             values_[index] = there;
@@ -86,18 +88,19 @@ TimeField::Stencil TimeField::stencil(const Car& car) {
         const int dx = i & 1;
         const int dy = i >> 1 & 1;
         const int dh = i >> 2;
-        const double weight =
-            (dx ? across - x : 1 - across + x) * (dy ? up - y : 1 - up + y) * (dh ? turned - h : 1 - turned + h);
+        const double weight = (dx ? across - x : 1 - across + x) * (dy ? up - y : 1 - up + y) *
+                              (dh ? turned - h : 1 - turned + h);
         const auto slot = static_cast<std::size_t>(i);
-        result.offsets[slot] =
-            index_of(static_cast<int>(x) + dx, static_cast<int>(y) + dy, (static_cast<int>(h) + dh) % kHeadings);
+        result.offsets[slot] = index_of(static_cast<int>(x) + dx, static_cast<int>(y) + dy,
+                                        (static_cast<int>(h) + dh) % kHeadings);
         result.weights[slot] = static_cast<float>(weight);
     }
     return result;
 }
 
 double TimeField::at(const Car& car) const {
-    return inside_world(car.position, -kCell) ? static_cast<double>(interpolate(stencil(car))) : kNever;
+    return inside_world(car.position, -kCell) ? static_cast<double>(interpolate(stencil(car)))
+                                              : kNever;
 }
 
 }  // namespace demo

@@ -1,7 +1,8 @@
-// How long a Dubins car needs at best, from every state, to a set of states without leaving the free ones.
-// Takes: which states are the goal and which places are free. Gives: seconds, interpolated between grid states.
-// Keeps true: the semi-Lagrangian fixed point of T(s) = min over turn rates of h + T(s after h), the Hamilton-Jacobi
-// reachability value, on a grid of positions and headings.
+// How long a Dubins car needs at best, from every state, to a set of states without leaving the
+// free ones. Takes: which states are the goal and which places are free. Gives: seconds,
+// interpolated between grid states. Keeps true: the semi-Lagrangian fixed point of T(s) = min over
+// turn rates of h + T(s after h), the Hamilton-Jacobi reachability value, on a grid of positions
+// and headings.
 #pragma once
 
 #include <array>
@@ -17,7 +18,8 @@ class TimeField {
 public:
     static constexpr double kNever = 30;  ///< s: stands for "cannot be reached"
 
-    TimeField(const std::function<bool(const Car&)>& reached, const std::function<bool(Point)>& free);
+    TimeField(const std::function<bool(const Car&)>& reached,
+              const std::function<bool(Point)>& free);
 
     /// Seconds to the goal, at most kNever; beside what is not free the grid blurs the two.
     double at(const Car& car) const;
@@ -33,8 +35,9 @@ private:
     float interpolate(const Stencil& stencil, std::size_t corner = 0) const;
     float relax(const std::vector<Stencil>& moves);
 
-    std::vector<float> values_;      ///< s, [heading][y][x]
-    std::vector<std::size_t> open_;  ///< indices of the free states that are not the goal: those to solve for
+    std::vector<float> values_;  ///< s, [heading][y][x]
+    std::vector<std::size_t>
+        open_;  ///< indices of the free states that are not the goal: those to solve for
 };
 
 }  // namespace demo

@@ -1,7 +1,7 @@
-// watch FOLDER: recorded drives, .csv files as dubins_record writes them, past the class that etlc made of paper.etl,
-// compiled with its thresholds. Gives: per monitor in how many episodes its last verdict is what was true, by the car's
-// position. Needs nothing but the generated header and etlmon: c++ -std=c++17 -O2 -I runtime/include -I
-// FOLDER_OF_THE_HEADER watch.cpp
+// watch FOLDER: recorded drives, .csv files as dubins_record writes them, past the class that etlc
+// made of paper.etl, compiled with its thresholds. Gives: per monitor in how many episodes its last
+// verdict is what was true, by the car's position. Needs nothing but the generated header and
+// etlmon: c++ -std=c++17 -O2 -I runtime/include -I FOLDER_OF_THE_HEADER watch.cpp
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -89,5 +89,6 @@ int main(int argc, char** argv) {
     }
     std::printf("monitor         episodes agree  truly satisfied\n");
     for (const Score& score : scores)
-        std::printf("%-14s  %5d of %5d  %15d\n", score.name, score.agreeing, drives, score.satisfied);
+        std::printf("%-14s  %5d of %5d  %15d\n", score.name, score.agreeing, drives,
+                    score.satisfied);
 }

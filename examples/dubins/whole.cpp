@@ -1,8 +1,9 @@
-// whole FOLDER: recorded drives, .csv files as dubins_record writes them, past the classes that etlc made of union.etl
-// and whole.etl, compiled with their thresholds. Gives: for both, in how many drives some verdict misses a success (of
-// `sequential`) or an alarm (of `in_order`), which is what is guaranteed, and in how many some verdict is wrong the
-// other way, which is what the guarantee costs. Needs nothing but the generated headers and etlmon: c++ -std=c++17 -O2
-// -I runtime/include -I FOLDER_OF_THE_HEADERS whole.cpp
+// whole FOLDER: recorded drives, .csv files as dubins_record writes them, past the classes that
+// etlc made of union.etl and whole.etl, compiled with their thresholds. Gives: for both, in how
+// many drives some verdict misses a success (of `sequential`) or an alarm (of `in_order`), which is
+// what is guaranteed, and in how many some verdict is wrong the other way, which is what the
+// guarantee costs. Needs nothing but the generated headers and etlmon: c++ -std=c++17 -O2 -I
+// runtime/include -I FOLDER_OF_THE_HEADERS whole.cpp
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -14,7 +15,8 @@
 
 namespace {
 
-/// One monitor over all drives: drives with some verdict that says satisfied where that is not true, or fails to.
+/// One monitor over all drives: drives with some verdict that says satisfied where that is not
+/// true, or fails to.
 struct Score {
     int unfounded = 0;  // satisfied is said, and is not true
     int missing = 0;    // it is true, and is not said
@@ -82,10 +84,12 @@ bool watch(const std::filesystem::path& path, Scores& scores, Truth& truth) {
 }
 
 void print(const char* by, int drives, int successes, int alarms, const Scores& scores) {
-    // Of `sequential` a success is missed where it is not said, of `in_order` an alarm where satisfied is said.
+    // Of `sequential` a success is missed where it is not said, of `in_order` an alarm where
+    // satisfied is said.
     std::printf("%s,sequential,%d,%d,%d,%d\n", by, drives, successes, scores.sequential.missing,
                 scores.sequential.unfounded);
-    std::printf("%s,in_order,%d,%d,%d,%d\n", by, drives, alarms, scores.in_order.unfounded, scores.in_order.missing);
+    std::printf("%s,in_order,%d,%d,%d,%d\n", by, drives, alarms, scores.in_order.unfounded,
+                scores.in_order.missing);
 }
 
 }  // namespace

@@ -43,10 +43,12 @@ struct Car {
     Car moved(double turn_rate, double seconds) const {
         const double rate = std::clamp(turn_rate, -kMaxTurnRate, kMaxTurnRate);
         const double half_turn = 0.5 * rate * seconds;
-        const double chord =
-            std::abs(half_turn) < 1e-9 ? kSpeed * seconds : kSpeed * seconds * std::sin(half_turn) / half_turn;
+        const double chord = std::abs(half_turn) < 1e-9
+                                 ? kSpeed * seconds
+                                 : kSpeed * seconds * std::sin(half_turn) / half_turn;
         const double along = heading + half_turn;
-        const Point next{position.x + chord * std::cos(along), position.y + chord * std::sin(along)};
+        const Point next{position.x + chord * std::cos(along),
+                         position.y + chord * std::sin(along)};
         return {next, std::remainder(heading + 2 * half_turn, 2 * kPi)};
     }
 };

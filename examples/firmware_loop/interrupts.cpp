@@ -1,6 +1,7 @@
-// Two ways to share a monitor, or its input, with an interrupt, where the interrupt comes at any instruction of a step.
-// Writes a line for each: how many steps there were, how many interrupts came while the monitor was at work, and in how
-// many steps a verdict was another than that of the same monitor stepped plainly. docs/firmware.md explains the two.
+// Two ways to share a monitor, or its input, with an interrupt, where the interrupt comes at any
+// instruction of a step. Writes a line for each: how many steps there were, how many interrupts
+// came while the monitor was at work, and in how many steps a verdict was another than that of the
+// same monitor stepped plainly. docs/firmware.md explains the two.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -94,7 +95,8 @@ void run_halves() noexcept {
     report("halves", different);
 }
 
-/// The interrupt fills a buffer, the loop steps with the newest one: what it skips is gone, what it reads is whole.
+/// The interrupt fills a buffer, the loop steps with the newest one: what it skips is gone, what it
+/// reads is whole.
 constexpr uint8_t kNone = 3;
 float frames[3][6];
 uint32_t number[3];  // which frame each is: to make it again for the comparison

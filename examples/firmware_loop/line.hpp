@@ -1,6 +1,6 @@
 // Lines of text that need no library.
-// Takes: a name, numbers, verdicts. Gives: one line to the board: the name, numbers in hexadecimal, of a verdict its
-// status, lower bound, robustness and upper bound, as the bits of the floats.
+// Takes: a name, numbers, verdicts. Gives: one line to the board: the name, numbers in hexadecimal,
+// of a verdict its status, lower bound, robustness and upper bound, as the bits of the floats.
 #pragma once
 
 #include <stdint.h>

@@ -1,6 +1,7 @@
-// Five monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that are used again.
-// Writes a line per step: the monitor class, the step, and of every verdict its status, lower bound, robustness and
-// upper bound, as the bits of the floats. Everywhere the same lines, which tests/firmware compares.
+// Five monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that
+// are used again. Writes a line per step: the monitor class, the step, and of every verdict its
+// status, lower bound, robustness and upper bound, as the bits of the floats. Everywhere the same
+// lines, which tests/firmware compares.
 #include <stdint.h>
 
 #include "belt.hpp"
@@ -32,7 +33,8 @@ void show(const gauge::Verdicts& v, Line& to) noexcept {
     to.verdict(v.returns), to.verdict(v.explains);
 }
 
-// What a driver would do: fill the buffers that live as long as the loop, and hand out views of them.
+// What a driver would do: fill the buffers that live as long as the loop, and hand out views of
+// them.
 float embedding[384];
 uint16_t halves[16];
 int8_t bytes[16];

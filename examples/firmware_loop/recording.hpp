@@ -1,5 +1,6 @@
 // Episodes that every board can make for itself: the same samples to the bit, from integers.
-// Takes: a seed. Gives: floats that are multiples of 1/64, bits of float16, int8; and the decision to drop a sample.
+// Takes: a seed. Gives: floats that are multiples of 1/64, bits of float16, int8; and the decision
+// to drop a sample.
 #pragma once
 
 #include <stddef.h>
@@ -16,7 +17,9 @@ public:
     }
     bool once_in(uint32_t n) noexcept { return below(n) == 0; }
     /// In [-1, 1).
-    float noise() noexcept { return static_cast<float>(static_cast<int32_t>(below(128)) - 64) / 64.0f; }
+    float noise() noexcept {
+        return static_cast<float>(static_cast<int32_t>(below(128)) - 64) / 64.0f;
+    }
 
     /// `mean` plus noise in every element; once in a while one of them is not a number.
     void fill(float* z, size_t n, float mean, float spread) noexcept {
@@ -30,7 +33,8 @@ public:
     }
     void fill(int8_t* z, size_t n, int amplitude) noexcept {
         for (size_t i = 0; i < n; ++i) {
-            z[i] = static_cast<int8_t>(static_cast<int>(below(static_cast<uint32_t>(2 * amplitude))) - amplitude);
+            z[i] = static_cast<int8_t>(
+                static_cast<int>(below(static_cast<uint32_t>(2 * amplitude))) - amplitude);
         }
     }
 

@@ -25,14 +25,16 @@ private:
 
 calibrate::Opener csv_episode(std::string text) {
     auto shared = std::make_shared<std::string>(std::move(text));
-    return [shared](const std::vector<data::Channel>& channels) -> diag::Result<std::unique_ptr<data::Trace>> {
+    return [shared](const std::vector<data::Channel>& channels)
+               -> diag::Result<std::unique_ptr<data::Trace>> {
         auto trace = data::open_csv_trace(data::from_memory(*shared), channels);
         if (!trace) return trace.failure();
         return std::unique_ptr<data::Trace>(std::make_unique<Kept>(shared, std::move(*trace)));
     };
 }
 
-std::string labels(const calibrate::Wanted& wanted, const calibrate::Opener& open, calibrate::Index predicate) {
+std::string labels(const calibrate::Wanted& wanted, const calibrate::Opener& open,
+                   calibrate::Index predicate) {
     auto recording = calibrate::Recording::open(wanted, open);
     if (!recording) return recording.failure().message;
     std::string result;

@@ -14,7 +14,8 @@ void Files::add(const std::string& text) {
     paths_.push_back(files_.back()->path());
 }
 
-Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes, const std::string& before) {
+Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes,
+                      const std::string& before) {
     const TemporaryPath thresholds("before.json", before);
     const TemporaryPath output("after.json");
     driver::CalibrateRequest request;

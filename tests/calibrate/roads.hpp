@@ -1,6 +1,6 @@
 // `etlc calibrate` in process, for tests that take every road to a guarantee.
-// Takes: the text of a spec and episodes as text. Gives: what was reported, and the thresholds file. Keeps true: it is
-// the whole way, from files to a file.
+// Takes: the text of a spec and episodes as text. Gives: what was reported, and the thresholds
+// file. Keeps true: it is the whole way, from files to a file.
 #pragma once
 
 #include <memory>

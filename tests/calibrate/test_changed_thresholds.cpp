@@ -1,4 +1,5 @@
-// A thresholds file of which one thing was changed: it is refused, or what is believed of it is the same.
+// A thresholds file of which one thing was changed: it is refused, or what is believed of it is the
+// same.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -19,11 +20,14 @@ using Json = nlohmann::ordered_json;
 const std::string kSpec =
     "spec t; input x, y : f32; input z : f32[1] hold 1; target g = [[0]]; target h = [[3], [5]];\n"
     "predicate a = x <= calibrated(conformal, alpha = 0.2); truth a = y > 0.5;\n"
-    "predicate b = min l2(z, g) < calibrated(conformal, alpha = 0.3); truth b = min l2(z, h) > 2.5;\n"
+    "predicate b = min l2(z, g) < calibrated(conformal, alpha = 0.3); truth b = min l2(z, h) > "
+    "2.5;\n"
     "predicate c = x > calibrated(conformal, alpha = 0.25); truth c = y <= 0.5;\n"
-    "predicate d = min l2(z, g) - x <= calibrated(class_conditional, alpha = 0.2); truth d = y > 0.5;\n"
+    "predicate d = min l2(z, g) - x <= calibrated(class_conditional, alpha = 0.2); truth d = y > "
+    "0.5;\n"
     "predicate e = x >= calibrated(f1); truth e = y <= 0.5;\n"
-    "predicate f = x < calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -2, hi = 2); truth f = y > 0.5;\n"
+    "predicate f = x < calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -2, hi = 2); truth f = "
+    "y > 0.5;\n"
     "monitor m = F (a && b); monitor n = G !c; monitor o = F (d && e && f);\n"
     "monitor u = F a calibrated(conformal, alpha = 0.2, against = missed_alarm);\n"
     "monitor v = F (e && b) calibrated(conformal, alpha = 0.3, against = missed_success);";
@@ -34,15 +38,17 @@ std::vector<std::string> random_episodes(Random& random, int count) {
         std::string text = "x,y,z[0]\n";
         for (int t = 0; t < 6; ++t) {
             const int y = random.between(0, 1);
-            text += fmt::format("{},{},{}\n", 1 - y + 0.8 * (random.uniform() - 0.5), y, random.uniform());
+            text += fmt::format("{},{},{}\n", 1 - y + 0.8 * (random.uniform() - 0.5), y,
+                                random.uniform());
         }
         episodes.push_back(text);
     }
     return episodes;
 }
 
-/// All that is believed of a file: what the monitors compute with, and what is said of them. Nothing: it is refused.
-/// Of the pooled methods, which promise nothing of episodes, it is the threshold.
+/// All that is believed of a file: what the monitors compute with, and what is said of them.
+/// Nothing: it is refused. Of the pooled methods, which promise nothing of episodes, it is the
+/// threshold.
 std::string believed(const std::string& json) {
     const TemporaryPath path("thresholds.json", json);
     check::Options options;
@@ -53,7 +59,8 @@ std::string believed(const std::string& json) {
     if (!model) return "";
     std::string text;
     for (const check::Predicate& p : model->predicates) {
-        const bool by_episode = p.threshold.origin == check::ThresholdOrigin::conformal || p.threshold.adaptation;
+        const bool by_episode =
+            p.threshold.origin == check::ThresholdOrigin::conformal || p.threshold.adaptation;
         text += fmt::format("{} {} {}", p.name, p.threshold.value, p.threshold.alpha);
         if (by_episode) text += fmt::format(" {} {}", p.threshold.k, p.threshold.n);
         if (p.threshold.adaptation) text += check::miss_bound(p);
@@ -70,7 +77,8 @@ std::string believed(const std::string& json) {
 }
 
 /// Every JSON value below this one, with the way to it.
-void visit(Json& json, const std::string& path, const std::function<void(Json&, const std::string&)>& visitor) {
+void visit(Json& json, const std::string& path,
+           const std::function<void(Json&, const std::string&)>& visitor) {
     visitor(json, path);
     if (!json.is_structured()) return;
     for (auto& [key, value] : json.items()) visit(value, path + "/" + key, visitor);
@@ -82,16 +90,19 @@ std::vector<Json> changes(const Json& value) {
     if (value.is_number()) {
         const auto number = value.get<double>();
         for (const double other :
-             {number + 1, number - 1, -number, 0.0, 1.0, number * 0.999, number * 1.001, std::nextafter(number, 1e9),
-              std::nextafter(number, -1e9), static_cast<double>(std::nextafter(static_cast<float>(number), 1e9F)),
+             {number + 1, number - 1, -number, 0.0, 1.0, number * 0.999, number * 1.001,
+              std::nextafter(number, 1e9), std::nextafter(number, -1e9),
+              static_cast<double>(std::nextafter(static_cast<float>(number), 1e9F)),
               static_cast<double>(std::nextafter(static_cast<float>(number), -1e9F))}) {
             all.push_back(other);
-            if (other == std::floor(other) && std::abs(other) < 1e6) all.push_back(static_cast<int>(other));
+            if (other == std::floor(other) && std::abs(other) < 1e6)
+                all.push_back(static_cast<int>(other));
         }
     } else if (value.is_string()) {
         const auto text = value.get<std::string>();
-        for (const std::string other : {"", "array", "conformal", "f1", "class_conditional", "adaptive", "missed_alarm",
-                                        "missed_success", "0123456789abcdef", "inf"})
+        for (const std::string other :
+             {"", "array", "conformal", "f1", "class_conditional", "adaptive", "missed_alarm",
+              "missed_success", "0123456789abcdef", "inf"})
             all.push_back(other);
         all.push_back(text + " ");
         all.push_back(text.substr(0, text.size() / 2));
@@ -116,7 +127,8 @@ std::vector<Json> changes(const Json& value) {
             Json renamed = less;
             renamed[key + "s"] = member;
             all.push_back(renamed);
-            for (const auto& [other, replacement] : value.items()) {  // an entry that was pasted over another
+            for (const auto& [other, replacement] :
+                 value.items()) {  // an entry that was pasted over another
                 Json pasted = value;
                 pasted[key] = replacement;
                 if (other != key) all.push_back(pasted);
@@ -148,7 +160,9 @@ TEST(ChangedThresholds, AreRefusedOrChangeNothing) {
             value = change;
             const std::string now = believed(file.dump());
             ++(now.empty() ? refused : harmless);
-            EXPECT_TRUE(now.empty() || now == original) << path << ": " << before << " -> " << change << "\n" << now;
+            EXPECT_TRUE(now.empty() || now == original)
+                << path << ": " << before << " -> " << change << "\n"
+                << now;
         }
         value = before;
     });
@@ -156,12 +170,14 @@ TEST(ChangedThresholds, AreRefusedOrChangeNothing) {
     EXPECT_GT(harmless, 50);  // the version, the order of episodes, a score that is not at the rank
 }
 
-/// Predicates calibrated again on what the monitors were calibrated on, and the entries put together by hand.
+/// Predicates calibrated again on what the monitors were calibrated on, and the entries put
+/// together by hand.
 TEST(ChangedThresholds, MergedFilesWithAnEpisodeInBothAreRefused) {
     Random random(98);
     const Files first(random_episodes(random, 14));
     const Files second(random_episodes(random, 14));
-    const Calibrated both = calibrated(kSpec, second.paths(), calibrated(kSpec, first.paths()).thresholds);
+    const Calibrated both =
+        calibrated(kSpec, second.paths(), calibrated(kSpec, first.paths()).thresholds);
     Json merged = Json::parse(both.thresholds);
     ASSERT_FALSE(believed(merged.dump()).empty());
     merged["episodes"].push_back(merged["monitors"]["u"]["episodes"][3]);

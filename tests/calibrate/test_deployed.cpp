@@ -1,5 +1,6 @@
-// What calibration promises, kept by compiled monitors: -O0 and -O3 -march=native -ffast-math measure within the
-// interval that calibration reckons with, and a covered demonstration is covered there too, ties and < included.
+// What calibration promises, kept by compiled monitors: -O0 and -O3 -march=native -ffast-math
+// measure within the interval that calibration reckons with, and a covered demonstration is covered
+// there too, ties and < included.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -29,7 +30,8 @@ std::string matrix(Random& random, int rows, int columns) {
     std::string text = "[";
     for (int r = 0; r < rows; ++r) {
         text += r == 0 ? "[" : ", [";
-        for (int c = 0; c < columns; ++c) text += fmt::format("{}{}", c == 0 ? "" : ", ", random.grid(-1, 1, 0.125));
+        for (int c = 0; c < columns; ++c)
+            text += fmt::format("{}{}", c == 0 ? "" : ", ", random.grid(-1, 1, 0.125));
         text += "]";
     }
     return text + "]";
@@ -38,7 +40,8 @@ std::string matrix(Random& random, int rows, int columns) {
 std::string spec_text() {
     Random random(6);
     std::string weights;
-    for (int i = 0; i < kDimension; ++i) weights += fmt::format("{}{}", i == 0 ? "" : ", ", random.grid(0.25, 4, 0.25));
+    for (int i = 0; i < kDimension; ++i)
+        weights += fmt::format("{}{}", i == 0 ? "" : ", ", random.grid(0.25, 4, 0.25));
     const std::vector<std::string> predicates = {
         "min l2(z, g) <= 1",
         "min cosine(z, g) < 1",
@@ -55,14 +58,17 @@ std::string spec_text() {
         "max(s * 3.1, min l2(v, h)) < 1",
         "s + 0.1 >= 1",
     };
-    std::string text = fmt::format("spec deployed; input z : f32[{}]; input v : f32[3]; input s : f32;\n", kDimension);
-    text += fmt::format("target g = {}; target h = {};\n", matrix(random, 5, kDimension), matrix(random, 3, 3));
+    std::string text = fmt::format(
+        "spec deployed; input z : f32[{}]; input v : f32[3]; input s : f32;\n", kDimension);
+    text += fmt::format("target g = {}; target h = {};\n", matrix(random, 5, kDimension),
+                        matrix(random, 3, 3));
     for (std::size_t i = 0; i < predicates.size(); ++i)
         text += fmt::format("predicate p{0} = {1}; monitor m{0} = F p{0};\n", i, predicates[i]);
     return text;
 }
 
-/// Ordinary points; points on a grid, whose distances tie; points at a target or a rounding away from it.
+/// Ordinary points; points on a grid, whose distances tie; points at a target or a rounding away
+/// from it.
 reference::Step random_step(Random& random, const check::Model& model) {
     reference::Step step;
     const int kind = random.between(0, 3);
@@ -71,15 +77,19 @@ reference::Step random_step(Random& random, const check::Model& model) {
         const int row = random.between(0, static_cast<int>(target.rows) - 1);
         std::vector<double> point;
         for (std::uint32_t d = 0; d < target.dimension; ++d) {
-            const auto g = static_cast<double>(target.values[static_cast<std::uint32_t>(row) * target.dimension + d]);
+            const auto g = static_cast<double>(
+                target.values[static_cast<std::uint32_t>(row) * target.dimension + d]);
             if (kind == 0) point.push_back(g + (random.chance(0.2) ? random.grid(-1, 1, 0.5) : 0));
             if (kind == 1)
-                point.push_back(static_cast<double>(static_cast<float>(g + 1e-7 * (random.uniform() - 0.5))));
-            if (kind >= 2) point.push_back(static_cast<double>(static_cast<float>(2 * random.uniform() - 1)));
+                point.push_back(
+                    static_cast<double>(static_cast<float>(g + 1e-7 * (random.uniform() - 0.5))));
+            if (kind >= 2)
+                point.push_back(static_cast<double>(static_cast<float>(2 * random.uniform() - 1)));
         }
         step.push_back(std::move(point));
     }
-    step.push_back({kind == 0 ? random.grid(-1, 1, 0.25) : static_cast<double>(static_cast<float>(random.uniform()))});
+    step.push_back({kind == 0 ? random.grid(-1, 1, 0.25)
+                              : static_cast<double>(static_cast<float>(random.uniform()))});
     return step;
 }
 
@@ -92,19 +102,22 @@ struct Deployed : testing::Test {
 
     void measure() {
         Random random(99);
-        for (int i = 0; i < kDraws * (kDemonstrations + 1) * kFrames; ++i) trace.push_back(random_step(random, model));
+        for (int i = 0; i < kDraws * (kDemonstrations + 1) * kFrames; ++i)
+            trace.push_back(random_step(random, model));
         std::vector<Index> predicates(model.predicates.size());
         for (Index i = 0; i < predicates.size(); ++i) predicates[i] = i;
         const plan::Plan plan = plan::measuring(model, predicates);
         plan::Evaluator evaluator(plan);
         for (const reference::Step& step : trace) {
             std::vector<plan::Sample> samples;
-            for (const auto& values : step) samples.push_back({true, {values.begin(), values.end()}});
+            for (const auto& values : step)
+                samples.push_back({true, {values.begin(), values.end()}});
             evaluator.step(samples);
             intervals.emplace_back();
             measured.emplace_back();
             for (const Index p : predicates) {
-                intervals.back().push_back(calibrate::interval_of(model, p, evaluator).value_or(Interval{0, 0}));
+                intervals.back().push_back(
+                    calibrate::interval_of(model, p, evaluator).value_or(Interval{0, 0}));
                 measured.back().push_back(evaluator.distance(p));
             }
         }
@@ -118,14 +131,16 @@ struct Deployed : testing::Test {
         constexpr std::size_t kSteps = 500;  // the harness takes no traces of any length
         for (std::size_t at = 0; at < trace.size(); at += kSteps) {
             const auto first = trace.begin() + static_cast<std::ptrdiff_t>(at);
-            const auto last = trace.begin() + static_cast<std::ptrdiff_t>(std::min(at + kSteps, trace.size()));
+            const auto last =
+                trace.begin() + static_cast<std::ptrdiff_t>(std::min(at + kSteps, trace.size()));
             requests.push_back({0, {first, last}, {}});
         }
         auto& deltas = built[flags];
         for (const Answer& answer : program.run(requests).answers)
             for (const auto& frame : answer[0].telemetry) {
                 deltas.emplace_back();
-                for (const auto& predicate : frame) deltas.back().push_back(static_cast<float>(predicate.delta));
+                for (const auto& predicate : frame)
+                    deltas.back().push_back(static_cast<float>(predicate.delta));
             }
         ASSERT_EQ(deltas.size(), trace.size());
     }
@@ -136,7 +151,8 @@ double reach(const Deployed& of, Index predicate, std::size_t first_frame) {
     double worst = -INFINITY;
     for (std::size_t f = first_frame; f < first_frame + kFrames; ++f) {
         const Interval& interval = of.intervals[f][predicate];
-        worst = std::max(worst, of.model.predicates[predicate].upper_bound() ? interval.high : -interval.low);
+        worst = std::max(
+            worst, of.model.predicates[predicate].upper_bound() ? interval.high : -interval.low);
     }
     return worst;
 }
@@ -156,7 +172,8 @@ TEST_F(Deployed, EveryBuildStaysWithinItsIntervalAndCovers) {
                 ASSERT_GE(delta, intervals[f][p].low) << flags << " " << model.predicates[p].text;
                 ASSERT_LE(delta, intervals[f][p].high) << flags << " " << model.predicates[p].text;
             }
-    EXPECT_GT(differing, 1000U);  // else other builds measure what etlc measures, and nothing was tested
+    EXPECT_GT(differing,
+              1000U);  // else other builds measure what etlc measures, and nothing was tested
 
     for (int draw = 0; draw < kDraws; ++draw) {
         const std::size_t begin = static_cast<std::size_t>(draw) * (kDemonstrations + 1) * kFrames;
@@ -191,7 +208,8 @@ TEST(StrictlyAbove, LeavesANormalDifference) {
         const float epsilon = check::strictly_above(static_cast<double>(x));
         EXPECT_GT(epsilon, x);
         EXPECT_GE(epsilon - x, 1.17549435e-38F);
-        EXPECT_LE(std::nextafter(epsilon, -INFINITY), std::max(x, x + 1.17549435e-38F));  // the first such
+        EXPECT_LE(std::nextafter(epsilon, -INFINITY),
+                  std::max(x, x + 1.17549435e-38F));  // the first such
     }
     EXPECT_TRUE(std::isinf(check::strictly_above(3.4028234663852886e38)));
 }

@@ -38,13 +38,15 @@ constexpr const char* kDeclarations =
     "predicate c = y <= calibrated(class_conditional, alpha = 0.1);\n"
     "predicate literal = l2(z, g) <= 0.5;\n"
     "predicate near = l2([x, y], g) <= 1;\n"
-    "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= calibrated(conformal, alpha = "
+    "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= "
+    "calibrated(conformal, alpha = "
     "5e-1);\n"
     "predicate meant = s > 1; truth meant = s > 2;\n";
 
 /// All claims about one monitor, the parts in brackets.
 std::string claims_of(const std::string& formula) {
-    const check::Model model = load_uncalibrated(std::string(kDeclarations) + "monitor m = " + formula + ";");
+    const check::Model model =
+        load_uncalibrated(std::string(kDeclarations) + "monitor m = " + formula + ";");
     std::string result;
     for (const Claim& claim : check::claims(model, model.monitors[0])) {
         if (!result.empty()) result += " | ";
@@ -59,7 +61,8 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     const std::string alarm = "P(some verdict of a new episode misses an alarm) <= ";
     EXPECT_EQ(claims_of("F a"), success + "0.1");
     EXPECT_EQ(claims_of("F (a && F b)"), success + "0.15");
-    EXPECT_EQ(claims_of("F (a && F a)"), success + "0.1");  // one event, however often it is looked at
+    EXPECT_EQ(claims_of("F (a && F a)"),
+              success + "0.1");  // one event, however often it is looked at
     EXPECT_EQ(claims_of("G !a"), alarm + "0.1");
     EXPECT_EQ(claims_of("!(F a || F b)"), alarm + "0.15");
     EXPECT_EQ(claims_of("G (a -> s >= 0.5)"), alarm + "0.1");
@@ -67,14 +70,17 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     EXPECT_EQ(claims_of("flag U a"), success + "0.1");
     EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
     EXPECT_EQ(claims_of("F (s > 0.5 && flag)"),
-              "exact, robustness 0 aside: nothing in it is calibrated, and its predicates are their own truth");
+              "exact, robustness 0 aside: nothing in it is calibrated, and its predicates are "
+              "their own truth");
 }
 
 TEST(Claims, NothingWhereNothingIsKnown) {
     EXPECT_EQ(claims_of("F e"), "nothing: 'e' is calibrated for F1");
     EXPECT_EQ(claims_of("F (a && c)"), "nothing: 'c' covers frames, not episodes");
-    EXPECT_EQ(claims_of("F (a && literal)"), "nothing: 'literal' has a literal threshold and is not its own truth");
-    EXPECT_EQ(claims_of("F (a && meant)"), "nothing: 'meant' has a literal threshold and is not its own truth");
+    EXPECT_EQ(claims_of("F (a && literal)"),
+              "nothing: 'literal' has a literal threshold and is not its own truth");
+    EXPECT_EQ(claims_of("F (a && meant)"),
+              "nothing: 'meant' has a literal threshold and is not its own truth");
     EXPECT_EQ(claims_of("F (a && !b)"), "nothing: 'a' stands in it plain, 'b' negated");
     EXPECT_EQ(claims_of("F (a <-> flag)"), "nothing: 'a' stands in it both plain and negated");
     EXPECT_EQ(claims_of("F (half && rest)"), "nothing: the alphas of its predicates add up to 1");
@@ -95,7 +101,7 @@ TEST(Claims, MixedConjunctsSpeakForThemselves) {
               " | [F e] nothing: 'e' is calibrated for F1");
 }
 
-// ---- simulation ----------------------------------------------------------------------------------------------------
+// ---- simulation ---------------------------------------------------------------------------------
 
 constexpr int kSteps = 8;
 constexpr int kDemonstrations = 12;
@@ -120,8 +126,9 @@ Episode random_episode(Random& random) {
         episode.a.push_back(random.chance(share));
         episode.b.push_back(random.chance(0.2));
         const float s = random.chance(0.3) ? 1.0F : 0.0F;
-        episode.samples.push_back(
-            {{true, {noisy(random, episode.a.back())}}, {true, {noisy(random, episode.b.back())}}, {true, {s}}});
+        episode.samples.push_back({{true, {noisy(random, episode.a.back())}},
+                                   {true, {noisy(random, episode.b.back())}},
+                                   {true, {s}}});
     }
     return episode;
 }
@@ -160,7 +167,8 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     // Positive, negative, mixed, whose conjuncts are the monitors after it.
     check::Model model = load_uncalibrated(
         "spec t; input x, y, s : f32;\n"
-        "predicate a = x <= calibrated(conformal, alpha = 0.2); predicate b = y <= calibrated(conformal, alpha = "
+        "predicate a = x <= calibrated(conformal, alpha = 0.2); predicate b = y <= "
+        "calibrated(conformal, alpha = "
         "0.1);\n"
         "monitor p0 = F (a && F b); monitor p1 = G (s > 0.5 -> F[0, 3] a); monitor p2 = a U b;\n"
         "monitor n0 = G !a; monitor n1 = G (a -> s > 0.5); monitor n2 = !a U (s > 0.5 && !b);\n"
@@ -174,7 +182,8 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     int draws = 0;
     for (int draw = 0; draw < kDraws; ++draw) {
         std::vector<calibrate::Demonstration> demonstrations;
-        for (int i = 0; i < kDemonstrations; ++i) demonstrations.push_back(score(random_episode(random)));
+        for (int i = 0; i < kDemonstrations; ++i)
+            demonstrations.push_back(score(random_episode(random)));
         const Episode test = random_episode(random);
         bool fitted = true;
         for (const Index p : {0U, 1U}) {
@@ -216,9 +225,12 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         }
         const bool of_success = claim.kind == Claim::Kind::missed_success;
         const double bound = std::stod(claim.bound);
-        const double share = static_cast<double>((of_success ? missed_success : missed_alarm)[m]) / draws;
-        const double other = static_cast<double>((of_success ? missed_alarm : missed_success)[m]) / draws;
-        EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) / draws)) << model.monitors[m].name;
+        const double share =
+            static_cast<double>((of_success ? missed_success : missed_alarm)[m]) / draws;
+        const double other =
+            static_cast<double>((of_success ? missed_alarm : missed_success)[m]) / draws;
+        EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) / draws))
+            << model.monitors[m].name;
         // Nothing is said about the other kind of error, and nothing could be.
         vacuous += other > bound ? 1 : 0;
     }

@@ -32,11 +32,14 @@ struct Labels : testing::Test {
 };
 
 TEST_F(Labels, FromTheSpecsTruth) {
-    EXPECT_EQ(labels(wanted, csv_episode("x,v,px\n1,1,0\n1,1,1\n1,1,1\n1,1,0.25\n1,1,\n1,1,0\n"), 0), "y y n n ? y");
+    EXPECT_EQ(
+        labels(wanted, csv_episode("x,v,px\n1,1,0\n1,1,1\n1,1,1\n1,1,0.25\n1,1,\n1,1,0\n"), 0),
+        "y y n n ? y");
 }
 
 TEST_F(Labels, AnArrayStandsInForTheTruth) {
-    EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.p,px\n1,1,0,0\n1,1,1,0\n1,1,,0\n"), 0), "n y ?");
+    EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.p,px\n1,1,0,0\n1,1,1,0\n1,1,,0\n"), 0),
+              "n y ?");
     // Then what only the truth reads need not be there.
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.p\n1,1,1\n"), 0), "y");
     auto recording = Recording::open(wanted, csv_episode("x,v,truth.p\n1,1,1\n"));
@@ -53,8 +56,9 @@ TEST_F(Labels, MessagesWhereTheyAreLacking) {
     EXPECT_EQ(labels(wanted, csv_episode("x,v,px,truth.p\n1,1,1,2\n"), 0),
               "column 'truth.p' holds '2', expected 0 or 1");
     wanted.predicates = {1};
-    EXPECT_EQ(labels(wanted, csv_episode("x,v\n1,1\n"), 1),
-              "does not say when 'q' holds: it has no array 'truth.q', and the spec no truth of it");
+    EXPECT_EQ(
+        labels(wanted, csv_episode("x,v\n1,1\n"), 1),
+        "does not say when 'q' holds: it has no array 'truth.q', and the spec no truth of it");
     EXPECT_EQ(labels(wanted, csv_episode("x,v,truth.q\n1,1,1\n"), 1), "y");
 }
 
@@ -77,7 +81,8 @@ std::string hash(const Wanted& wanted, const std::string& text) {
 
 TEST_F(Labels, AnEpisodeIsWhatItsCalibratedPredicatesRead) {
     const std::string original = hash(wanted, "x,v,px\n1,2,3\n4,5,6\n");
-    EXPECT_EQ(hash(wanted, "px,x,v\n0,1.0,\n0,4,7\n"), original);  // other labels, another input: still the same scores
+    EXPECT_EQ(hash(wanted, "px,x,v\n0,1.0,\n0,4,7\n"),
+              original);  // other labels, another input: still the same scores
     EXPECT_NE(hash(wanted, "x,v,px\n1,2,3\n4.5,5,6\n"), original);
     EXPECT_NE(hash(wanted, "x,v,px\n4,5,6\n1,2,3\n"), original);
     EXPECT_NE(hash(wanted, "x,v,px\n1,2,3\n"), original);

@@ -36,7 +36,8 @@ TEST(Rank, DoublesWouldBeWrong) {
     for (std::uint64_t p = 1; p < 1000; ++p)
         for (std::uint64_t n = 1; n <= 200; ++n) {
             const double alpha = static_cast<double>(p) / 1000;
-            const auto in_doubles = static_cast<std::uint64_t>(std::ceil((1 - alpha) * static_cast<double>(n + 1)));
+            const auto in_doubles =
+                static_cast<std::uint64_t>(std::ceil((1 - alpha) * static_cast<double>(n + 1)));
             wrong += in_doubles != rank(fmt::format("0.{:03}", p), n) ? 1 : 0;
         }
     EXPECT_GT(wrong, 0U);  // else the exactness tested above is tested by nothing
@@ -71,7 +72,8 @@ TEST(Coverage, QuantilesOfTheBetaDistribution) {
         EXPECT_NEAR(check::coverage_quantile(n, n, 0.05), std::pow(0.05, power), 1e-12);
         EXPECT_NEAR(check::coverage_quantile(n, 1, 0.95), 1 - std::pow(0.05, power), 1e-12);
     }
-    // The 46th of 50 uniform numbers, by simulation: its standard error is about 0.0006 at either end.
+    // The 46th of 50 uniform numbers, by simulation: its standard error is about 0.0006 at either
+    // end.
     std::mt19937_64 random(7);
     std::vector<double> kth;
     for (int draw = 0; draw < 20000; ++draw) {

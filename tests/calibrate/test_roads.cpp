@@ -1,16 +1,11 @@
-// Every road to a guarantee, and what voids it: targets that are frames, episodes that come twice, episodes that
-// thresholds have seen. On each road the same world without these faults is accepted.
+// Every road to a guarantee, and what voids it: targets that are frames, episodes that come twice,
+// episodes that thresholds have seen. On each road the same world without these faults is accepted.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
-#include <set>
 
-#include "calibrate/ground_truth.hpp"
-#include "check/guarantees.hpp"
 #include "driver/compile.hpp"
-#include "plan/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 
@@ -37,7 +32,8 @@ Episode random_episode(Random& random) {
         Frame frame;
         frame.label = random.chance(0.5);
         const double centre = frame.label ? 0.2 : 1;
-        for (int i = 0; i < kElements; ++i) frame.z.push_back(centre + 0.3 * (random.uniform() - 0.5));
+        for (int i = 0; i < kElements; ++i)
+            frame.z.push_back(centre + 0.3 * (random.uniform() - 0.5));
         frame.px = centre + random.uniform();
         frame.py = random.uniform();
         episode.push_back(frame);
@@ -51,10 +47,11 @@ std::vector<Episode> random_episodes(Random& random) {
     return episodes;
 }
 
-/// How the frames of a road are recorded, and what a row looks like that was taken from one of them.
+/// How the frames of a road are recorded, and what a row looks like that was taken from one of
+/// them.
 struct Form {
-    std::string type;                                        ///< of z
-    double grain = 0;                                        ///< int8: z is recorded as multiples of it
+    std::string type;  ///< of z
+    double grain = 0;  ///< int8: z is recorded as multiples of it
     std::vector<double> (*row)(const Frame&, double grain);  ///< of the target set
 };
 
@@ -91,7 +88,9 @@ struct Road {
 
     bool of_predicates() const { return threshold.find("calibrated") != std::string::npos; }
     bool of_monitor() const { return monitor.find("calibrated") != std::string::npos; }
-    std::string text() const { return measure + " " + threshold + "; " + monitor + " " + form->type; }
+    std::string text() const {
+        return measure + " " + threshold + "; " + monitor + " " + form->type;
+    }
 };
 
 const std::string kConformal = "calibrated(conformal, alpha = 0.25)";
@@ -100,20 +99,24 @@ const std::string kSuccesses = " calibrated(conformal, alpha = 0.25, against = m
 
 std::vector<Road> roads() {
     std::vector<Road> all;
-    for (const std::string measure :
-         {"min l2(z, g)", "max l1(z, g)", "mean l2sq(z, g)", "kth(2) linf(z, g)", "min mahalanobis([1, 2, 3])(z, g)"})
+    for (const std::string measure : {"min l2(z, g)", "max l1(z, g)", "mean l2sq(z, g)",
+                                      "kth(2) linf(z, g)", "min mahalanobis([1, 2, 3])(z, g)"})
         all.push_back({measure, "<= " + kConformal, "F a"});
-    for (const Form* form : {&kF32Held, &kF16, &kI8}) all.push_back({"min l2(z, g)", "< " + kConformal, "G !a", form});
+    for (const Form* form : {&kF32Held, &kF16, &kI8})
+        all.push_back({"min l2(z, g)", "< " + kConformal, "G !a", form});
     for (const std::string measure : {"min cosine(z, g)", "max angular(z, g)"})
         all.push_back({measure, "<= " + kConformal, "F a", &kDirection});
-    for (const std::string threshold : {"<= calibrated(f1)", "<= calibrated(class_conditional, alpha = 0.25)",
-                                        "<= calibrated(adaptive, alpha = 0.25, gamma = 0.01, lo = 0, hi = 5)"})
+    for (const std::string threshold :
+         {"<= calibrated(f1)", "<= calibrated(class_conditional, alpha = 0.25)",
+          "<= calibrated(adaptive, alpha = 0.25, gamma = 0.01, lo = 0, hi = 5)"})
         all.push_back({"min l2(z, g)", threshold, "F a"});
     all.push_back({"min l2(z, far) - min l2(z, g)", ">= " + kConformal, "F a"});
     all.push_back({"min l2([px, py], g)", "<= " + kConformal, "F a", &kPosition});
-    for (const std::string threshold : {"<= 0.4", "<= calibrated(conformal, alpha = 0.25)", "<= calibrated(f1)",
-                                        "<= calibrated(class_conditional, alpha = 0.25)"})
-        for (const std::string& monitor : {"F a" + kAlarms, "F a" + kSuccesses, "G (a -> px < 0.8)" + kAlarms})
+    for (const std::string threshold :
+         {"<= 0.4", "<= calibrated(conformal, alpha = 0.25)", "<= calibrated(f1)",
+          "<= calibrated(class_conditional, alpha = 0.25)"})
+        for (const std::string& monitor :
+             {"F a" + kAlarms, "F a" + kSuccesses, "G (a -> px < 0.8)" + kAlarms})
             all.push_back({"min l2(z, g)", threshold, monitor});
     for (const Form* form : {&kF32Held, &kF16, &kI8})
         all.push_back({"min l2(z, g)", "<= 0.4", "F a" + kSuccesses, form});
@@ -127,20 +130,23 @@ std::string csv(const Episode& episode, const Road& road) {
     std::string text = "z[0],z[1],z[2],px,py,truth.a\n";
     const double grain = road.form->grain;
     for (const Frame& frame : episode) {
-        for (const double x : frame.z) text += fmt::format("{},", grain > 0 ? std::round(x / grain) : x);
+        for (const double x : frame.z)
+            text += fmt::format("{},", grain > 0 ? std::round(x / grain) : x);
         text += fmt::format("{},{},{}\n", frame.px, frame.py, frame.label ? 1 : 0);
     }
     return text;
 }
 
-/// The world of one road. Thresholds of predicates are calibrated on `first` where the monitor comes after them.
+/// The world of one road. Thresholds of predicates are calibrated on `first` where the monitor
+/// comes after them.
 class World {
 public:
     World(const Road& road, std::uint64_t seed) : road_(road) {
         Random random(seed);
         first_ = random_episodes(random);
         second_ = random_episodes(random);
-        for (int i = 0; i < 3; ++i) rows_.push_back(road.form->row(random_episode(random)[0], road.form->grain));
+        for (int i = 0; i < 3; ++i)
+            rows_.push_back(road.form->row(random_episode(random)[0], road.form->grain));
     }
 
     void leak_first() { rows_[1] = road_.form->row(first_[2][3], road_.form->grain); }
@@ -191,7 +197,8 @@ private:
 
     std::string spec(const std::string& targets) const {
         return fmt::format(
-            "spec t; input z : {}; input px, py : f32; target g = load(\"{}\"); target far = [[1, 1, 1]];\n"
+            "spec t; input z : {}; input px, py : f32; target g = load(\"{}\"); target far = [[1, "
+            "1, 1]];\n"
             "predicate a = {} {}; monitor m = {};",
             road_.form->type, targets, road_.measure, road_.threshold, road_.monitor);
     }
@@ -235,155 +242,9 @@ TEST(Roads, AWrittenTargetOfScalarsIsNoLeak) {
 /// Held against itself, a comparison cannot be wrong.
 TEST(Roads, AComparisonWithoutATruthGuaranteesNothing) {
     const Files files({"z[0]\n0\n1\n", "z[0]\n0.5\n2\n"});
-    const std::string spec = "spec t; input z : f32[1]; target g = [[0.25]]; monitor m = F (l2(z, g) <= 0.5)" + kAlarms;
+    const std::string spec =
+        "spec t; input z : f32[1]; target g = [[0.25]]; monitor m = F (l2(z, g) <= 0.5)" + kAlarms;
     EXPECT_EQ(calibrated(spec + ";", files.paths()).codes, Codes{"E0655"});
-}
-
-// ---- what is claimed is true of episodes that nobody has seen ------------------------------------------------------
-
-constexpr int kDraws = 120;
-constexpr int kFresh = 8;  ///< episodes a draw
-
-/// x is near 0 where the label holds; s comes to lie on the threshold of the comparisons with it.
-struct Drawn {
-    std::vector<float> x, s;
-    std::vector<bool> label;
-
-    explicit Drawn(Random& random) {
-        const double share = random.uniform();
-        for (int t = 0; t < 6; ++t) {
-            label.push_back(random.chance(share));
-            double noise = 0;
-            for (int i = 0; i < 4; ++i) noise += random.uniform() - 0.5;
-            x.push_back(static_cast<float>((label.back() ? 0 : 1) + 0.8 * noise));
-            s.push_back(random.pick(std::vector<float>{0.25F, 0.5F, 0.5F, 1}));
-        }
-    }
-
-    std::string csv() const {
-        std::string text = "x,s,truth.a\n";
-        for (std::size_t t = 0; t < x.size(); ++t) text += fmt::format("{},{},{}\n", x[t], s[t], label[t] ? 1 : 0);
-        return text;
-    }
-};
-
-std::vector<std::string> drawn(Random& random, int count) {
-    std::vector<std::string> episodes;
-    for (int i = 0; i < count; ++i) episodes.push_back(Drawn(random).csv());
-    return episodes;
-}
-
-/// Of every monitor with a claim: the fresh episodes, and those in which some verdict was what the claim excludes.
-struct Kept {
-    check::Claim claim;
-    int episodes = 0;
-    int broken = 0;
-};
-
-/// `zero_aside`: a verdict with robustness 0 is not meant.
-bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon::Verdict& is) {
-    const bool alarm = is.violated() && said.satisfied() && !(claim.zero_aside && said.robustness == 0);
-    const bool success = is.satisfied() && said.violated();
-    switch (claim.kind) {
-        case check::Claim::Kind::missed_success: return success;
-        case check::Claim::Kind::missed_alarm: return alarm;
-        case check::Claim::Kind::exact: return success || alarm;
-        case check::Claim::Kind::nothing: break;
-    }
-    return false;
-}
-
-void count(const driver::Compiled& monitors, const driver::Compiled& truths, Random& random,
-           std::map<std::string, Kept>& kept) {
-    plan::Evaluator said(monitors.plan);
-    plan::Evaluator is(truths.plan);
-    const Drawn episode(random);
-    std::set<std::string> broken;
-    for (std::size_t t = 0; t < episode.x.size(); ++t) {
-        std::vector<plan::Sample> samples{{true, {episode.x[t]}}, {true, {episode.s[t]}}};
-        const auto& verdicts = said.step(samples);
-        samples.push_back({true, {episode.label[t] ? 1.0F : 0.0F}});
-        const auto& truth = is.step(samples);
-        for (std::size_t m = 0; m < verdicts.size(); ++m) {
-            const check::Monitor& monitor = monitors.model->monitors[monitors.plan.monitors[m].index];
-            Kept& of = kept[monitor.name];
-            of.claim = check::claims(*monitors.model, monitor, monitors.plan.values)[0];
-            if (breaks(of.claim, verdicts[m], truth[m])) broken.insert(monitor.name);
-        }
-    }
-    for (auto& [name, of] : kept) {
-        ++of.episodes;
-        of.broken += broken.contains(name) ? 1 : 0;
-    }
-}
-
-/// Calibrates anew for every draw. Draws that show too little to calibrate from are left out.
-std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors, check::Values values) {
-    std::map<std::string, Kept> kept;
-    Random random(2027);
-    for (int draw = 0; draw < kDraws; ++draw) {
-        std::string thresholds;
-        const Files first(drawn(random, 10));
-        if (of_predicates) {
-            thresholds = calibrated(spec, first.paths()).thresholds;
-            if (thresholds.empty()) continue;
-        }
-        const Files second(drawn(random, 16));
-        if (of_monitors) {
-            thresholds = calibrated(spec, second.paths(), thresholds).thresholds;
-            if (thresholds.empty()) continue;
-        }
-        const TemporaryPath file("thresholds.json", thresholds);
-        driver::Request request;
-        request.check.thresholds_path = file.path();
-        request.values = values;
-        diag::Sink sink;
-        const auto monitors = driver::compile(source::File("t.etl", spec), request, sink);
-        if (!monitors) {
-            ADD_FAILURE() << thresholds;
-            return kept;
-        }
-        auto truth = calibrate::ground_truth(*monitors->model, {0});
-        const auto truths = driver::compile(std::move(truth.model), {}, sink, check::Values::boolean);
-        for (int i = 0; i < kFresh; ++i) count(*monitors, *truths, random, kept);
-    }
-    return kept;
-}
-
-void expect_kept(const std::map<std::string, Kept>& all, const std::string& which) {
-    for (const auto& [name, kept] : all) {
-        EXPECT_GT(kept.episodes, kDraws * kFresh / 2) << which;
-        const double bound =
-            kept.claim.bound.empty() || kept.claim.kind == check::Claim::Kind::exact ? 0 : std::stod(kept.claim.bound);
-        const double share = static_cast<double>(kept.broken) / kept.episodes;
-        EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) * kFresh / kept.episodes))
-            << which << " " << name << ": " << check::text(kept.claim);
-    }
-}
-
-const std::string kUnions =
-    "monitor p0 = F (a && s > 0.5); monitor p1 = G (s > 0.5 -> F[0, 2] a); monitor n0 = G (a -> s > 0.5);"
-    "monitor n1 = G (a -> s >= 0.5); monitor n2 = G !(a && s <= 0.5); sliding monitor n3 = F[0, 2] !a;"
-    "monitor e0 = G s > 0.5; monitor e1 = G s >= 0.5; monitor e2 = F !(s >= 0.5);";
-const std::string kWholes =
-    "monitor w0 = F (a && s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_alarm);"
-    "monitor w1 = F (a && s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_success);"
-    "monitor w2 = G (a -> s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_alarm);"
-    "sliding monitor w3 = F[0, 2] !a calibrated(conformal, alpha = 0.25, against = missed_alarm);";
-
-std::string drawn_spec(const std::string& threshold, const std::string& monitors) {
-    return "spec t; input x, s : f32; predicate a = x <= " + threshold + ";\n" + monitors;
-}
-
-TEST(Roads, WhatIsClaimedIsKept) {
-    using enum check::Values;
-    const std::string unions = drawn_spec("calibrated(conformal, alpha = 0.25)", kUnions);
-    expect_kept(draws(unions, true, false, robustness), "predicates");
-    expect_kept(draws(unions, true, false, boolean), "predicates, boolean");
-    expect_kept(draws(drawn_spec("0.5", kWholes), false, true, robustness), "wholes");
-    expect_kept(draws(drawn_spec("calibrated(f1)", kWholes), true, true, robustness), "wholes of f1");
-    expect_kept(draws(drawn_spec("calibrated(conformal, alpha = 0.25)", kWholes), true, true, robustness),
-                "wholes of conformal");
 }
 
 }  // namespace

@@ -62,7 +62,8 @@ Episode random_episode(Random& random) {
     Episode episode;
     for (int t = 0; t < kSteps; ++t) {
         episode.label.push_back(random.chance(0.4));
-        episode.x.push_back(static_cast<float>((episode.label.back() ? 0.0 : 1.0) + 2 * (random.uniform() - 0.5)));
+        episode.x.push_back(
+            static_cast<float>((episode.label.back() ? 0.0 : 1.0) + 2 * (random.uniform() - 0.5)));
     }
     return episode;
 }
@@ -107,7 +108,8 @@ TEST(Shift, CoversDrawnEpisodes) {
         for (int draw = 0; draw < kDraws; ++draw) {
             std::vector<double> scores;
             while (scores.size() < 9)
-                if (const auto one = score(run(said, truth, random_episode(random)), alarms)) scores.push_back(*one);
+                if (const auto one = score(run(said, truth, random_episode(random)), alarms))
+                    scores.push_back(*one);
             const auto fit = std::get<calibrate::Fitted>(calibrate::fit_rank(scores, "0.2"));
             ASSERT_EQ(fit.k, 8U);
             const Episode test = random_episode(random);
@@ -121,14 +123,16 @@ TEST(Shift, CoversDrawnEpisodes) {
                 ASSERT_EQ(after.said[t].robustness, before.said[t].robustness - shift);
                 ASSERT_EQ(after.said[t].lower, before.said[t].lower - shift);
                 ASSERT_EQ(after.said[t].upper, before.said[t].upper - shift);
-                missed = missed || (alarms ? after.truth[t].violated() && after.said[t].satisfied()
-                                           : after.truth[t].satisfied() && after.said[t].violated());
+                missed =
+                    missed || (alarms ? after.truth[t].violated() && after.said[t].satisfied()
+                                      : after.truth[t].satisfied() && after.said[t].violated());
             }
             covered += missed ? 0 : 1;
             const auto own = score(before, alarms);
             ASSERT_FALSE(missed && (!own || *own < static_cast<double>(fit.epsilon)));
         }
-        EXPECT_GE(static_cast<double>(covered) / kDraws, 0.8 - 3 * std::sqrt(0.2 * 0.8 / kDraws)) << against;
+        EXPECT_GE(static_cast<double>(covered) / kDraws, 0.8 - 3 * std::sqrt(0.2 * 0.8 / kDraws))
+            << against;
     }
 }
 
@@ -157,8 +161,8 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         }
         std::sort(scores.begin(), scores.end());
         diag::Sink sink;
-        const auto result =
-            calibrate::calibrate_monitors(model, {unshifted.plan, truths.plan, ground_truth}, {}, request, sink);
+        const auto result = calibrate::calibrate_monitors(
+            model, {unshifted.plan, truths.plan, ground_truth}, {}, request, sink);
         ASSERT_TRUE(result);
         const thresholds::Entry& entry = result->file.monitors.at("m");
         ASSERT_EQ(entry.n, scores.size());

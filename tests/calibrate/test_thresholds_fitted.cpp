@@ -33,7 +33,8 @@ using Episode = std::vector<Frame>;
 
 check::Model model_of(const std::string& comparison, const std::string& threshold) {
     const std::string text = fmt::format(
-        "spec t; input x, y : f32; predicate p = x {} {}; truth p = y > 0; monitor m = F p;", comparison, threshold);
+        "spec t; input x, y : f32; predicate p = x {} {}; truth p = y > 0; monitor m = F p;",
+        comparison, threshold);
     diag::Sink sink;
     const source::File file("t.etl", text);
     check::Options options;
@@ -41,7 +42,8 @@ check::Model model_of(const std::string& comparison, const std::string& threshol
     return *check::check(parse::parse(file, sink), file, options, sink);
 }
 
-/// What scoring these episodes gives, scalars being exact; by the definitions of docs/calibration.md.
+/// What scoring these episodes gives, scalars being exact; by the definitions of
+/// docs/calibration.md.
 std::vector<Demonstration> demonstrations(const std::vector<Episode>& episodes, bool upper) {
     std::vector<Demonstration> result;
     for (const Episode& episode : episodes) {
@@ -77,7 +79,8 @@ std::vector<Episode> random_episodes(Random& random, int n) {
     return episodes;
 }
 
-/// The least covering number of `sorted` (worst first): every threshold on the right side of it covers k of them.
+/// The least covering number of `sorted` (worst first): every threshold on the right side of it
+/// covers k of them.
 TEST(Fitted, RanksAsBruteForceDoes) {
     Random random(41);
     for (const std::string comparison : {"<=", "<", ">=", ">"}) {
@@ -85,8 +88,8 @@ TEST(Fitted, RanksAsBruteForceDoes) {
         for (const std::string method : {"conformal", "class_conditional"}) {
             for (int n = 1; n <= 200; ++n) {
                 const int percent = random.between(1, 99);
-                const auto model =
-                    model_of(comparison, fmt::format("calibrated({}, alpha = 0.{:02})", method, percent));
+                const auto model = model_of(
+                    comparison, fmt::format("calibrated({}, alpha = 0.{:02})", method, percent));
                 const auto episodes = random_episodes(random, n);
                 std::vector<float> scores;
                 for (const Episode& episode : episodes) {
@@ -101,26 +104,32 @@ TEST(Fitted, RanksAsBruteForceDoes) {
                                                : *std::min_element(deltas.begin(), deltas.end()));
                 }
                 const auto count = scores.size();
-                const std::size_t k = ((100 - static_cast<std::size_t>(percent)) * (count + 1) + 99) / 100;
-                const auto fit = calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+                const std::size_t k =
+                    ((100 - static_cast<std::size_t>(percent)) * (count + 1) + 99) / 100;
+                const auto fit =
+                    calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
                 if (count == 0 || k > count) {
-                    ASSERT_EQ(std::get<Refusal>(fit), count == 0 ? Refusal::no_positives : Refusal::too_few);
+                    ASSERT_EQ(std::get<Refusal>(fit),
+                              count == 0 ? Refusal::no_positives : Refusal::too_few);
                     continue;
                 }
                 const auto& fitted = std::get<Fitted>(fit);
                 ASSERT_EQ(fitted.n, count);
                 ASSERT_EQ(fitted.k, k);
-                // The least float32 (mirrored: the greatest) strictly beyond at least k of the scores, tried one by
-                // one.
+                // The least float32 (mirrored: the greatest) strictly beyond at least k of the
+                // scores, tried one by one.
                 float expected = upper ? kInfinity : -kInfinity;
                 for (const float score : scores) {
                     float candidate = std::nextafter(score, upper ? kInfinity : -kInfinity);
                     if (std::abs(score) < FLT_MIN)
-                        candidate = std::nextafter(upper ? FLT_MIN : -FLT_MIN, upper ? kInfinity : -kInfinity);
-                    const auto beyond = std::count_if(scores.begin(), scores.end(),
-                                                      [&](float s) { return upper ? s < candidate : s > candidate; });
+                        candidate = std::nextafter(upper ? FLT_MIN : -FLT_MIN,
+                                                   upper ? kInfinity : -kInfinity);
+                    const auto beyond = std::count_if(scores.begin(), scores.end(), [&](float s) {
+                        return upper ? s < candidate : s > candidate;
+                    });
                     if (static_cast<std::size_t>(beyond) < k) continue;
-                    expected = upper ? std::min(expected, candidate) : std::max(expected, candidate);
+                    expected =
+                        upper ? std::min(expected, candidate) : std::max(expected, candidate);
                 }
                 ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << method << " " << n;
                 ASSERT_EQ(fitted.scores.size(), method == "conformal" ? count : 1);
@@ -132,15 +141,16 @@ TEST(Fitted, RanksAsBruteForceDoes) {
     }
 }
 
-/// An adaptive threshold starts at the conformal one or, its grid (here 2^-23) being coarser, just beyond it.
+/// An adaptive threshold starts at the conformal one or, its grid (here 2^-23) being coarser, just
+/// beyond it.
 TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
     Random random(44);
     int outside = 0;
     for (const std::string comparison : {"<=", "<", ">=", ">"}) {
         const bool upper = comparison[0] == '<';
         const auto conformal = model_of(comparison, "calibrated(conformal, alpha = 0.2)");
-        const auto adaptive =
-            model_of(comparison, "calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -1.5, hi = 1.5)");
+        const auto adaptive = model_of(
+            comparison, "calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -1.5, hi = 1.5)");
         for (int n = 1; n <= 200; ++n) {
             const auto all = demonstrations(random_episodes(random, n), upper);
             const auto expected = calibrate::fit(conformal.predicates[0], all, 0);
@@ -159,7 +169,8 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
             ASSERT_EQ(unmoved.epsilon, fitted.epsilon);
             ASSERT_EQ(unmoved.scores, fitted.scores);
             ASSERT_EQ(unmoved.k, fitted.k);
-            const float start = *check::start(*adaptive.predicates[0].threshold.adaptation, unmoved.epsilon, upper);
+            const float start =
+                *check::start(*adaptive.predicates[0].threshold.adaptation, unmoved.epsilon, upper);
             const float beyond = upper ? start - fitted.epsilon : fitted.epsilon - start;
             ASSERT_GE(beyond, 0);
             ASSERT_LT(beyond, 0x1p-23F);
@@ -194,7 +205,8 @@ TEST(Fitted, F1AsBruteForceDoes) {
                             positives += frame.positive ? 1 : 0;
                             any_positive = any_positive || frame.positive;
                         }
-                    const double f1 = 2 * true_positives / (found + positives + (found + positives == 0 ? 1 : 0));
+                    const double f1 =
+                        2 * true_positives / (found + positives + (found + positives == 0 ? 1 : 0));
                     const bool stricter = upper ? epsilon < expected : epsilon > expected;
                     if (f1 > best || (f1 == best && f1 > 0 && stricter)) {
                         best = f1;
@@ -202,9 +214,11 @@ TEST(Fitted, F1AsBruteForceDoes) {
                     }
                 }
             }
-            const auto fit = calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+            const auto fit =
+                calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
             if (best == 0) {
-                ASSERT_EQ(std::get<Refusal>(fit), any_positive ? Refusal::no_f1 : Refusal::no_positives);
+                ASSERT_EQ(std::get<Refusal>(fit),
+                          any_positive ? Refusal::no_f1 : Refusal::no_positives);
                 continue;
             }
             const auto& fitted = std::get<Fitted>(fit);
@@ -219,7 +233,8 @@ TEST(Fitted, F1AsBruteForceDoes) {
 TEST(Fitted, InfiniteScoresAreRefused) {
     const auto model = model_of("<=", "calibrated(conformal, alpha = 0.5)");
     const auto fit = [&](float last) {
-        return calibrate::fit(model.predicates[0], demonstrations({{{1, true}}, {{last, true}}}, true), 0);
+        return calibrate::fit(model.predicates[0],
+                              demonstrations({{{1, true}}, {{last, true}}}, true), 0);
     };
     EXPECT_EQ(std::get<Refusal>(fit(kInfinity)), Refusal::not_finite);
     EXPECT_EQ(std::get<Refusal>(fit(FLT_MAX)), Refusal::not_finite);  // no float32 beyond it
@@ -235,12 +250,15 @@ TEST(Calibrate, ThreadsDoNotChangeTheResult) {
     request.version = "test";
     for (int episode = 0; episode < 30; ++episode) {
         std::string text = "x,y\n";
-        for (int t = 0; t < 20; ++t) text += fmt::format("{},{}\n", random.uniform(), random.between(0, 1));
-        files.push_back(std::make_unique<TemporaryPath>(fmt::format("episode{}.csv", episode), text));
+        for (int t = 0; t < 20; ++t)
+            text += fmt::format("{},{}\n", random.uniform(), random.between(0, 1));
+        files.push_back(
+            std::make_unique<TemporaryPath>(fmt::format("episode{}.csv", episode), text));
         request.data.push_back(files.back()->path());
     }
-    for (const std::string method : {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1",
-                                     "adaptive, alpha = 0.1, gamma = 0.1, lo = 0, hi = 2"}) {
+    for (const std::string method :
+         {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1",
+          "adaptive, alpha = 0.1, gamma = 0.1, lo = 0, hi = 2"}) {
         const auto model = model_of("<", fmt::format("calibrated({})", method));
         std::string first;
         for (const unsigned jobs : {1U, 2U, 5U, 64U}) {

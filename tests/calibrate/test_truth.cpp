@@ -19,11 +19,13 @@ using calibrate::Label;
 /// A formula of past operators over a, b and two comparisons.
 std::string past_formula(Random& random, int depth) {
     if (depth == 0) return random.word({"a", "b", "(x > 0.375)", "(l2([x, y], goal) < 0.6875)"});
-    const auto operand = [&] { return "(" + past_formula(random, random.between(0, depth - 1)) + ")"; };
+    const auto operand = [&] {
+        return "(" + past_formula(random, random.between(0, depth - 1)) + ")";
+    };
     const auto interval = [&] {
         const int low = random.between(0, 3);
-        return random.word(
-            {"", fmt::format("[{}, {}]", low, low + random.between(0, 3)), fmt::format("[{}, inf]", low)});
+        return random.word({"", fmt::format("[{}, {}]", low, low + random.between(0, 3)),
+                            fmt::format("[{}, inf]", low)});
     };
     switch (random.between(0, 8)) {
         case 0: return operand() + " && " + operand();
@@ -41,9 +43,11 @@ std::string past_formula(Random& random, int depth) {
 calibrate::Frame random_frame(Random& random) {
     calibrate::Frame frame;
     for (int i = 0; i < 2; ++i)
-        frame.push_back(random.chance(0.15) ? std::vector<double>{} : std::vector<double>{random.between(0, 1) + 0.0});
+        frame.push_back(random.chance(0.15) ? std::vector<double>{}
+                                            : std::vector<double>{random.between(0, 1) + 0.0});
     for (int i = 0; i < 2; ++i)
-        frame.push_back(random.chance(0.15) ? std::vector<double>{} : std::vector<double>{random.grid(-1, 1, 0.25)});
+        frame.push_back(random.chance(0.15) ? std::vector<double>{}
+                                            : std::vector<double>{random.grid(-1, 1, 0.25)});
     return frame;
 }
 
@@ -56,7 +60,8 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
     Random random(20261120);
     for (int spec = 0; spec < 400; ++spec) {
         const std::string text = fmt::format(
-            "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1; target goal = [[0.5, "
+            "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1; target "
+            "goal = [[0.5, "
             "0.5]];\n"
             "sliding monitor m = {};",
             past_formula(random, 4));
@@ -71,17 +76,18 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
             truth.reset();
             for (std::size_t t = 0; t < trace.size(); ++t) {
                 truth.step(trace[t]);
-                ASSERT_EQ(truth[formula], label_of(run.verdicts[t][0].status)) << text << " at " << t;
+                ASSERT_EQ(truth[formula], label_of(run.verdicts[t][0].status))
+                    << text << " at " << t;
             }
         }
     }
 }
 
 Label single(const std::string& comparison, double x) {
-    const auto model =
-        load(fmt::format("spec t; input x : f32; input z : i8[2] scale 0.25; target g = [[0, 0.25]];\n"
-                         "sliding monitor m = {};",
-                         comparison));
+    const auto model = load(
+        fmt::format("spec t; input x : f32; input z : i8[2] scale 0.25; target g = [[0, 0.25]];\n"
+                    "sliding monitor m = {};",
+                    comparison));
     calibrate::TruthEvaluator truth(*model, {model->monitors[0].formula});
     truth.step({{x}, {0, 2}});
     return truth[model->monitors[0].formula];
@@ -98,19 +104,27 @@ TEST(Truth, ComparesDoublesExactly) {
     EXPECT_EQ(single("0 / x > 1", 0), Label::unknown);
     EXPECT_EQ(single("l1(z, g) <= 0.25", 0), Label::yes);  // the integers 0 and 2 are 0 and 0.5
     EXPECT_EQ(single("l1(z, g) < 0.25", 0), Label::no);
-    EXPECT_EQ(single("x > 1", 1e39), Label::unknown);  // no float32: the monitor takes it for missing
+    EXPECT_EQ(single("x > 1", 1e39),
+              Label::unknown);  // no float32: the monitor takes it for missing
 }
 
 TEST(Truth, DistancesInDouble) {
-    const std::vector<std::string> metrics{
-        "l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis([[2, 1], [1, 3]])", "mahalanobis([2, 3])"};
+    const std::vector<std::string> metrics{"l2",
+                                           "l2sq",
+                                           "l1",
+                                           "linf",
+                                           "cosine",
+                                           "angular",
+                                           "mahalanobis([[2, 1], [1, 3]])",
+                                           "mahalanobis([2, 3])"};
     const std::vector<std::string> aggregations{"min", "max", "mean", "kth(2)"};
     Random random(5);
     for (const std::string& metric : metrics) {
         for (const std::string& aggregation : aggregations) {
-            const auto model = load(fmt::format(
-                "spec t; input z : f32[2]; target g = [[1, 0], [0.5, 0.5], [-1, 2]];\nmonitor m = {} {}(z, g) <= 1;",
-                aggregation, metric));
+            const auto model =
+                load(fmt::format("spec t; input z : f32[2]; target g = [[1, 0], [0.5, 0.5], [-1, "
+                                 "2]];\nmonitor m = {} {}(z, g) <= 1;",
+                                 aggregation, metric));
             ASSERT_TRUE(model);
             for (int i = 0; i < 20; ++i) {
                 const std::vector<double> z{random.grid(-2, 2, 0.125), random.grid(-2, 2, 0.125)};
@@ -119,7 +133,8 @@ TEST(Truth, DistancesInDouble) {
                 const double expected = run.telemetry[0][0].delta;
                 ASSERT_EQ(delta.has_value(), expected == expected) << metric;
                 if (!delta) continue;
-                ASSERT_NEAR(*delta, expected, 1e-14 * (1 + expected)) << metric << " " << aggregation;
+                ASSERT_NEAR(*delta, expected, 1e-14 * (1 + expected))
+                    << metric << " " << aggregation;
             }
         }
     }
@@ -138,7 +153,9 @@ TEST(GroundTruth, ReplacesLabelledPredicatesOnly) {
     EXPECT_EQ(check::print(truth.model, truth.model.monitors[0].formula), "F (truth.p && q)");
     EXPECT_EQ(check::print(truth.model, truth.model.monitors[1].formula), "G !truth.p");
     // x and y say p && q, the label says otherwise, then agrees, then is missing.
-    const auto step = [](std::vector<double> label) { return reference::Step{{0.0}, {0.0}, {0.0}, std::move(label)}; };
+    const auto step = [](std::vector<double> label) {
+        return reference::Step{{0.0}, {0.0}, {0.0}, std::move(label)};
+    };
     const reference::Run run = reference::evaluate(truth.model, {step({0}), step({1}), step({})});
     EXPECT_EQ(run.verdicts[0][0].status, reference::Status::violated);
     EXPECT_EQ(run.verdicts[1][0].status, reference::Status::satisfied);

@@ -35,8 +35,9 @@ private:
     fs::path path_;
 };
 
-std::optional<evaluate::Evaluation> run(const std::string& spec, const std::vector<std::string>& episodes,
-                                        unsigned jobs, diag::Sink& sink) {
+std::optional<evaluate::Evaluation> run(const std::string& spec,
+                                        const std::vector<std::string>& episodes, unsigned jobs,
+                                        diag::Sink& sink) {
     const Folder folder(episodes);
     const source::File file("t.etl", spec);
     const auto compiled = driver::compile(file, {}, sink);
@@ -47,7 +48,8 @@ std::optional<evaluate::Evaluation> run(const std::string& spec, const std::vect
     auto labelled = evaluate::find_labelled(*compiled->model, request, sink);
     if (!labelled) return std::nullopt;
     evaluate::Subject subject = evaluate::subject(*compiled->model, *labelled);
-    const auto truth = driver::compile(std::move(subject.truth.model), {}, sink, check::Values::boolean);
+    const auto truth =
+        driver::compile(std::move(subject.truth.model), {}, sink, check::Values::boolean);
     if (!truth) return std::nullopt;
     return evaluate::evaluate(compiled->plan, truth->plan, subject, request, std::nullopt, sink);
 }
@@ -62,7 +64,8 @@ check::Model model_of(const std::string& spec) {
     return std::move(*model);
 }
 
-evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes, unsigned jobs) {
+evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
+                               unsigned jobs) {
     diag::Sink sink;
     const auto result = run(spec, episodes, jobs, sink);
     for (const diag::Diagnostic& finding : sink.sorted())
@@ -70,7 +73,8 @@ evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::s
     return result ? *result : evaluate::Evaluation{};
 }
 
-std::vector<std::string> mistakes(const std::string& spec, const std::vector<std::string>& episodes) {
+std::vector<std::string> mistakes(const std::string& spec,
+                                  const std::vector<std::string>& episodes) {
     diag::Sink sink;
     EXPECT_FALSE(run(spec, episodes, 1, sink));
     std::vector<std::string> messages;

@@ -1,6 +1,6 @@
 // Specs evaluated on episodes given as text.
-// Takes: a spec and .csv episodes. Gives: the evaluation. Keeps true: it goes through the same functions as
-// `etlc evaluate`; the files lie in a folder of the test's own, gone afterwards.
+// Takes: a spec and .csv episodes. Gives: the evaluation. Keeps true: it goes through the same
+// functions as `etlc evaluate`; the files lie in a folder of the test's own, gone afterwards.
 #pragma once
 
 #include <string>
@@ -14,7 +14,9 @@ namespace etlc::tests {
 check::Model model_of(const std::string& spec);
 
 /// Of these episodes, with so many threads. The messages where it fails.
-evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes, unsigned jobs = 1);
-std::vector<std::string> mistakes(const std::string& spec, const std::vector<std::string>& episodes);
+evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
+                               unsigned jobs = 1);
+std::vector<std::string> mistakes(const std::string& spec,
+                                  const std::vector<std::string>& episodes);
 
 }  // namespace etlc::tests

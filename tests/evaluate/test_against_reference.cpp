@@ -1,5 +1,5 @@
-// Evaluations of random episodes, against counts made from the reference semantics: of the spec, and of a spec in which
-// every predicate is written as its truth.
+// Evaluations of random episodes, against counts made from the reference semantics: of the spec,
+// and of a spec in which every predicate is written as its truth.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -38,10 +38,14 @@ const std::vector<std::string> kSliding = {"G[0, 3] p", "p && !q", "p U[0, 5] q"
 /// p and q are meant to be what `truths` says of x and y, and are said from u and w.
 std::string spec(bool truths) {
     std::string text = "spec t; input u, w, x, y, v : f32; input c : bool;";
-    text += truths ? "predicate p = x > 0; predicate q = y <= 0.25;"
-                   : "predicate p = u > 0; predicate q = w <= 0.25; truth p = x > 0; truth q = y <= 0.25;";
-    for (std::size_t i = 0; i < kFormulas.size(); ++i) text += fmt::format("monitor m{} = {};", i, kFormulas[i]);
-    for (std::size_t i = 0; i < kSliding.size(); ++i) text += fmt::format("sliding monitor s{} = {};", i, kSliding[i]);
+    text +=
+        truths
+            ? "predicate p = x > 0; predicate q = y <= 0.25;"
+            : "predicate p = u > 0; predicate q = w <= 0.25; truth p = x > 0; truth q = y <= 0.25;";
+    for (std::size_t i = 0; i < kFormulas.size(); ++i)
+        text += fmt::format("monitor m{} = {};", i, kFormulas[i]);
+    for (std::size_t i = 0; i < kSliding.size(); ++i)
+        text += fmt::format("sliding monitor s{} = {};", i, kSliding[i]);
     return text;
 }
 
@@ -50,7 +54,8 @@ struct Episode {
     reference::Trace trace;
 };
 
-/// u and w mostly have the sides of x and y; numbers keep off the thresholds, samples may be missing.
+/// u and w mostly have the sides of x and y; numbers keep off the thresholds, samples may be
+/// missing.
 Episode random_episode(std::mt19937& random, bool missing) {
     std::uniform_real_distribution<double> uniform(-1, 1);
     Episode episode;
@@ -64,14 +69,18 @@ Episode random_episode(std::mt19937& random, bool missing) {
         };
         const double x = draw(0);
         const double y = draw(0.25);
-        std::vector<double> row = {
-            random() % 5 == 0 ? draw(0) : x,  random() % 5 == 0 ? draw(0.25) : y, x, y, 2 * draw(0.5),
-            static_cast<double>(random() % 2)};
+        std::vector<double> row = {random() % 5 == 0 ? draw(0) : x,
+                                   random() % 5 == 0 ? draw(0.25) : y,
+                                   x,
+                                   y,
+                                   2 * draw(0.5),
+                                   static_cast<double>(random() % 2)};
         if (row[4] == 0) row[4] = 1.5;
         reference::Step step;
         for (std::size_t c = 0; c < row.size(); ++c) {
             const bool absent = missing && random() % 12 == 0;
-            episode.csv += fmt::format("{}{}", c == 0 ? "" : ",", absent ? "" : fmt::format("{}", row[c]));
+            episode.csv +=
+                fmt::format("{}{}", c == 0 ? "" : ",", absent ? "" : fmt::format("{}", row[c]));
             step.push_back(absent ? std::vector<double>{} : std::vector<double>{row[c]});
         }
         episode.csv += "\n";
@@ -81,14 +90,17 @@ Episode random_episode(std::mt19937& random, bool missing) {
 }
 
 Label label(Status status) {
-    return status == Status::satisfied ? Label::yes : status == Status::violated ? Label::no : Label::unknown;
+    return status == Status::satisfied  ? Label::yes
+           : status == Status::violated ? Label::no
+                                        : Label::unknown;
 }
 
 /// All verdicts of a monitor about an episode.
 std::vector<Label> verdicts(const reference::Run& run, std::size_t monitor, std::uint32_t horizon) {
     std::vector<Label> labels;
     for (const auto& step : run.verdicts)
-        if (step[monitor].status != Status::undecided) labels.push_back(label(step[monitor].status));
+        if (step[monitor].status != Status::undecided)
+            labels.push_back(label(step[monitor].status));
     for (std::uint32_t call = 0; call < horizon; ++call)
         if (run.finish[call][monitor].status != Status::undecided)
             labels.push_back(label(run.finish[call][monitor].status));
@@ -119,7 +131,8 @@ TEST(Evaluation, IsThatOfTheReference) {
                 for (std::size_t i = 0; i < claims.size(); ++i) steps[m].add(claims[i], truths[i]);
                 const bool sliding = said_model.monitors[m].sliding;
                 const auto one = [&](const std::vector<Label>& labels) {
-                    return sliding ? *std::min_element(labels.begin(), labels.end()) : labels.back();
+                    return sliding ? *std::min_element(labels.begin(), labels.end())
+                                   : labels.back();
                 };
                 episodes[m].add(one(claims), one(truths));
                 const bool sequential = m == 3 || m == 4;  // F (p && F q), F (p && F (q && F p))
@@ -129,12 +142,14 @@ TEST(Evaluation, IsThatOfTheReference) {
                     p_visited |= !step[2].empty() && step[2][0] > 0;
                     q_visited |= !step[3].empty() && step[3][0] <= 0.25;
                 }
-                if (sequential && p_visited && q_visited) ordering[m - 3].add(one(claims), one(truths));
+                if (sequential && p_visited && q_visited)
+                    ordering[m - 3].add(one(claims), one(truths));
             }
             for (const reference::Step& step : episode.trace) {
                 const auto holds = [&](std::size_t input, bool above) {
                     if (step[input].empty()) return Label::unknown;
-                    return (above ? step[input][0] > 0 : step[input][0] <= 0.25) ? Label::yes : Label::no;
+                    return (above ? step[input][0] > 0 : step[input][0] <= 0.25) ? Label::yes
+                                                                                 : Label::no;
                 };
                 predicates[0].add(holds(0, true), holds(2, true));
                 predicates[1].add(holds(1, false), holds(3, false));
@@ -151,7 +166,8 @@ TEST(Evaluation, IsThatOfTheReference) {
                 EXPECT_GT(ordering[m - 3].total(), 10U);
             }
         }
-        for (std::size_t p = 0; p < 2; ++p) EXPECT_EQ(found.predicates[p].frames.counts, predicates[p]);
+        for (std::size_t p = 0; p < 2; ++p)
+            EXPECT_EQ(found.predicates[p].frames.counts, predicates[p]);
         EXPECT_EQ(evaluate::json(found), evaluate::json(evaluated(spec(false), texts, 5)));
     }
 }

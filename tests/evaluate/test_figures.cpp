@@ -65,7 +65,9 @@ TEST(Rates, AreTheSharesThatTheirNamesSay) {
         expect_near(found.agreement, share(pairs, any, agree));
         // F1 is the harmonic mean of the two, 0 where both are.
         if (precision && recall)
-            expect_near(found.f1, *precision + *recall == 0 ? 0 : 2 * *precision * *recall / (*precision + *recall));
+            expect_near(found.f1, *precision + *recall == 0
+                                      ? 0
+                                      : 2 * *precision * *recall / (*precision + *recall));
         else
             expect_near(found.f1, precision || recall ? std::optional(0.0) : std::nullopt);
         Counts thrice;
@@ -81,7 +83,8 @@ TEST(Rates, OfClaimsThatDoNotLook) {
         for (const Label claim : {Label::yes, Label::no}) {
             Counts counts;
             for (const auto& pair : pairs) counts.add(claim, pair.second);
-            const Rates blind = rates_of_constant(claim == Label::yes, counts.positives(), counts.total());
+            const Rates blind =
+                rates_of_constant(claim == Label::yes, counts.positives(), counts.total());
             expect_near(blind.f1, rates(counts).f1);
             expect_near(blind.precision, rates(counts).precision);
             expect_near(blind.recall, rates(counts).recall);
@@ -95,7 +98,8 @@ TEST(Ranking, CountsPairsOfFrames) {
     for (int round = 0; round < 300; ++round) {
         std::vector<Scored> frames(random() % 40);
         for (Scored& frame : frames)  // ties are common
-            frame = {static_cast<float>(random() % 8), static_cast<std::uint32_t>(random() % 5), random() % 3 == 0};
+            frame = {static_cast<float>(random() % 8), static_cast<std::uint32_t>(random() % 5),
+                     random() % 3 == 0};
         std::vector<std::uint32_t> weights(5);
         for (std::uint32_t& weight : weights) weight = random() % 4;
         double won = 0;
@@ -108,7 +112,8 @@ TEST(Ranking, CountsPairsOfFrames) {
                 won += times * (a.score > b.score ? 1 : a.score == b.score ? 0.5 : 0);
             }
         }
-        expect_near(Ranking(frames).auroc(weights), pairs == 0 ? std::nullopt : std::optional(won / pairs));
+        expect_near(Ranking(frames).auroc(weights),
+                    pairs == 0 ? std::nullopt : std::optional(won / pairs));
     }
 }
 
@@ -127,7 +132,8 @@ TEST(Bootstrap, DrawsEpisodesWithReplacement) {
 }
 
 TEST(Bootstrap, IntervalsCoverAMean) {
-    // Of 200 samples of 40 numbers, about 95 % have an interval with the true mean in it; at least 90 % is far below.
+    // Of 200 samples of 40 numbers, about 95 % have an interval with the true mean in it; at least
+    // 90 % is far below.
     std::mt19937 random(4);
     std::uniform_real_distribution<double> uniform(0, 1);
     const Bootstrap bootstrap(40);
@@ -135,11 +141,12 @@ TEST(Bootstrap, IntervalsCoverAMean) {
     for (int round = 0; round < 200; ++round) {
         std::vector<double> values(40);
         for (double& value : values) value = uniform(random);
-        const Figure figure = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
-            double sum = 0;
-            for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i];
-            return sum / 40;
-        });
+        const Figure figure =
+            bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
+                double sum = 0;
+                for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i];
+                return sum / 40;
+            });
         ASSERT_TRUE(figure.value && figure.interval);
         EXPECT_LE(figure.interval->low, *figure.value);
         EXPECT_GE(figure.interval->high, *figure.value);

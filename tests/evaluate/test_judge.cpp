@@ -1,4 +1,5 @@
-// Single episodes whose figures can be worked out by hand: detection, ordering, missing samples, what is left out.
+// Single episodes whose figures can be worked out by hand: detection, ordering, missing samples,
+// what is left out.
 #include <gtest/gtest.h>
 
 #include "evaluated.hpp"
@@ -31,7 +32,8 @@ TEST(Detection, IsTheTimeFromTurnToTurn) {
     EXPECT_EQ(detection("nnyyyy", "nnyyyy").median, 0.0);
     EXPECT_EQ(detection("yynnny", "yyynnn").median, -1.0);
     EXPECT_EQ(detection("yynnny", "yyynnn").early, 1U);
-    EXPECT_EQ(detection("nynnny", "nnyyyy").median, 3.0);  // an early claim that was taken back is not held on to
+    EXPECT_EQ(detection("nynnny", "nnyyyy").median,
+              3.0);  // an early claim that was taken back is not held on to
     EXPECT_EQ(detection("?nn?yy", "??nnyy").median, 0.0);
 }
 
@@ -56,11 +58,13 @@ TEST(Judge, CountsWhatAMissingSampleLeavesOpen) {
 
 TEST(Judge, TheComparisonDecidesAtTheThreshold) {
     const std::string episode = "x,truth.p\n0.5,1\n";
-    for (const auto& [comparison, holds] :
-         {std::pair("<=", true), std::pair("<", false), std::pair(">=", true), std::pair(">", false)}) {
-        const Evaluation found = evaluated(
-            "spec t; input x : f32; predicate p = x " + std::string(comparison) + " 0.5; monitor m = F p;", {episode});
-        EXPECT_EQ(found.predicates.at(0).frames.counts.true_positives, holds ? 1U : 0U) << comparison;
+    for (const auto& [comparison, holds] : {std::pair("<=", true), std::pair("<", false),
+                                            std::pair(">=", true), std::pair(">", false)}) {
+        const Evaluation found = evaluated("spec t; input x : f32; predicate p = x " +
+                                               std::string(comparison) + " 0.5; monitor m = F p;",
+                                           {episode});
+        EXPECT_EQ(found.predicates.at(0).frames.counts.true_positives, holds ? 1U : 0U)
+            << comparison;
     }
 }
 
@@ -74,10 +78,13 @@ TEST(Judge, RanksByTheSideOfTheThreshold) {
 TEST(Ordering, IsMeasuredWhereEveryStageWasVisited) {
     const std::string spec =
         "spec t; input x, y : f32; predicate a = x > 0.5; predicate b = y > 0.5;"
-        "monitor ordered = F (a && F b); monitor deep = F (a && (y < 9 && F (b && F a))); monitor reach = F a;"
-        "monitor both = F a && F b; monitor in_turn = F (a U b); monitor bounded = F[0, 5] (a && F b);"
+        "monitor ordered = F (a && F b); monitor deep = F (a && (y < 9 && F (b && F a))); monitor "
+        "reach = F a;"
+        "monitor both = F a && F b; monitor in_turn = F (a U b); monitor bounded = F[0, 5] (a && F "
+        "b);"
         "monitor two = F (F a && F b);";
-    const auto text = [](const std::string& a, const std::string& b) {  // truth is that of x and y, which are right
+    const auto text = [](const std::string& a,
+                         const std::string& b) {  // truth is that of x and y, which are right
         std::string rows = "x,y,truth.a,truth.b\n";
         for (std::size_t i = 0; i < a.size(); ++i) {
             const auto bit = [](char c) { return c == 'y' ? std::string("1") : std::string("0"); };
@@ -85,8 +92,9 @@ TEST(Ordering, IsMeasuredWhereEveryStageWasVisited) {
         }
         return rows;
     };
-    const Evaluation found = evaluated(spec, {text("ynnn", "nnyn"), text("nnyn", "ynnn"), text("nnnn", "ynnn"),
-                                              text("ynny", "nynn"), text("nyn", "nyn")});
+    const Evaluation found =
+        evaluated(spec, {text("ynnn", "nnyn"), text("nnyn", "ynnn"), text("nnnn", "ynnn"),
+                         text("ynny", "nynn"), text("nyn", "nyn")});
     const auto ordering = [&](std::size_t m) { return found.monitors.at(m).ordering; };
     ASSERT_TRUE(ordering(0));
     EXPECT_EQ(ordering(0)->counts.total(), 4U);  // the third never visits a
@@ -114,7 +122,8 @@ TEST(Subject, LeavesOutWhatHasNoTruth) {
     const Evaluation labelled = evaluated(spec, {"z[0],z[1],x,truth.p\n1,1,1,1\n0,0,0,1\n"});
     EXPECT_TRUE(labelled.monitors[0].lacking.empty());
     EXPECT_EQ(labelled.predicates.size(), 2U);
-    EXPECT_EQ(mistakes(spec, {"z[0],z[1],x,truth.p\n1,1,1,1\n", "z[0],z[1],x\n1,1,1\n"}).size(), 1U);
+    EXPECT_EQ(mistakes(spec, {"z[0],z[1],x,truth.p\n1,1,1,1\n", "z[0],z[1],x\n1,1,1\n"}).size(),
+              1U);
 }
 
 TEST(Evaluate, NamesEveryEpisodeThatCannotBeRead) {
@@ -130,7 +139,9 @@ TEST(Evaluate, AnEpisodeWithoutStepsSaysNothing) {
 }
 
 TEST(Evaluate, CountsEpisodesThatRepeatAnother) {
-    EXPECT_EQ(evaluated(kNow, {episode("yn", "yn"), episode("yn", "nn"), episode("ny", "yn")}).repeated, 1U);
+    EXPECT_EQ(
+        evaluated(kNow, {episode("yn", "yn"), episode("yn", "nn"), episode("ny", "yn")}).repeated,
+        1U);
 }
 
 TEST(Evaluate, CountsEpisodesWithATargetAmongTheFrames) {
@@ -138,13 +149,18 @@ TEST(Evaluate, CountsEpisodesWithATargetAmongTheFrames) {
         "spec t; input z : f32[2]; input px : f32; target g = [[1, 0], [3, 4]];"
         "predicate p = min cosine(z, g) <= 0.1; truth p = px < 1; monitor m = F p;";
     const std::string head = "z[0],z[1],px\n";
-    EXPECT_EQ(evaluated(spec, {head + "3,4.5,0\n", head + "0,1,0\n6,8,0\n", head + "0.5,0,0\n"}).leaked, 2U);
+    EXPECT_EQ(
+        evaluated(spec, {head + "3,4.5,0\n", head + "0,1,0\n6,8,0\n", head + "0.5,0,0\n"}).leaked,
+        2U);
 }
 
-/// At its threshold a comparison has the robustness 0, which a monitor takes for satisfied, and yet may say no.
+/// At its threshold a comparison has the robustness 0, which a monitor takes for satisfied, and yet
+/// may say no.
 TEST(Evaluate, OfWhatIsItsOwnTruthTheComparisonDecides) {
     const auto steps = [](const std::string& formula) {
-        return evaluated("spec t; input x : f32; monitor m = " + formula + ";", {"x\n1\n0\n"}).monitors[0].steps.counts;
+        return evaluated("spec t; input x : f32; monitor m = " + formula + ";", {"x\n1\n0\n"})
+            .monitors[0]
+            .steps.counts;
     };
     EXPECT_EQ(steps("G x > 0").false_positives, 1U);
     EXPECT_EQ(steps("G !(x <= 0)").false_positives, 1U);

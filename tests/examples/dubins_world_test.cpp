@@ -57,22 +57,27 @@ TEST(DubinsWorld, DrivesAreTheSameForTheSameSeedAndDifferForAnother) {
 }
 
 TEST(DubinsWorld, SomeDrivesFailInEveryWay) {
-    const auto count = [](auto test) { return std::count_if(tours().begin(), tours().end(), test); };
+    const auto count = [](auto test) {
+        return std::count_if(tours().begin(), tours().end(), test);
+    };
     const std::size_t never = kSteps;
     EXPECT_GE(count([&](const Episode& t) { return first_inside(t, kGoalA) == never; }), 5);
     EXPECT_GE(count([&](const Episode& t) { return first_inside(t, kObstacleC) != never; }), 5);
     EXPECT_GE(count([&](const Episode& t) {
-                  return first_inside(t, kGoalB) < first_inside(t, kGoalA) && first_inside(t, kGoalA) != never;
+                  return first_inside(t, kGoalB) < first_inside(t, kGoalA) &&
+                         first_inside(t, kGoalA) != never;
               }),
               5);
     EXPECT_GE(count([&](const Episode& t) {
-                  return first_inside(t, kGoalA) < first_inside(t, kGoalB) && first_inside(t, kGoalB) != never;
+                  return first_inside(t, kGoalA) < first_inside(t, kGoalB) &&
+                         first_inside(t, kGoalB) != never;
               }),
               5);
 }
 
 TEST(DubinsWorld, TheCameraShowsTheCarWhereItIs) {
-    for (const Car& car : {Car{{0.3, -0.7}, 0.0}, Car{{-1.1, 0.9}, 2.0}, Car{{1.45, -1.45}, -1.0}}) {
+    for (const Car& car :
+         {Car{{0.3, -0.7}, 0.0}, Car{{-1.1, 0.9}, 2.0}, Car{{1.45, -1.45}, -1.0}}) {
         const Image image = photograph(car);
         double ink = 0;
         double x = 0;
@@ -89,21 +94,25 @@ TEST(DubinsWorld, TheCameraShowsTheCarWhereItIs) {
 }
 
 TEST(DubinsWorld, TheCommittedComponentsAreOrthonormal) {
-    const Eigen::MatrixXf components = read_matrix(DUBINS_FOLDER "/encoder/components.npy", kDimension, 1024);
+    const Eigen::MatrixXf components =
+        read_matrix(DUBINS_FOLDER "/encoder/components.npy", kDimension, 1024);
     const Eigen::MatrixXf gram = components * components.transpose();
-    EXPECT_LT((gram - Eigen::MatrixXf::Identity(kDimension, kDimension)).cwiseAbs().maxCoeff(), 1e-5F);
+    EXPECT_LT((gram - Eigen::MatrixXf::Identity(kDimension, kDimension)).cwiseAbs().maxCoeff(),
+              1e-5F);
 }
 
 /// Another CPU may round the last digits otherwise, no more.
 TEST(DubinsWorld, TheCommittedTargetsAreWhatTheCommittedEncoderMakes) {
     const Encoder encoder = Encoder::load(DUBINS_FOLDER "/encoder");
     for (const Region& region : kRegions) {
-        const std::string path = std::string(DUBINS_FOLDER "/targets/") + std::string(region.name) + ".npy";
+        const std::string path =
+            std::string(DUBINS_FOLDER "/targets/") + std::string(region.name) + ".npy";
         const Eigen::MatrixXf committed = read_matrix(path, kTargetHeadings, kDimension);
         const std::vector<Embedding> made = target_set(encoder, region.disc.centre);
         for (int row = 0; row < kTargetHeadings; ++row) {
             for (int i = 0; i < kDimension; ++i) {
-                ASSERT_NEAR(committed(row, i), made[static_cast<std::size_t>(row)][static_cast<std::size_t>(i)], 1e-5)
+                ASSERT_NEAR(committed(row, i),
+                            made[static_cast<std::size_t>(row)][static_cast<std::size_t>(i)], 1e-5)
                     << region.name << " row " << row;
             }
         }

@@ -39,8 +39,9 @@ enum Call {
     kPipe,
     kCalls
 };
-constexpr const char* kNames[kCalls] = {"malloc", "write", "open",   "close",  "link",  "rename", "unlink",
-                                        "dup",    "lock",  "change", "thread", "spawn", "pipe"};
+constexpr const char* kNames[kCalls] = {"malloc", "write",  "open", "close", "link",
+                                        "rename", "unlink", "dup",  "lock",  "change",
+                                        "thread", "spawn",  "pipe"};
 
 enum class Action { none, fail, halve, kill, kill_after };
 
@@ -60,7 +61,8 @@ std::atomic<long> calls[kCalls];
 Action next(Call call) {
     if (!armed) return Action::none;
     const long n = ++calls[call];
-    const bool hit = call == injection.call && n >= injection.first && n < injection.first + injection.count;
+    const bool hit =
+        call == injection.call && n >= injection.first && n < injection.first + injection.count;
     if (!hit) return Action::none;
     if (injection.action == Action::kill) ::kill(::getpid(), SIGKILL);
     if (injection.action == Action::fail) errno = injection.error;
@@ -82,11 +84,13 @@ void read_wish() {
     const char* const wish = std::getenv("ETLC_INJECT");
     char call[16];
     char action[16];
-    if (wish == nullptr ||
-        std::sscanf(wish, "%15[^:]:%ld:%ld:%15s", call, &injection.first, &injection.count, action) != 4)
+    if (wish == nullptr || std::sscanf(wish, "%15[^:]:%ld:%ld:%15s", call, &injection.first,
+                                       &injection.count, action) != 4)
         return;
     injection.call = static_cast<int>(
-        std::find_if(kNames, kNames + kCalls, [&](const char* name) { return std::strcmp(name, call) == 0; }) - kNames);
+        std::find_if(kNames, kNames + kCalls,
+                     [&](const char* name) { return std::strcmp(name, call) == 0; }) -
+        kNames);
     injection.error = std::atoi(action);
     injection.action = std::strcmp(action, "short") == 0    ? Action::halve
                        : std::strcmp(action, "kill") == 0   ? Action::kill
@@ -99,7 +103,8 @@ void write_counts() {
     if (path == nullptr) return;
     std::FILE* const file = std::fopen(path, "w");
     if (file == nullptr) return;
-    for (int call = 0; call < kCalls; ++call) std::fprintf(file, "%s %ld\n", kNames[call], calls[call].load());
+    for (int call = 0; call < kCalls; ++call)
+        std::fprintf(file, "%s %ld\n", kNames[call], calls[call].load());
     std::fclose(file);
 }
 
@@ -124,11 +129,11 @@ void* __libc_malloc(std::size_t);
 void* __libc_calloc(std::size_t, std::size_t);
 void* __libc_realloc(void*, std::size_t);
 
-int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*begin)(), void (*end)(),
-                      void (*loader_end)(), void* stack_end) {
+int __libc_start_main(int (*main)(int, char**, char**), int argc, char** argv, void (*begin)(),
+                      void (*end)(), void (*loader_end)(), void* stack_end) {
     program = main;
-    return real<decltype(__libc_start_main)>("__libc_start_main")(armed_main, argc, argv, begin, end, loader_end,
-                                                                  stack_end);
+    return real<decltype(__libc_start_main)>("__libc_start_main")(armed_main, argc, argv, begin,
+                                                                  end, loader_end, stack_end);
 }
 
 void* malloc(std::size_t n) {
@@ -174,7 +179,8 @@ std::FILE* fopen(const char* path, const char* mode) {
 
 int close(int file) {
     const Action action = next(kClose);
-    const int result = static_cast<int>(::syscall(SYS_close, file));  // which an error does not keep open
+    const int result =
+        static_cast<int>(::syscall(SYS_close, file));  // which an error does not keep open
     if (action != Action::fail) return done(action, result);
     errno = injection.error;
     return -1;
@@ -183,13 +189,15 @@ int close(int file) {
 int linkat(int from_folder, const char* from, int folder, const char* to, int flags) {
     const Action action = next(kLink);
     if (action == Action::fail) return -1;
-    return done(action, static_cast<int>(::syscall(SYS_linkat, from_folder, from, folder, to, flags)));
+    return done(action,
+                static_cast<int>(::syscall(SYS_linkat, from_folder, from, folder, to, flags)));
 }
 
 int renameat2(int from_folder, const char* from, int folder, const char* to, unsigned flags) {
     const Action action = next(kRename);
     if (action == Action::fail) return -1;
-    return done(action, static_cast<int>(::syscall(SYS_renameat2, from_folder, from, folder, to, flags)));
+    return done(action,
+                static_cast<int>(::syscall(SYS_renameat2, from_folder, from, folder, to, flags)));
 }
 
 int renameat(int from_folder, const char* from, int folder, const char* to) {
@@ -211,9 +219,11 @@ int fcntl(int file, int command, ...) {
     return static_cast<int>(::syscall(SYS_fcntl, file, command, argument));
 }
 
-int lock_file(int file, int operation) __asm__("flock");  // a name that <fcntl.h> has for a class, too
+int lock_file(int file,
+              int operation) __asm__("flock");  // a name that <fcntl.h> has for a class, too
 int lock_file(int file, int operation) {
-    return next(kLock) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_flock, file, operation));
+    return next(kLock) == Action::fail ? -1
+                                       : static_cast<int>(::syscall(SYS_flock, file, operation));
 }
 
 int fchmod(int file, mode_t mode) {
@@ -221,18 +231,23 @@ int fchmod(int file, mode_t mode) {
 }
 
 int fchown(int file, uid_t owner, gid_t group) {
-    return next(kChange) == Action::fail ? -1 : static_cast<int>(::syscall(SYS_fchown, file, owner, group));
+    return next(kChange) == Action::fail
+               ? -1
+               : static_cast<int>(::syscall(SYS_fchown, file, owner, group));
 }
 
-int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*), void* argument) {
+int pthread_create(pthread_t* thread, const pthread_attr_t* attributes, void* (*start)(void*),
+                   void* argument) {
     if (next(kThread) == Action::fail) return injection.error;
     return real<decltype(pthread_create)>("pthread_create")(thread, attributes, start, argument);
 }
 
 int posix_spawn(pid_t* process, const char* path, const posix_spawn_file_actions_t* actions,
-                const posix_spawnattr_t* attributes, char* const argv[], char* const environment[]) {
+                const posix_spawnattr_t* attributes, char* const argv[],
+                char* const environment[]) {
     if (next(kSpawn) == Action::fail) return injection.error;
-    return real<decltype(posix_spawn)>("posix_spawn")(process, path, actions, attributes, argv, environment);
+    return real<decltype(posix_spawn)>("posix_spawn")(process, path, actions, attributes, argv,
+                                                      environment);
 }
 
 int pipe2(int ends[2], int flags) {

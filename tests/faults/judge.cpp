@@ -32,11 +32,12 @@ bool is_targets(const std::string& name) {
 
 /// Whether the header takes the file of targets beside it.
 bool fits(const Files& files) {
-    const auto targets =
-        std::find_if(files.begin(), files.end(), [](const auto& file) { return is_targets(file.first); });
-    const auto header =
-        std::find_if(files.begin(), files.end(), [](const auto& file) { return file.first.ends_with(".hpp"); });
-    return targets == files.end() || header == files.end() || asked_for(header->second) == checksum(targets->second);
+    const auto targets = std::find_if(files.begin(), files.end(),
+                                      [](const auto& file) { return is_targets(file.first); });
+    const auto header = std::find_if(files.begin(), files.end(),
+                                     [](const auto& file) { return file.first.ends_with(".hpp"); });
+    return targets == files.end() || header == files.end() ||
+           asked_for(header->second) == checksum(targets->second);
 }
 
 /// What is wrong with the files after a run.
@@ -52,8 +53,9 @@ std::string wrong_files(const Command& command, const Files& files, bool killed)
     if (command.name == "compile" && mixed && fits(files) && asked_for(files.at("dock.hpp")) == 0)
         return "the header has no checksum";
     const bool both = files.contains("dock.hpp") && files.contains("dock.targets.bin");
-    if (both && fits(files) != ((files.at("dock.hpp") == command.after.at("dock.hpp")) ==
-                                (files.at("dock.targets.bin") == command.after.at("dock.targets.bin"))))
+    if (both &&
+        fits(files) != ((files.at("dock.hpp") == command.after.at("dock.hpp")) ==
+                        (files.at("dock.targets.bin") == command.after.at("dock.targets.bin"))))
         return "a header and targets of different calls fit, or those of one call do not";
     return "";
 }
@@ -67,7 +69,8 @@ bool while_names_change(const Surroundings& around) {
 /// Whether what goes to standard error may be among the writes that fail.
 bool cannot_speak(const Command& command, const Surroundings& around) {
     if (!around.injection.starts_with("write:")) return false;
-    const bool only_one = around.injection.find(":1:", around.injection.find(':') + 1) != std::string::npos;
+    const bool only_one =
+        around.injection.find(":1:", around.injection.find(':') + 1) != std::string::npos;
     return !only_one || command.undisturbed.status != 0;
 }
 
@@ -76,14 +79,17 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
                          const Files& files) {
     const Outcome& undisturbed = command.undisturbed;
     const bool silent = around.error != Stream::open || cannot_speak(command, around);
-    if (outcome.status != 0 && outcome.status != 1) return fmt::format("exit status {}", outcome.status);
+    if (outcome.status != 0 && outcome.status != 1)
+        return fmt::format("exit status {}", outcome.status);
     if (outcome.status == 0) {
         if (undisturbed.status != 0) return "a mistake goes by";
         if (files != command.after) return "exit status 0, and a file is not written";
         if (outcome.output != (around.output == Stream::open ? undisturbed.output : ""))
             return "standard output differs";
-        if (around.output != Stream::open && !undisturbed.output.empty()) return "standard output is lost";
-        if (around.error == Stream::full && !undisturbed.error.empty()) return "standard error is lost";
+        if (around.output != Stream::open && !undisturbed.output.empty())
+            return "standard output is lost";
+        if (around.error == Stream::full && !undisturbed.error.empty())
+            return "standard error is lost";
         if (!silent && outcome.error != undisturbed.error) return "standard error differs";
         return "";
     }
@@ -92,7 +98,8 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
     const bool all_but_diagnostics =
         undisturbed.status == 0 && files == command.after && outcome.output == undisturbed.output;
     const bool lost_diagnostics = !undisturbed.error.empty() && outcome.error != undisturbed.error;
-    if (!silent && outcome.error.empty() && !(all_but_diagnostics && lost_diagnostics)) return "no message";
+    if (!silent && outcome.error.empty() && !(all_but_diagnostics && lost_diagnostics))
+        return "no message";
     if (!silent && !command.files.empty() && all_but_diagnostics && !lost_diagnostics)
         return "exit status 1, and the files are written";
     return "";
@@ -100,30 +107,34 @@ std::string wrong_ending(const Command& command, const Surroundings& around, con
 
 }  // namespace
 
-void Judge::judge(const Scene& scene, const Command& command, const Surroundings& around, const std::string& what,
-                  const Outcome& outcome) {
+void Judge::judge(const Scene& scene, const Command& command, const Surroundings& around,
+                  const std::string& what, const Outcome& outcome) {
     ++runs_;
     const Files files = scene.written(command);
     const std::vector<std::string> left = scene.left_over(command);
     const auto find = [&](const std::string& finding) {
-        findings_.push_back(fmt::format("{}, {}: {}; exit status {}, signal {}, said: {}", command.name, what, finding,
-                                        outcome.status, outcome.signal, outcome.error));
+        findings_.push_back(fmt::format("{}, {}: {}; exit status {}, signal {}, said: {}",
+                                        command.name, what, finding, outcome.status, outcome.signal,
+                                        outcome.error));
     };
     const bool wanted = around.killed_after || around.injection.find("kill") != std::string::npos;
     const bool killed = wanted && outcome.signal == SIGKILL;
     if (killed) ++killed_;
     if (outcome.signal != 0 && !killed) return find("ended by a signal");
-    if (const std::string wrong = wrong_files(command, files, killed); !wrong.empty()) return find(wrong);
+    if (const std::string wrong = wrong_files(command, files, killed); !wrong.empty())
+        return find(wrong);
     for (const std::string& name : left) {
         const bool temporary = name.starts_with(".etlc-") && name.ends_with(".part");
         if (!killed || !temporary || !while_names_change(around)) return find("leaves " + name);
         ++left_by_kills_;
     }
     if (killed) return;
-    if (const std::string wrong = wrong_ending(command, around, outcome, files); !wrong.empty()) find(wrong);
+    if (const std::string wrong = wrong_ending(command, around, outcome, files); !wrong.empty())
+        find(wrong);
 }
 
-void Judge::judge_pair(const Scene& scene, const Command& command, const Outcome& one, const Outcome& other) {
+void Judge::judge_pair(const Scene& scene, const Command& command, const Outcome& one,
+                       const Outcome& other) {
     runs_ += 2;
     const Files files = scene.written(command);
     if (one.status != 0 || other.status != 0)

@@ -18,9 +18,10 @@ namespace etlc::faults {
 
 class Judge {
 public:
-    void judge(const Scene& scene, const Command& command, const Surroundings& around, const std::string& what,
-               const Outcome& outcome);
-    void judge_pair(const Scene& scene, const Command& command, const Outcome& one, const Outcome& other);
+    void judge(const Scene& scene, const Command& command, const Surroundings& around,
+               const std::string& what, const Outcome& outcome);
+    void judge_pair(const Scene& scene, const Command& command, const Outcome& one,
+                    const Outcome& other);
 
     const std::vector<std::string>& findings() const { return findings_; }
     long runs() const { return runs_; }

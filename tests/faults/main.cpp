@@ -81,7 +81,8 @@ public:
             limit_files(command);
             limit_memory(command);
             kill_at_random(command);
-            fmt::print("{}: {} runs so far, {} findings\n", command.name, judge_.runs(), judge_.findings().size());
+            fmt::print("{}: {} runs so far, {} findings\n", command.name, judge_.runs(),
+                       judge_.findings().size());
             std::fflush(stdout);
         }
         run_at_the_same_time();
@@ -89,9 +90,11 @@ public:
 
     int report() const {
         for (const std::string& finding : judge_.findings()) fmt::print("{}\n", finding);
-        fmt::print("{} commands, {} runs among faults, {} of them killed, which left {} temporary files: {} findings\n",
-                   scene_.commands().size(), judge_.runs(), judge_.killed(), judge_.left_by_kills(),
-                   judge_.findings().size());
+        fmt::print(
+            "{} commands, {} runs among faults, {} of them killed, which left {} temporary files: "
+            "{} findings\n",
+            scene_.commands().size(), judge_.runs(), judge_.killed(), judge_.left_by_kills(),
+            judge_.findings().size());
         return judge_.findings().empty() ? 0 : 1;
     }
 
@@ -101,12 +104,14 @@ private:
             const std::string call = disturbance.call;
             // CLI11 writes its help through streams, which keep quiet about a single piece of
             // memory that was missing.
-            if (call == "malloc" && disturbance.count == 1 && command.words.back() == "--help") continue;
+            if (call == "malloc" && disturbance.count == 1 && command.words.back() == "--help")
+                continue;
             const long most = call == "malloc" ? extent_.allocations : extent_.places;
             for (const long first : spread(command.calls.at(call), most))
                 for (const std::string& action : disturbance.actions) {
                     Surroundings around;
-                    around.injection = fmt::format("{}:{}:{}:{}", call, first, disturbance.count, action);
+                    around.injection =
+                        fmt::format("{}:{}:{}:{}", call, first, disturbance.count, action);
                     disturb(command, around, around.injection);
                 }
         }
@@ -121,10 +126,13 @@ private:
                     around.output = output;
                     around.error = error;
                     const auto words = [](Stream stream) {
-                        return stream == Stream::open ? "open" : stream == Stream::full ? "full" : "closed";
+                        return stream == Stream::open   ? "open"
+                               : stream == Stream::full ? "full"
+                                                        : "closed";
                     };
                     disturb(command, around,
-                            fmt::format("input {}, output {}, error {}", words(input), words(output), words(error)));
+                            fmt::format("input {}, output {}, error {}", words(input),
+                                        words(output), words(error)));
                 }
     }
 
@@ -143,9 +151,10 @@ private:
         const rlim_t enough = least_memory(command);
         for (int i = 0; i < extent_.memories; ++i) {
             Surroundings around;
-            around.address_space =
-                least + (enough - least) * static_cast<rlim_t>(i) / static_cast<rlim_t>(extent_.memories);
-            disturb(command, around, fmt::format("at most {} KiB of memory", around.address_space >> 10U));
+            around.address_space = least + (enough - least) * static_cast<rlim_t>(i) /
+                                               static_cast<rlim_t>(extent_.memories);
+            disturb(command, around,
+                    fmt::format("at most {} KiB of memory", around.address_space >> 10U));
         }
     }
 
@@ -156,7 +165,8 @@ private:
             Surroundings around;
             around.address_space = fails + (works - fails) / 2;
             scene_.restore(command);
-            (scene_.run(command, around).status == command.undisturbed.status ? works : fails) = around.address_space;
+            (scene_.run(command, around).status == command.undisturbed.status ? works : fails) =
+                around.address_space;
         }
         return works;
     }

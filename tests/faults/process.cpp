@@ -37,7 +37,8 @@ std::string content(int file) {
 
 }  // namespace
 
-Process::Process(const std::vector<std::string>& words, const std::string& folder, const Surroundings& around)
+Process::Process(const std::vector<std::string>& words, const std::string& folder,
+                 const Surroundings& around)
     : killed_after_(around.killed_after) {
     // What a process writes has room in a pipe; its output has limits like those of a file.
     std::array<int, 2> ends{};

@@ -35,7 +35,8 @@ struct Outcome {
 /// A process that has been started.
 class Process {
 public:
-    Process(const std::vector<std::string>& words, const std::string& folder, const Surroundings& around);
+    Process(const std::vector<std::string>& words, const std::string& folder,
+            const Surroundings& around);
     Process(const Process&) = delete;
     Process& operator=(const Process&) = delete;
     /// Waits for its end.

@@ -71,7 +71,8 @@ std::string episode(int e) {
     std::string text = "px,z[0],z[1]\n";
     for (int t = 0; t < 40; ++t) {
         const double px = (t * (e + 3)) % 7 - 3.5;
-        text += fmt::format("{},{},{}\n", px, px > 0 || (t + e) % 5 == 0 ? 1.25 + 0.001 * t : 3, 1 + 0.01 * e);
+        text += fmt::format("{},{},{}\n", px, px > 0 || (t + e) % 5 == 0 ? 1.25 + 0.001 * t : 3,
+                            1 + 0.01 * e);
     }
     return text;
 }
@@ -108,14 +109,19 @@ Scene::Scene(std::string etlc, const fs::path& data) : etlc_(std::move(etlc)) {
         {"emit", {"dock.etl", "--emit", "plan", "-o", "dock.plan"}, {"dock.plan"}},
         {"check", {"dock.etl", "--check", "--diagnostics", "json"}, {}},
         {"a wrong spec", {"wrong.etl", "--check"}, {}},
-        {"run", {"run", "dock.etl", "--trace", "episodes/0.csv", "-o", "verdicts.csv"}, {"verdicts.csv"}},
+        {"run",
+         {"run", "dock.etl", "--trace", "episodes/0.csv", "-o", "verdicts.csv"},
+         {"verdicts.csv"}},
         {"run of .npz", {"run", "arrays.etl", "--trace", "trace_stored.npz"}, {}},
         {"run of .h5",
-         {"run", "groups.etl", "--trace", "trace.h5:data/demo_1", "--map", "z=obs/z", "-o", "h5.csv"},
+         {"run", "groups.etl", "--trace", "trace.h5:data/demo_1", "--map", "z=obs/z", "-o",
+          "h5.csv"},
          {"h5.csv"}},
         {"calibrate", with({"calibrate", "fit.etl"}, episodes), {"fit.thresholds.json"}},
         {"calibrate to standard output", with({"calibrate", "fit.etl", "-o", "-"}, episodes), {}},
-        {"calibrate monitors", with({"calibrate", "whole.etl"}, episodes), {"whole.thresholds.json"}},
+        {"calibrate monitors",
+         with({"calibrate", "whole.etl"}, episodes),
+         {"whole.thresholds.json"}},
         {"evaluate",
          with({"evaluate", "dock.etl", "--json", "all.json", "--csv", "all.csv"}, episodes),
          {"all.json", "all.csv"}},
@@ -134,8 +140,10 @@ Scene::~Scene() {
 
 void Scene::write_inputs(const fs::path& data) const {
     fs::create_directory(folder_ / "episodes");
-    for (int e = 0; e < kEpisodes; ++e) write_text(folder_ / "episodes" / fmt::format("{}.csv", e), episode(e));
-    for (const char* file : {"stored.npz", "trace_stored.npz", "trace.h5"}) fs::copy(data / file, folder_ / file);
+    for (int e = 0; e < kEpisodes; ++e)
+        write_text(folder_ / "episodes" / fmt::format("{}.csv", e), episode(e));
+    for (const char* file : {"stored.npz", "trace_stored.npz", "trace.h5"})
+        fs::copy(data / file, folder_ / file);
     write_text(folder_ / "wrong.etl", kWrong);
 }
 
@@ -145,7 +153,8 @@ void Scene::write_specs(bool now) const {
                                                                     {"whole.etl", kWhole},
                                                                     {"arrays.etl", kArrays},
                                                                     {"groups.etl", kGroups}};
-    for (const auto& [name, text] : specs) write_text(folder_ / name, fmt::format(fmt::runtime(text), now ? 1 : 0.75));
+    for (const auto& [name, text] : specs)
+        write_text(folder_ / name, fmt::format(fmt::runtime(text), now ? 1 : 0.75));
 }
 
 std::string Scene::write_earlier_spec() {
@@ -163,14 +172,16 @@ void Scene::learn() {
             command.undisturbed = run(command, around);
             (now ? command.after : command.before) = written(command);
             if (command.undisturbed.status > 1 || written(command).size() != command.files.size())
-                throw std::runtime_error(command.name + " fails by itself: " + command.undisturbed.error);
+                throw std::runtime_error(command.name +
+                                         " fails by itself: " + command.undisturbed.error);
             std::istringstream counts(now ? read_text(counts_) : "");
             std::string call;
             for (long n = 0; counts >> call >> n;) command.calls[call] = n;
         }
     }
     for (const auto& entry : fs::recursive_directory_iterator(folder_))
-        if (entry.is_regular_file()) inputs_.push_back(fs::relative(entry.path(), folder_).string());
+        if (entry.is_regular_file())
+            inputs_.push_back(fs::relative(entry.path(), folder_).string());
 }
 
 void Scene::restore(const Command& command) const {
@@ -199,7 +210,8 @@ std::vector<std::string> Scene::left_over(const Command&) const {
     std::vector<std::string> names;
     for (const auto& entry : fs::directory_iterator(folder_)) {
         const std::string name = entry.path().filename().string();
-        if (entry.is_regular_file() && std::find(inputs_.begin(), inputs_.end(), name) == inputs_.end())
+        if (entry.is_regular_file() &&
+            std::find(inputs_.begin(), inputs_.end(), name) == inputs_.end())
             names.push_back(name);
     }
     return names;

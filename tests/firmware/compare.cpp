@@ -1,6 +1,7 @@
 // compare FIRMWARE.txt HOST.txt: two outputs of examples/firmware_loop, verdict by verdict.
-// The versions of the kernel add in other orders, so a robustness that rests on the one long distance may differ by
-// twice its rounding bound, and a status where the robustness is that small. Everything else is equal to the bit.
+// The versions of the kernel add in other orders, so a robustness that rests on the one long
+// distance may differ by twice its rounding bound, and a status where the robustness is that small.
+// Everything else is equal to the bit.
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
@@ -24,10 +25,12 @@ float number(std::uint32_t bits) {
 double bound(const std::string& name, float robustness) {
     constexpr double kThreshold = 22.5;  // of grasp's predicate
     if (name != "grasp" || !std::isfinite(robustness)) return 0;
-    return 2 * etlmon::rounding_bound(etlmon::MetricId::l2, 384, kThreshold + std::abs(double{robustness}));
+    return 2 * etlmon::rounding_bound(etlmon::MetricId::l2, 384,
+                                      kThreshold + std::abs(double{robustness}));
 }
 
-bool agree(const std::string& name, const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+bool agree(const std::string& name, const std::vector<std::uint32_t>& a,
+           const std::vector<std::uint32_t>& b) {
     if (a.size() != b.size() || a.empty() || a[0] != b[0]) return false;
     for (std::size_t i = 1; i + 3 < a.size(); i += 4) {
         bool close = true;

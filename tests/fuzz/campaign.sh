@@ -1,11 +1,11 @@
 #!/bin/sh
 # campaign.sh SECONDS [TARGET...]: fuzzes every target, or those named, for SECONDS each and stops at the first finding.
-# Run it in a build folder of the preset `fuzz`; what the targets learn is kept in its tests/fuzz/found for the next time.
+# Run it in a build folder of the preset `sanitized`; what the targets learn is kept in its tests/fuzz/found for the next time.
 set -eu
 seconds=${1:?usage: campaign.sh SECONDS [TARGET...]}
 shift
 here=$(cd "$(dirname "$0")" && pwd)
-[ -d tests/fuzz ] || { echo "campaign.sh: no tests/fuzz here: run it in a build folder of the preset fuzz" >&2; exit 2; }
+[ -d tests/fuzz ] || { echo "campaign.sh: no tests/fuzz here: run it in a build folder of the preset sanitized" >&2; exit 2; }
 [ $# -gt 0 ] || set -- $(ls "$here/corpus")
 for target in "$@"; do
   echo "$target: $seconds s"

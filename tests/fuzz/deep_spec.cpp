@@ -43,7 +43,8 @@ private:
     }
 
     void leaf(std::string& out) {
-        static constexpr std::array<const char*, 8> kAtoms{"p", "q", "r", "b", "p", "q", "true", "x > 0.5"};
+        static constexpr std::array<const char*, 8> kAtoms{"p", "q", "r",    "b",
+                                                           "p", "q", "true", "x > 0.5"};
         const unsigned n = choice(static_cast<unsigned>(kAtoms.size() + 2 * lets_));
         if (n < kAtoms.size())
             out += kAtoms[n];
@@ -52,15 +53,17 @@ private:
     }
 
     void interval(std::string& out, bool bounded) {
-        static constexpr std::array<const char*, 12> kHighs{"0",  "1",   "2",    "3",     "5",      "9",
-                                                            "40", "300", "1000", "20000", "900000", "2147483646"};
+        static constexpr std::array<const char*, 12> kHighs{
+            "0", "1", "2", "3", "5", "9", "40", "300", "1000", "20000", "900000", "2147483646"};
         static constexpr std::array<const char*, 5> kLows{"0", "0", "1", "2", "7"};
         const unsigned n = choice(bounded ? 12 : 24);
         if (n >= kHighs.size()) {
             if (n == 23) out += "[2, inf]";
             return;
         }
-        const unsigned low = n < 2 ? 0 : n < 4 ? choice(4) : choice(static_cast<unsigned>(kLows.size() + 1));
+        const unsigned low = n < 2   ? 0
+                             : n < 4 ? choice(4)
+                                     : choice(static_cast<unsigned>(kLows.size() + 1));
         const char* first = low < kLows.size() ? kLows[low] : kHighs[n];
         out += std::string("[") + first + ", " + kHighs[n] + "]";
     }
@@ -89,7 +92,11 @@ private:
     void future(std::string& out, int levels, unsigned kind) {
         const bool binary = kind >= 13;
         if (binary) write(out, levels - 1);
-        out += kind < 11 ? "F" : kind == 11 || kind == 12 ? "G" : kind == 13 ? " U" : kind == 14 ? " R" : "";
+        out += kind < 11                  ? "F"
+               : kind == 11 || kind == 12 ? "G"
+               : kind == 13               ? " U"
+               : kind == 14               ? " R"
+                                          : "";
         if (kind == 15) out += sliding_ ? " U" : " W";
         if (kind != 15 || sliding_) interval(out, sliding_);
         out += ' ';

@@ -1,6 +1,7 @@
 // Deep random specs that bytes decide on: each byte is one choice of the grammar.
-// Takes: bytes. Gives: a spec that parses, of at most about kMostSpecBytes. Keeps true: the same bytes give the same
-// spec; a changed byte changes the spec from there on, which is what libFuzzer works with.
+// Takes: bytes. Gives: a spec that parses, of at most about kMostSpecBytes. Keeps true: the same
+// bytes give the same spec; a changed byte changes the spec from there on, which is what libFuzzer
+// works with.
 #pragma once
 
 #include <cstddef>

@@ -1,6 +1,6 @@
-// Specs of at most 10 KB through all stages and back ends: an answer comes soon, and no text is out of proportion.
-// Bytes that begin with "spec" are the spec; others decide on a deep random one. How long an input may take is up to
-// libFuzzer's -timeout, and to replay.cpp.
+// Specs of at most 10 KB through all stages and back ends: an answer comes soon, and no text is out
+// of proportion. Bytes that begin with "spec" are the spec; others decide on a deep random one. How
+// long an input may take is up to libFuzzer's -timeout, and to replay.cpp.
 #include "deep_spec.hpp"
 #include "diag/render.hpp"
 #include "driver/compile.hpp"
@@ -36,7 +36,8 @@ void compile(const source::File& file, check::Values values) {
     if (!compiled) return;
     const ir::Graph& graph = compiled->program->graph;
     for (const emit::Backend& backend : emit::backends())
-        require_proportion(backend.emit(compiled->plan, graph, {"deep", "version", false, "targets.bin"}));
+        require_proportion(
+            backend.emit(compiled->plan, graph, {"deep", "version", false, "targets.bin"}));
     require_proportion(ir::print(*compiled->program));
     require_proportion(plan::print(compiled->plan, graph));
 }
@@ -46,7 +47,8 @@ void compile(const source::File& file, check::Values values) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const std::string_view text = fuzz::text(bytes, size).substr(0, fuzz::kMostSpecBytes);
     const bool is_text = text.starts_with("spec");
-    if (is_text && text.find("load") != std::string_view::npos) return 0;  // no files but those of the test
+    if (is_text && text.find("load") != std::string_view::npos)
+        return 0;  // no files but those of the test
     const source::File file("a.etl", is_text ? std::string(text) : fuzz::deep_spec(bytes, size));
     compile(file, check::Values::robustness);
     compile(file, check::Values::boolean);

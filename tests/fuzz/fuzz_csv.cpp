@@ -7,7 +7,8 @@
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     using namespace etlc;
     using Kind = data::Channel::Kind;
-    const std::vector<data::Channel> channels{{"z", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}};
+    const std::vector<data::Channel> channels{
+        {"z", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}};
     auto trace = data::open_csv_trace(data::from_memory(fuzz::text(bytes, size)), channels);
     if (!trace) {
         fuzz::require_printable(trace.failure().message);
@@ -20,10 +21,12 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
         if (!more || !*more) return 0;
         fuzz::require(steps < size, "there is no step without a byte");
         for (std::size_t c = 0; c < channels.size(); ++c) {
-            fuzz::require(sample.values[c].size() == channels[c].width, "a sample is as wide as its channel");
+            fuzz::require(sample.values[c].size() == channels[c].width,
+                          "a sample is as wide as its channel");
             for (const double value : sample.values[c]) {
                 fuzz::require(!std::isinf(value), "what is not finite is NaN");
-                fuzz::require(sample.present[c] || std::isnan(value), "what is missing has no number");
+                fuzz::require(sample.present[c] || std::isnan(value),
+                              "what is missing has no number");
             }
         }
         const double b = sample.values[2][0];

@@ -1,5 +1,6 @@
-// .h5 through the reading process: whatever the bytes do to libhdf5 there, here it is a sound trace or a message.
-// Seeds named crashes_* are damaged files, found by changing bytes of trace.h5 at random, on which libhdf5 1.10.8 dies.
+// .h5 through the reading process: whatever the bytes do to libhdf5 there, here it is a sound trace
+// or a message. Seeds named crashes_* are damaged files, found by changing bytes of trace.h5 at
+// random, on which libhdf5 1.10.8 dies.
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -19,7 +20,8 @@ public:
     HeldFile(const std::uint8_t* bytes, std::size_t size) {
         const int descriptor = ::mkstemps(path_.data(), 3);
         fuzz::require(descriptor >= 0, "there is room for a temporary file");
-        fuzz::require(::write(descriptor, bytes, size) == static_cast<ssize_t>(size), "it takes the bytes");
+        fuzz::require(::write(descriptor, bytes, size) == static_cast<ssize_t>(size),
+                      "it takes the bytes");
         ::close(descriptor);
     }
     HeldFile(const HeldFile&) = delete;
@@ -44,9 +46,12 @@ void step_through(const std::string& path, const std::vector<data::Channel>& cha
     for (std::uint64_t steps = 0;; ++steps) {
         const auto more = (*trace)->next(sample);
         if (!more) return fuzz::require_printable(more.failure().message);
-        if (!*more) return fuzz::require(steps == (*trace)->length(), "there are as many steps as announced");
+        if (!*more)
+            return fuzz::require(steps == (*trace)->length(),
+                                 "there are as many steps as announced");
         for (std::size_t c = 0; c < channels.size(); ++c)
-            fuzz::require(sample.values[c].size() == channels[c].width, "a sample is as wide as its channel");
+            fuzz::require(sample.values[c].size() == channels[c].width,
+                          "a sample is as wide as its channel");
         if (steps == 1000) return;  // a header may promise any number of zeros
     }
 }

@@ -11,7 +11,8 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     }
     std::uint64_t count = 1;
     for (const std::uint64_t n : array->shape) count *= n;
-    fuzz::require(array->values.size() == count, "the number of values is the product of the shape");
+    fuzz::require(array->values.size() == count,
+                  "the number of values is the product of the shape");
     fuzz::require(count <= size, "there is no value without a byte");
     return 0;
 }

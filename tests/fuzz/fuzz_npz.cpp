@@ -17,7 +17,8 @@ void load(std::string_view bytes) {
         }
         std::uint64_t count = 1;
         for (const std::uint64_t n : array->shape) count *= n;
-        fuzz::require(array->values.size() == count, "the number of values is the product of the shape");
+        fuzz::require(array->values.size() == count,
+                      "the number of values is the product of the shape");
     }
 }
 
@@ -28,10 +29,13 @@ void step_through(std::string_view bytes, const std::vector<data::Channel>& chan
     for (std::uint64_t steps = 0;; ++steps) {
         const auto more = (*trace)->next(sample);
         if (!more) return fuzz::require_printable(more.failure().message);
-        if (!*more) return fuzz::require(steps == (*trace)->length(), "there are as many steps as announced");
+        if (!*more)
+            return fuzz::require(steps == (*trace)->length(),
+                                 "there are as many steps as announced");
         fuzz::require(sample.values.size() == channels.size(), "every channel has its values");
         for (std::size_t c = 0; c < channels.size(); ++c)
-            fuzz::require(sample.values[c].size() == channels[c].width, "a sample is as wide as its channel");
+            fuzz::require(sample.values[c].size() == channels[c].width,
+                          "a sample is as wide as its channel");
     }
 }
 

@@ -1,6 +1,6 @@
 // What a fuzz target defines, and how it says that something is wrong.
-// Takes: bytes from libFuzzer or from replay.cpp. Gives: nothing; a broken promise stops the program, which is a
-// finding.
+// Takes: bytes from libFuzzer or from replay.cpp. Gives: nothing; a broken promise stops the
+// program, which is a finding.
 #pragma once
 
 #include <cstddef>
@@ -27,7 +27,8 @@ inline void require(bool promise, const char* words) {
 /// A message says something, and only what a terminal may be sent.
 inline void require_printable(std::string_view message) {
     require(!message.empty() && message.size() < 4096, "a message has a sensible length");
-    for (const char c : message) require(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f, "a message is printable");
+    for (const char c : message)
+        require(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f, "a message is printable");
 }
 
 }  // namespace etlc::fuzz

@@ -1,4 +1,5 @@
-// The bytes of a file of targets: ready where they are the right ones at a right address, whatever they are else.
+// The bytes of a file of targets: ready where they are the right ones at a right address, whatever
+// they are else.
 #include <algorithm>
 #include <cstring>
 
@@ -12,7 +13,8 @@ using Targets = etlmon::Targets<kSize, 0xc12570868ceac336u>;
 
 }  // namespace
 
-/// The first byte: where, counted from a multiple of 64. The rest: the bytes, exclusive-or'ed with the right ones.
+/// The first byte: where, counted from a multiple of 64. The rest: the bytes, exclusive-or'ed with
+/// the right ones.
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
     namespace fuzz = etlc::fuzz;
     if (size == 0) return 0;

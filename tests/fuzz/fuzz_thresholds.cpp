@@ -1,5 +1,5 @@
-// Thresholds files: any text is a message, or a file that is the same after writing and reading it again, and of which
-// every entry agrees with itself or is told why not.
+// Thresholds files: any text is a message, or a file that is the same after writing and reading it
+// again, and of which every entry agrees with itself or is told why not.
 #include <string>
 
 #include "check/consistency.hpp"

@@ -1,6 +1,7 @@
 // Runs a fuzz target on files, for compilers without libFuzzer.
-// Takes: files and folders. Gives: exit status 0 where every file went through the target; a finding stops the program,
-// and so does an input that takes longer than kMostSeconds of the processor.
+// Takes: files and folders. Gives: exit status 0 where every file went through the target; a
+// finding stops the program, and so does an input that takes longer than kMostSeconds of the
+// processor.
 #include <sys/resource.h>
 
 #include <algorithm>
@@ -27,7 +28,8 @@ void limit_time() {
     getrusage(RUSAGE_SELF, &used);
     rlimit limit{};
     getrlimit(RLIMIT_CPU, &limit);
-    limit.rlim_cur = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + kMostSeconds;
+    limit.rlim_cur =
+        static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec) + 1 + kMostSeconds;
     setrlimit(RLIMIT_CPU, &limit);
 }
 

@@ -13,8 +13,8 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// The arrows of docs/architecture.md: what a folder of compiler/ builds on. They are transitive; everyone also sees
-/// source and diag.
+/// The arrows of docs/architecture.md: what a folder of compiler/ builds on. They are transitive;
+/// everyone also sees source and diag.
 const std::map<std::string, Names> kArrows = {
     {"source", {}},
     {"diag", {"source"}},
@@ -46,8 +46,8 @@ const std::map<std::string, std::string> kOwners = {
 /// All that generated code may need of a C library.
 const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "math.h"};
 
-/// Headers of the runtime for programs on a host, which no generated code includes, and what of the C++ library each
-/// may use.
+/// Headers of the runtime for programs on a host, which no generated code includes, and what of the
+/// C++ library each may use.
 const std::map<std::string, Names> kHosted = {
     {"dynamic.hpp", {"limits"}},
     {"dynamic_enclosed.hpp", {}},
@@ -82,9 +82,11 @@ Names linked(const std::string& folder) {
     static const std::regex kWord(R"([A-Za-z0-9_:]+)");
     const std::string text = content(std::filesystem::path("compiler") / folder / "CMakeLists.txt");
     Names found = {folder};
-    for (std::sregex_iterator call(text.begin(), text.end(), kDepends); call != std::sregex_iterator(); ++call) {
+    for (std::sregex_iterator call(text.begin(), text.end(), kDepends);
+         call != std::sregex_iterator(); ++call) {
         const std::string list = (*call)[1];
-        for (std::sregex_iterator word(list.begin(), list.end(), kWord); word != std::sregex_iterator(); ++word) {
+        for (std::sregex_iterator word(list.begin(), list.end(), kWord);
+             word != std::sregex_iterator(); ++word) {
             if (word->str() == "LIBRARIES" || word->str() == "SOURCES") break;
             if (kArrows.contains(word->str())) found.merge(linked(word->str()));
         }
@@ -128,7 +130,8 @@ TEST(Arrows, TargetsLinkWhatTheirFilesInclude) {
             const std::string to = first_word(include);
             if (include.find('/') == std::string::npos || !kArrows.contains(to)) continue;
             EXPECT_TRUE(stages.contains(to))
-                << file << " includes " << include << ", which the DEPENDS of compiler/" << folder << " do not give";
+                << file << " includes " << include << ", which the DEPENDS of compiler/" << folder
+                << " do not give";
         }
     }
 }
@@ -148,11 +151,13 @@ TEST(Arrows, TheRuntimeNeedsFiveHeadersOfC) {
         for (const std::string& include : includes(file)) {
             const bool ours = include.starts_with("etlmon/");
             if (hosted == kHosted.end()) {
-                EXPECT_TRUE(ours || kFirmwareHeaders.contains(include)) << file << " includes " << include;
+                EXPECT_TRUE(ours || kFirmwareHeaders.contains(include))
+                    << file << " includes " << include;
                 EXPECT_FALSE(ours && kHosted.contains(std::filesystem::path(include).filename()))
                     << file << " includes " << include;
             } else {
-                EXPECT_TRUE(ours || kFirmwareHeaders.contains(include) || hosted->second.contains(include))
+                EXPECT_TRUE(ours || kFirmwareHeaders.contains(include) ||
+                            hosted->second.contains(include))
                     << file << " includes " << include;
             }
         }

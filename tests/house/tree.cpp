@@ -16,15 +16,16 @@ const fs::path kTop = ETLC_SOURCE_DIR;
 /// Folders that .gitignore keeps out of the repository, and git's own.
 bool foreign(const fs::path& folder) {
     const std::string name = folder.filename();
-    return name == ".git" || name == "build" || name == "out" || name.starts_with("build-") || name == "__pycache__";
+    return name == ".git" || name == "build" || name == "out" || name.starts_with("build-") ||
+           name == "__pycache__";
 }
 
 }  // namespace
 
 std::vector<fs::path> files(const std::string& below) {
     std::vector<fs::path> found;
-    for (auto entry = fs::recursive_directory_iterator(kTop / below); entry != fs::recursive_directory_iterator();
-         ++entry) {
+    for (auto entry = fs::recursive_directory_iterator(kTop / below);
+         entry != fs::recursive_directory_iterator(); ++entry) {
         if (entry->is_directory() && foreign(entry->path())) {
             entry.disable_recursion_pending();
         } else if (entry->is_regular_file() && entry->path().extension() != ".swp") {
@@ -37,7 +38,9 @@ std::vector<fs::path> files(const std::string& below) {
 
 std::vector<fs::path> cpp_files(const std::string& below) {
     std::vector<fs::path> found = files(below);
-    std::erase_if(found, [](const fs::path& file) { return file.extension() != ".cpp" && file.extension() != ".hpp"; });
+    std::erase_if(found, [](const fs::path& file) {
+        return file.extension() != ".cpp" && file.extension() != ".hpp";
+    });
     return found;
 }
 

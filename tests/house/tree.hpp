@@ -1,6 +1,6 @@
 // The source tree, for tests about the sources themselves.
-// Takes: the folder of this clone. Gives: its files and their lines. Keeps true: nothing that a build or a version
-// control system made is among them, and paths are relative to the top.
+// Takes: the folder of this clone. Gives: its files and their lines. Keeps true: nothing that a
+// build or a version control system made is among them, and paths are relative to the top.
 #pragma once
 
 #include <filesystem>

@@ -26,7 +26,8 @@ TEST(Tree, SourcesAreShort) {
     for (const char* folder : {"compiler", "runtime", "tests", "examples", "bench"}) {
         for (const auto& file : cpp_files(folder)) {
             const std::string text = content(file);
-            EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500) << file << " is perhaps two things";
+            EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500)
+                << file << " is perhaps two things";
         }
     }
 }
@@ -35,7 +36,8 @@ TEST(Tree, NothingNamesTheMachineItWasWrittenOn) {
     static const std::regex kHome(R"(/(home|Users)/[a-z]\w*/|/root/\.)");
     for (const auto& file : files()) {
         const std::string text = content(file);
-        EXPECT_FALSE(names_path(text, ETLC_SOURCE_DIR "/")) << file << " names the folder of this clone";
+        EXPECT_FALSE(names_path(text, ETLC_SOURCE_DIR "/"))
+            << file << " names the folder of this clone";
         EXPECT_FALSE(names_path(text, ETLC_BINARY_DIR)) << file << " names the build folder";
         std::smatch match;
         const bool found = text.size() < 200'000 && std::regex_search(text, match, kHome);

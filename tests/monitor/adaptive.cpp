@@ -17,16 +17,16 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// "predicate p0 = min l1(v, near) <= 1.25;" with a range of at least gamma around 1.25, no end of it below 0 where
-/// 1.25 is not.
+/// "predicate p0 = min l1(v, near) <= 1.25;" with a range of at least gamma around 1.25, no end of
+/// it below 0 where 1.25 is not.
 std::string made_adaptive(const std::string& line, Random& random) {
     const std::size_t blank = line.find_last_of(' ');
     const double literal = std::stod(line.substr(blank + 1));
     double lo = literal - random.grid(0, 1, 0.25);
     if (literal >= 0) lo = std::max(lo, 0.0);
     const double hi = std::max(lo + 1, literal + random.grid(0, 1.5, 0.25));
-    return fmt::format("{} calibrated(adaptive, alpha = 0.25, gamma = {}, lo = {}, hi = {});", line.substr(0, blank),
-                       random.word({"0.25", "0.5", "1"}), lo, hi);
+    return fmt::format("{} calibrated(adaptive, alpha = 0.25, gamma = {}, lo = {}, hi = {});",
+                       line.substr(0, blank), random.word({"0.25", "0.5", "1"}), lo, hi);
 }
 
 thresholds::Entry entry(const check::Model& model, check::Index predicate, float start,
@@ -59,8 +59,8 @@ double moved(const check::Predicate& predicate, double epsilon, const Label& lab
     const check::Adaptation& adaptation = *predicate.threshold.adaptation;
     const double miss = misses(predicate, static_cast<double>(label.distance), epsilon) ? 1 : 0;
     const double by = std::stod(adaptation.gamma) * (miss - std::stod(predicate.threshold.alpha));
-    return std::clamp(predicate.upper_bound() ? epsilon + by : epsilon - by, std::stod(adaptation.lo),
-                      std::stod(adaptation.hi));
+    return std::clamp(predicate.upper_bound() ? epsilon + by : epsilon - by,
+                      std::stod(adaptation.lo), std::stod(adaptation.hi));
 }
 
 }  // namespace
@@ -72,7 +72,8 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
     std::istringstream lines(random_spec(seed, shape));
     for (std::string line; std::getline(lines, line);) {
         const bool adaptive = line.starts_with("predicate ") && random.chance(0.7);
-        if (line.starts_with("predicate ")) starts.push_back(std::stof(line.substr(line.find_last_of(' ') + 1)));
+        if (line.starts_with("predicate "))
+            starts.push_back(std::stof(line.substr(line.find_last_of(' ') + 1)));
         result.text += (adaptive ? made_adaptive(line, random) : line) + "\n";
     }
     const auto uncalibrated = load_uncalibrated(result.text);
@@ -81,7 +82,8 @@ AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape) {
     file.spec = uncalibrated->name;
     for (check::Index p = 0; p < starts.size(); ++p)
         if (uncalibrated->predicates[p].threshold.adaptation)
-            file.predicates[uncalibrated->predicates[p].name] = entry(*uncalibrated, p, starts[p], file.episodes);
+            file.predicates[uncalibrated->predicates[p].name] =
+                entry(*uncalibrated, p, starts[p], file.episodes);
     result.thresholds = thresholds::write(file);
     result.model = load_with_thresholds(result.text, result.thresholds);
     return result;
@@ -94,7 +96,8 @@ Labels random_labels(const check::Model& model, const reference::Trace& trace, s
         if (random.chance(0.1)) return random.chance(0.5) ? kInfinity : -kInfinity;
         if (random.chance(0.1)) return std::numeric_limits<float>::quiet_NaN();
         if (step == 0 || random.chance(0.3)) return static_cast<float>(random.grid(-4, 8, 0.25));
-        return static_cast<float>(telemetry[random.between(0, static_cast<int>(step) - 1)][predicate].delta);
+        return static_cast<float>(
+            telemetry[random.between(0, static_cast<int>(step) - 1)][predicate].delta);
     };
     Labels labels(trace.size());
     for (std::size_t step = 0; step < trace.size(); ++step) {
@@ -113,12 +116,14 @@ std::vector<double> calibrated_thresholds(const check::Model& model) {
     return result;
 }
 
-reference::Thresholds tracked(const check::Model& model, const Labels& labels, std::vector<double>& now) {
+reference::Thresholds tracked(const check::Model& model, const Labels& labels,
+                              std::vector<double>& now) {
     reference::Thresholds result;
     for (const auto& step : labels) {
         for (std::size_t p = 0; p < model.predicates.size(); ++p)
             if (model.predicates[p].threshold.adaptation)
-                for (const Label& label : step[p]) now[p] = moved(model.predicates[p], now[p], label);
+                for (const Label& label : step[p])
+                    now[p] = moved(model.predicates[p], now[p], label);
         result.push_back(now);
     }
     return result;

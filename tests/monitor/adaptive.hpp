@@ -1,7 +1,7 @@
-// Adaptive thresholds in tests: random specs that have some, labels for them, and what the labels ought to do.
-// Takes: seeds. Gives: specs with their thresholds files, labels, and the thresholds at every step by the update as
-// docs/language.md writes it, in double. Keeps true: alpha, gamma and all ends are dyadic, so that double is exact; the
-// update shares nothing with the runtime's.
+// Adaptive thresholds in tests: random specs that have some, labels for them, and what the labels
+// ought to do. Takes: seeds. Gives: specs with their thresholds files, labels, and the thresholds
+// at every step by the update as docs/language.md writes it, in double. Keeps true: alpha, gamma
+// and all ends are dyadic, so that double is exact; the update shares nothing with the runtime's.
 #pragma once
 
 #include <cstdint>
@@ -29,16 +29,19 @@ struct AdaptiveSpec {
     std::optional<check::Model> model;
 };
 
-/// random_spec with some of its literal thresholds made adaptive: they start at what the literal was.
+/// random_spec with some of its literal thresholds made adaptive: they start at what the literal
+/// was.
 AdaptiveSpec random_adaptive_spec(std::uint64_t seed, const SpecShape& shape);
 
-/// Distances of the trace's earlier steps, numbers on the grid, infinities and NaN; most labels are positive.
+/// Distances of the trace's earlier steps, numbers on the grid, infinities and NaN; most labels are
+/// positive.
 Labels random_labels(const check::Model& model, const reference::Trace& trace, std::uint64_t seed);
 
 /// The thresholds with which a monitor starts that nobody has given labels.
 std::vector<double> calibrated_thresholds(const check::Model& model);
 
 /// Moves `now` by the labels of a whole trace; gives what held at each of its steps.
-reference::Thresholds tracked(const check::Model& model, const Labels& labels, std::vector<double>& now);
+reference::Thresholds tracked(const check::Model& model, const Labels& labels,
+                              std::vector<double>& now);
 
 }  // namespace etlc::tests

@@ -25,12 +25,14 @@ const char* word(Status status) {
 }
 
 std::string show(const Verdict& v) {
-    return fmt::format("[{:.9g}, {:.9g}, {:.9g}] {} final {}", v.lower, v.robustness, v.upper, word(v.status), v.final);
+    return fmt::format("[{:.9g}, {:.9g}, {:.9g}] {} final {}", v.lower, v.robustness, v.upper,
+                       word(v.status), v.final);
 }
 
 class Judge {
 public:
-    Judge(const check::Model& model, const reference::Run& expected, const Observed& observed, Comparison comparison)
+    Judge(const check::Model& model, const reference::Run& expected, const Observed& observed,
+          Comparison comparison)
         : model_(model),
           expected_(expected),
           observed_(observed),
@@ -62,20 +64,26 @@ private:
     double rounding_;
     bool on_demand_;
 
-    double slack(double value) const { return std::isfinite(value) ? rounding_ * std::max(1.0, std::abs(value)) : 0; }
+    double slack(double value) const {
+        return std::isfinite(value) ? rounding_ * std::max(1.0, std::abs(value)) : 0;
+    }
     bool equal(double a, double b) const { return a == b || std::abs(a - b) <= slack(b); }
     bool at_most(double a, double b) const { return a <= b + slack(b); }
     /// A sign that rounding may turn.
     bool near_zero(double value) const { return rounding_ > 0 && std::abs(value) <= rounding_; }
 
-    std::optional<std::string> rows(const char* what, const Rows& expected, const Rows& observed) const {
+    std::optional<std::string> rows(const char* what, const Rows& expected,
+                                    const Rows& observed) const {
         if (expected.size() != observed.size())
-            return fmt::format("{} rows of kind '{}', expected {}", observed.size(), what, expected.size());
+            return fmt::format("{} rows of kind '{}', expected {}", observed.size(), what,
+                               expected.size());
         for (std::size_t row = 0; row < expected.size(); ++row)
             for (std::size_t m = 0; m < model_.monitors.size(); ++m)
-                if (const char* bad = verdict(expected[row][m], observed[row][m], model_.monitors[m].sliding))
-                    return fmt::format("{} {} of {}: {} differs: {}, expected {}", what, row, monitor(m), bad,
-                                       show(observed[row][m]), show(expected[row][m]));
+                if (const char* bad =
+                        verdict(expected[row][m], observed[row][m], model_.monitors[m].sliding))
+                    return fmt::format("{} {} of {}: {} differs: {}, expected {}", what, row,
+                                       monitor(m), bad, show(observed[row][m]),
+                                       show(expected[row][m]));
         return {};
     }
 
@@ -84,7 +92,8 @@ private:
         if ((e.status == Status::undecided) != (o.status == Status::undecided)) return "decided";
         if (e.status == Status::undecided) return o.final ? "final" : nullptr;
         if (!equal(o.robustness, e.robustness)) return "robustness";
-        if (o.status != e.status && !near_zero(e.robustness) && !near_zero(e.robustness_high)) return "status";
+        if (o.status != e.status && !near_zero(e.robustness) && !near_zero(e.robustness_high))
+            return "status";
         if (sliding) {
             if (!equal(o.lower, e.lower)) return "lower";
             if (!equal(o.upper, e.upper)) return "upper";
@@ -108,8 +117,9 @@ private:
                 least = std::min(least, expected_.verdicts[step][m].robustness);
                 most = std::max(most, expected_.verdicts[step][m].robustness_high);
                 if (!at_most(o.lower, least) || !at_most(most, o.upper))
-                    return fmt::format("step {} of {}: {} does not bound what follows, [{:.9g}, {:.9g}]", step,
-                                       monitor(m), show(o), least, most);
+                    return fmt::format(
+                        "step {} of {}: {} does not bound what follows, [{:.9g}, {:.9g}]", step,
+                        monitor(m), show(o), least, most);
             }
         }
         return {};
@@ -120,7 +130,8 @@ private:
         for (std::size_t step = 0; step < expected_.telemetry.size(); ++step) {
             bool lacking = false;
             for (std::size_t p = 0; p < model_.predicates.size(); ++p)
-                lacking |= observed_.dependencies.predicates[p] && std::isnan(expected_.telemetry[step][p].delta);
+                lacking |= observed_.dependencies.predicates[p] &&
+                           std::isnan(expected_.telemetry[step][p].delta);
             for (std::size_t n = 0; n < model_.inputs.size(); ++n)
                 lacking |= observed_.dependencies.flags[n] && !expected_.present[step][n];
             if (lacking) ++result;
@@ -134,12 +145,16 @@ private:
                 const Observed::Predicate& o = observed_.telemetry[step][p];
                 const reference::Telemetry& e = expected_.telemetry[step][p];
                 if (!o.computed || (on_demand_ && std::isnan(o.delta))) continue;
-                const std::string at = fmt::format("step {} of predicate {}", step, model_.predicates[p].name);
-                if (std::isnan(o.delta) != std::isnan(e.delta) || (!std::isnan(e.delta) && !equal(o.delta, e.delta)))
-                    return fmt::format("{}: distance {:.9g}, expected {:.9g}", at, o.delta, e.delta);
+                const std::string at =
+                    fmt::format("step {} of predicate {}", step, model_.predicates[p].name);
+                if (std::isnan(o.delta) != std::isnan(e.delta) ||
+                    (!std::isnan(e.delta) && !equal(o.delta, e.delta)))
+                    return fmt::format("{}: distance {:.9g}, expected {:.9g}", at, o.delta,
+                                       e.delta);
                 // Rounding may make another row the nearest; exact ties go to the first row.
                 if (o.nearest && !std::isnan(e.delta) && rounding_ == 0 && *o.nearest != e.nearest)
-                    return fmt::format("{}: nearest row {}, expected {}", at, *o.nearest, e.nearest);
+                    return fmt::format("{}: nearest row {}, expected {}", at, *o.nearest,
+                                       e.nearest);
             }
         return {};
     }

@@ -1,7 +1,8 @@
 // Holds what a monitor said to what the reference says.
 // Takes: the spec, the reference's run and an observed one. Gives: the first mismatch as text.
-// Keeps true: robustness and status must agree; the bounds must be at least as tight as the definition's and hold for
-// every later step; `final` must follow from the bounds. Nothing is excused but what lies within the rounding bound.
+// Keeps true: robustness and status must agree; the bounds must be at least as tight as the
+// definition's and hold for every later step; `final` must follow from the bounds. Nothing is
+// excused but what lies within the rounding bound.
 #pragma once
 
 #include <optional>
@@ -13,14 +14,17 @@
 
 namespace etlc::tests {
 
-/// The atoms that a monitor still looks at: simplification may find that some change no verdict, and a step that lacks
-/// only those is not counted as missing. (That they change none is what the comparison of the verdicts shows.)
+/// The atoms that a monitor still looks at: simplification may find that some change no verdict,
+/// and a step that lacks only those is not counted as missing. (That they change none is what the
+/// comparison of the verdicts shows.)
 struct Dependencies {
     std::vector<bool> predicates;  ///< by index of the model
-    std::vector<bool> flags;       ///< bool inputs that stand in formulas, by index of the model's inputs
+    std::vector<bool>
+        flags;  ///< bool inputs that stand in formulas, by index of the model's inputs
 };
 
-/// A run as a monitor shows it: robustness_high is not observable, telemetry only of the predicates that it computes.
+/// A run as a monitor shows it: robustness_high is not observable, telemetry only of the predicates
+/// that it computes.
 struct Observed {
     struct Predicate {
         bool computed = false;
@@ -36,10 +40,11 @@ struct Observed {
 };
 
 struct Comparison {
-    /// Bound on |observed - expected| / max(1, |expected|). 0 where all arithmetic is exact in float32.
+    /// Bound on |observed - expected| / max(1, |expected|). 0 where all arithmetic is exact in
+    /// float32.
     double rounding = 0;
-    /// Predicates are measured on demand: telemetry may be NaN where the reference has a number, and of the steps that
-    /// lack something only those count on which it was asked for.
+    /// Predicates are measured on demand: telemetry may be NaN where the reference has a number,
+    /// and of the steps that lack something only those count on which it was asked for.
     bool on_demand = false;
 };
 

@@ -7,9 +7,10 @@ namespace {
 
 using Formulas = std::vector<std::string>;
 
-const Formulas kConnectives = {"p",       "!p",         "p && q",          "p || q",     "p -> q",
-                               "p <-> q", "!(p <-> q)", "!(p && q || !q)", "p && !p",    "p || !p",
-                               "true",    "false",      "p && true",       "q || false", "p -> false"};
+const Formulas kConnectives = {"p",         "!p",         "p && q",     "p || q",
+                               "p -> q",    "p <-> q",    "!(p <-> q)", "!(p && q || !q)",
+                               "p && !p",   "p || !p",    "true",       "false",
+                               "p && true", "q || false", "p -> false"};
 
 const Formulas kBounded = {"[0, 0]", "[0, 2]", "[1, 1]", "[1, 3]", "[2, 2]", "[2, 4]"};
 const Formulas kUnbounded = {"", "[1, inf]", "[2, inf]"};
@@ -25,7 +26,8 @@ void append(Formulas& all, const Formulas& more) {
 }
 
 /// Every operator that takes an interval, with each of `intervals`, and negated.
-void append_operators(Formulas& all, const Formulas& intervals, const Formulas& unary, const Formulas& binary) {
+void append_operators(Formulas& all, const Formulas& intervals, const Formulas& unary,
+                      const Formulas& binary) {
     for (const std::string& op : unary) append(all, with(intervals, op, " p"));
     for (const std::string& op : binary) append(all, with(intervals, "p " + op, " q"));
     for (const std::string& op : binary) append(all, with({intervals.back()}, "!(p " + op, " q)"));
@@ -34,9 +36,11 @@ void append_operators(Formulas& all, const Formulas& intervals, const Formulas& 
 const Formulas kWithoutInterval = {"X p", "!X p", "X X q", "Y p", "!Y p", "Y Y q"};
 /// Where an operand says nothing, what is left is whether the window has a position at all.
 const Formulas kOverConstants = {
-    "F[2, 3] true",   "G[1, 2] false",     "O[2, 3] true",   "H[1, 2] false",    "p S[2, 2] true", "p S[1, 3] true",
-    "true S[1, 2] q", "!(p S[2, 2] true)", "p U[1, 2] true", "p R[1, 2] false",  "X true",         "!X true",
-    "Y true",         "!Y true",           "O[1, inf] true", "p S[1, inf] true", "q U[2, 3] true",
+    "F[2, 3] true",   "G[1, 2] false",   "O[2, 3] true",   "H[1, 2] false",
+    "p S[2, 2] true", "p S[1, 3] true",  "true S[1, 2] q", "!(p S[2, 2] true)",
+    "p U[1, 2] true", "p R[1, 2] false", "X true",         "!X true",
+    "Y true",         "!Y true",         "O[1, inf] true", "p S[1, inf] true",
+    "q U[2, 3] true",
 };
 const Formulas kWeakUntil = {"p W q", "!(p W q)", "(p && q) W !p"};
 
@@ -74,9 +78,10 @@ const Formulas kUnboundedNestings = {
 };
 
 const Formulas kBoundedNestings = {
-    "F[0, 2] G[0, 1] p",        "G[0, 1] F[1, 2] p",       "G (p -> F[0, 2] q)", "F (p && G[1, 2] q)",
-    "(p U[0, 2] q) U p",        "p U[1, 2] (q R[0, 1] p)", "G[1, 3] (p -> X q)", "X X X p",
-    "F[0, 1] (p && F[0, 1] q)", "G (q R[0, 2] p)",         "!X F[1, 2] p",       "F[1, 2] p && G[0, 3] q",
+    "F[0, 2] G[0, 1] p",  "G[0, 1] F[1, 2] p", "G (p -> F[0, 2] q)",
+    "F (p && G[1, 2] q)", "(p U[0, 2] q) U p", "p U[1, 2] (q R[0, 1] p)",
+    "G[1, 3] (p -> X q)", "X X X p",           "F[0, 1] (p && F[0, 1] q)",
+    "G (q R[0, 2] p)",    "!X F[1, 2] p",      "F[1, 2] p && G[0, 3] q",
 };
 
 const Formulas kOverThePast = {
@@ -132,7 +137,8 @@ std::string spec(const std::string& name, const std::string& kind, const Formula
         "predicate p = x >= 0;\n"
         "predicate q = y > 0;\n",
         name);
-    for (std::size_t n = 0; n < formulas.size(); ++n) result += fmt::format("{} m{} = {};\n", kind, n, formulas[n]);
+    for (std::size_t n = 0; n < formulas.size(); ++n)
+        result += fmt::format("{} m{} = {};\n", kind, n, formulas[n]);
     return result;
 }
 
@@ -143,7 +149,8 @@ std::string exhaustive_spec(const std::string& name) {
     append(formulas, kWithoutInterval);
     for (const Formulas* intervals : {&kBounded, &kUnbounded})
         append_operators(formulas, *intervals, {"F", "G", "O", "H"}, {"U", "R", "S"});
-    for (const Formulas* more : {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
+    for (const Formulas* more :
+         {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
         append(formulas, *more);
     return spec(name, "monitor", formulas);
 }

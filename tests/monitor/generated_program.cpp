@@ -14,7 +14,8 @@ namespace {
 
 // As harsh as the promise in docs/generated-code.md.
 constexpr const char* kFlags =
-    "-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -fno-exceptions -fno-rtti";
+    "-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror "
+    "-fno-exceptions -fno-rtti";
 // All operators in one class are more than one class should hold.
 constexpr const char* kLimits = "--max-state 16777216 --max-code 16777216 --max-work 67108864";
 
@@ -34,16 +35,19 @@ GeneratedProgram::GeneratedProgram(const std::string& name)
 
 bool GeneratedProgram::command(const std::string& line) {
     const std::string log = (folder_ / "log.txt").string();
-    const int status = std::system(fmt::format("cd '{}' && {} 2> log.txt", folder_.string(), line).c_str());
+    const int status =
+        std::system(fmt::format("cd '{}' && {} 2> log.txt", folder_.string(), line).c_str());
     if (status != 0) ADD_FAILURE() << line << "\nexited with " << status << "\n" << read_text(log);
     return status == 0;
 }
 
-bool GeneratedProgram::add(const check::Model& model, check::Values values, const std::string& thresholds) {
+bool GeneratedProgram::add(const check::Model& model, check::Values values,
+                           const std::string& thresholds) {
     models_.push_back(model);
     write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
     if (!thresholds.empty()) write_text(folder_ / (model.name + ".thresholds.json"), thresholds);
-    return command(fmt::format("'{}' {}.etl -o {}.hpp {} --values {}", ETLC_COMMAND, model.name, model.name, kLimits,
+    return command(fmt::format("'{}' {}.etl -o {}.hpp {} --values {}", ETLC_COMMAND, model.name,
+                               model.name, kLimits,
                                values == check::Values::boolean ? "boolean" : "robustness"));
 }
 
@@ -59,21 +63,26 @@ bool GeneratedProgram::compile(const Build& build) {
     for (int n = 0; n < 2; ++n)
         write_text(folder_ / fmt::format("part{}.cpp", n), "#include \"harness.hpp\"\n" + parts[n]);
     write_text(folder_ / "main.cpp", main_source(names));
-    return command(fmt::format(
-        "{0} {1} {2} {3} -I. -I'{4}/runtime/include' -I'{4}/tests/monitor/driver' main.cpp part0.cpp part1.cpp "
-        "'{4}/tests/monitor/driver/harness.cpp' -o program",
-        build.compiler, kFlags, build.flags, build.counts_malloc ? "-DHARNESS_COUNTS_MALLOC" : "", ETLC_SOURCE_DIR));
+    return command(
+        fmt::format("{0} {1} {2} {3} -I. -I'{4}/runtime/include' -I'{4}/tests/monitor/driver' "
+                    "main.cpp part0.cpp part1.cpp "
+                    "'{4}/tests/monitor/driver/harness.cpp' -o program",
+                    build.compiler, kFlags, build.flags,
+                    build.counts_malloc ? "-DHARNESS_COUNTS_MALLOC" : "", ETLC_SOURCE_DIR));
 }
 
-GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& requests, const std::string& arguments) {
+GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& requests,
+                                               const std::string& arguments) {
     std::string bytes;
     for (const Request& request : requests) bytes += encode(models_[request.spec], request);
     write_text(folder_ / "requests.bin", bytes);
     Result result;
-    if (!command(fmt::format("{} ./program {} < requests.bin > answers.bin", emulator_, arguments))) return result;
+    if (!command(fmt::format("{} ./program {} < requests.bin > answers.bin", emulator_, arguments)))
+        return result;
     const std::string answers = read_text((folder_ / "answers.bin").string());
     Decoder decoder(answers);
-    for (const Request& request : requests) result.answers.push_back(decoder.answer(models_[request.spec], request));
+    for (const Request& request : requests)
+        result.answers.push_back(decoder.answer(models_[request.spec], request));
     result.allocations = decoder.allocations();
     EXPECT_TRUE(decoder.at_end());
     return result;

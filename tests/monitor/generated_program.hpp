@@ -1,6 +1,7 @@
-// Generated classes in a program of their own: `etlc` makes the headers, a compiler the program, traces go through it.
-// Takes: specs. Gives: what the compiled classes say. Keeps true: everything lies in one folder of its own; a step that
-// fails fails the current test with the words of the tool that failed.
+// Generated classes in a program of their own: `etlc` makes the headers, a compiler the program,
+// traces go through it. Takes: specs. Gives: what the compiled classes say. Keeps true: everything
+// lies in one folder of its own; a step that fails fails the current test with the words of the
+// tool that failed.
 #pragma once
 
 #include <cstdint>
@@ -30,14 +31,16 @@ inline const Build kGccSanitized{"GccSanitized", "g++", ETLC_GCC_SANITIZERS};
 inline const Build kClangSanitized{"ClangSanitized", "clang++", ETLC_CLANG_SANITIZERS};
 inline const Build kGccFastMath{"GccFastMath", "g++", "-O3 -ffast-math", true};
 inline const Build kClangFastMath{"ClangFastMath", "clang++", "-O3 -ffast-math", true};
-inline const Build kAarch64{"Aarch64", "aarch64-linux-gnu-g++", "-O2 -static", false, "qemu-aarch64"};
+inline const Build kAarch64{"Aarch64", "aarch64-linux-gnu-g++", "-O2 -static", false,
+                            "qemu-aarch64"};
 
 class GeneratedProgram {
 public:
     /// Makes an empty folder of that name below the build folder.
     explicit GeneratedProgram(const std::string& name);
 
-    /// Has `etlc` write SPEC.hpp. Specs of one program have different names. False where that failed.
+    /// Has `etlc` write SPEC.hpp. Specs of one program have different names. False where that
+    /// failed.
     bool add(const check::Model& model, check::Values values = check::Values::robustness,
              const std::string& thresholds = "");
     /// All headers, in two translation units that share one of them.

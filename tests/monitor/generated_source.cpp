@@ -15,11 +15,13 @@ const char* element_type(InputType type) {
 
 std::string members(const check::Model& model) {
     std::string result;
-    for (const check::Input& input : model.inputs) result += fmt::format("  HARNESS_INPUT({});\n", input.name);
+    for (const check::Input& input : model.inputs)
+        result += fmt::format("  HARNESS_INPUT({});\n", input.name);
     for (const check::Predicate& predicate : model.predicates)
         if (!predicate.name.empty())
-            result += fmt::format("  HARNESS_{}PREDICATE({});\n", predicate.threshold.adaptation ? "ADAPTIVE_" : "",
-                                  predicate.name);
+            result +=
+                fmt::format("  HARNESS_{}PREDICATE({});\n",
+                            predicate.threshold.adaptation ? "ADAPTIVE_" : "", predicate.name);
     return result;
 }
 
@@ -27,7 +29,8 @@ std::string buffers(const check::Model& model) {
     std::string result = "  struct Buffers {\n";
     for (const check::Input& input : model.inputs)
         if (input.type != InputType::boolean)
-            result += fmt::format("    {} {}[{}];\n", element_type(input.type), input.name, input.dimension);
+            result += fmt::format("    {} {}[{}];\n", element_type(input.type), input.name,
+                                  input.dimension);
     return result + "  };\n";
 }
 
@@ -38,16 +41,17 @@ std::string feeding(const check::Model& model) {
         if (input.type == InputType::boolean)
             result += fmt::format("    harness::feed_flag<{}_input>(in);\n", input.name);
         else
-            result += fmt::format("    harness::feed_{0}<{1}_input>(in, buffers.{1});\n", kind, input.name);
+            result += fmt::format("    harness::feed_{0}<{1}_input>(in, buffers.{1});\n", kind,
+                                  input.name);
     }
     return result + "  }\n";
 }
 
 /// A class whose verdicts wait for nothing has no finish(), and none is called.
 std::string finishing(const check::Model& model) {
-    const bool waits = std::any_of(model.monitors.begin(), model.monitors.end(), [](const check::Monitor& monitor) {
-        return monitor.sliding && monitor.horizon > 0;
-    });
+    const bool waits = std::any_of(
+        model.monitors.begin(), model.monitors.end(),
+        [](const check::Monitor& monitor) { return monitor.sliding && monitor.horizon > 0; });
     return fmt::format("  static Verdicts finish(Monitor& m) {{ {} }}\n",
                        waits ? "return m.finish();" : "(void)m; return Verdicts{};");
 }
@@ -59,10 +63,12 @@ std::string reporting(const check::Model& model) {
     result += "  }\n  static void telemetry(const Monitor& m) {\n    (void)m;\n";
     for (const check::Predicate& predicate : model.predicates)
         if (!predicate.name.empty())
-            result += fmt::format("    harness::write_telemetry<{0}_predicate>(m);\n{1}", predicate.name,
-                                  predicate.threshold.adaptation
-                                      ? fmt::format("    harness::write_threshold<{}_predicate>(m);\n", predicate.name)
-                                      : "");
+            result +=
+                fmt::format("    harness::write_telemetry<{0}_predicate>(m);\n{1}", predicate.name,
+                            predicate.threshold.adaptation
+                                ? fmt::format("    harness::write_threshold<{}_predicate>(m);\n",
+                                              predicate.name)
+                                : "");
     return result + "  }\n";
 }
 
@@ -86,11 +92,15 @@ std::string adaptor_source(const check::Model& model) {
         "  using Inputs = {0}::Inputs;\n"
         "  using Verdicts = {0}::Verdicts;\n",
         model.name);
-    return fmt::format("#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n", model.name,
-                       aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
-                           reporting(model) + finishing(model)) +
-           fmt::format("void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); }}\n",
-                       model.name);
+    return fmt::format(
+               "#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n",
+               model.name,
+               aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
+                   reporting(model) + finishing(model)) +
+           fmt::format(
+               "void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); "
+               "}}\n",
+               model.name);
 }
 
 std::string main_source(const std::vector<std::string>& specs) {

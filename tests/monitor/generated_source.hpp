@@ -1,5 +1,6 @@
 // The C++ between a generated class and driver/harness.hpp.
-// Takes: the typed spec. Gives: source text that feeds its inputs and reports its verdicts and telemetry by name.
+// Takes: the typed spec. Gives: source text that feeds its inputs and reports its verdicts and
+// telemetry by name.
 #pragma once
 
 #include <string>

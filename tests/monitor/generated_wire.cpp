@@ -37,7 +37,8 @@ void put_element(std::string& bytes, const check::Input& input, double value) {
     switch (input.type) {
         case InputType::boolean: return put(bytes, static_cast<std::uint8_t>(value != 0));
         case InputType::f16: return put(bytes, float16_bits(value));
-        case InputType::i8: return put(bytes, static_cast<std::int8_t>(value / static_cast<double>(input.scale)));
+        case InputType::i8:
+            return put(bytes, static_cast<std::int8_t>(value / static_cast<double>(input.scale)));
         case InputType::scalar:
         case InputType::f32: return put(bytes, static_cast<float>(value));
     }
@@ -79,7 +80,8 @@ std::string encode(const check::Model& model, const Request& request) {
     put(bytes, finish_calls(model));
     for (const bool second : {false, true}) {
         const reference::Trace& trace = second ? request.second : request.first;
-        const std::string samples = encode(model, trace, second ? request.second_labels : request.first_labels);
+        const std::string samples =
+            encode(model, trace, second ? request.second_labels : request.first_labels);
         put(bytes, static_cast<std::uint32_t>(trace.size()));
         put(bytes, static_cast<std::uint32_t>(samples.size()));
         bytes += samples;

@@ -1,4 +1,5 @@
-// Requests to the harness and its answers, as bytes; the protocol is described in driver/harness.hpp.
+// Requests to the harness and its answers, as bytes; the protocol is described in
+// driver/harness.hpp.
 #pragma once
 
 #include <array>
@@ -12,7 +13,8 @@
 
 namespace etlc::tests {
 
-/// Two traces of the same spec; the monitor runs the first, the second beside it, and the second again after a reset.
+/// Two traces of the same spec; the monitor runs the first, the second beside it, and the second
+/// again after a reset.
 struct Request {
     std::uint32_t spec = 0;
     reference::Trace first;
@@ -24,7 +26,8 @@ using Answer = std::array<Observed, 3>;
 
 std::string encode(const check::Model& model, const Request& request);
 
-/// Takes the answer off the front of what the harness wrote. Throws std::out_of_range where the bytes end early.
+/// Takes the answer off the front of what the harness wrote. Throws std::out_of_range where the
+/// bytes end early.
 class Decoder {
 public:
     explicit Decoder(const std::string& bytes) : bytes_(bytes) {}

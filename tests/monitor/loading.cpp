@@ -21,7 +21,8 @@ namespace etlc::tests {
 
 namespace {
 
-std::optional<check::Model> load(const std::string& text, const std::string& path, const check::Options& options) {
+std::optional<check::Model> load(const std::string& text, const std::string& path,
+                                 const check::Options& options) {
     const source::File file(path, text);
     diag::Sink sink;
     const ast::Spec spec = parse::parse(file, sink);
@@ -37,10 +38,12 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
     return load(text, path, {});
 }
 
-std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds) {
+std::optional<check::Model> load_with_thresholds(const std::string& text,
+                                                 const std::string& thresholds) {
     check::Options options;
-    options.thresholds_path =
-        (std::filesystem::temp_directory_path() / fmt::format("etlc-{}.thresholds.json", ::getpid())).string();
+    options.thresholds_path = (std::filesystem::temp_directory_path() /
+                               fmt::format("etlc-{}.thresholds.json", ::getpid()))
+                                  .string();
     std::ofstream(options.thresholds_path) << thresholds;
     auto model = load(text, "test.etl", options);
     std::filesystem::remove(options.thresholds_path);
@@ -56,7 +59,8 @@ std::optional<check::Model> load_uncalibrated(const std::string& text) {
 
 std::vector<std::string> case_names() {
     std::vector<std::string> result;
-    for (const auto& entry : std::filesystem::directory_iterator(ETLC_SOURCE_DIR "/tests/monitor/cases"))
+    for (const auto& entry :
+         std::filesystem::directory_iterator(ETLC_SOURCE_DIR "/tests/monitor/cases"))
         if (entry.path().extension() == ".etl") result.push_back(entry.path().stem().string());
     std::sort(result.begin(), result.end());
     return result;
@@ -73,7 +77,8 @@ std::string read_text(const std::string& path) {
 }
 
 std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry) {
-    const double least = static_cast<double>(upper_bound ? epsilon : -epsilon) - static_cast<double>(FLT_MIN);
+    const double least =
+        static_cast<double>(upper_bound ? epsilon : -epsilon) - static_cast<double>(FLT_MIN);
     const double score = std::nextafter(least, -std::numeric_limits<double>::infinity());
     entry.epsilon = epsilon;
     entry.n = check::scores_needed(entry.alpha);

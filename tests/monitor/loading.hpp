@@ -1,5 +1,6 @@
 // Spec text to typed spec, for tests.
-// Takes: the text. Gives: the model; a spec with errors fails the current test with its diagnostics.
+// Takes: the text. Gives: the model; a spec with errors fails the current test with its
+// diagnostics.
 #pragma once
 
 #include <optional>
@@ -14,10 +15,11 @@ namespace etlc::tests {
 std::optional<check::Model> load(const std::string& text, const std::string& path = "test.etl");
 
 /// The same where its thresholds file holds this JSON.
-std::optional<check::Model> load_with_thresholds(const std::string& text, const std::string& thresholds);
+std::optional<check::Model> load_with_thresholds(const std::string& text,
+                                                 const std::string& thresholds);
 
-/// Makes the entry one that was calibrated from n equal scores of n episodes, the fewest that alpha takes, so that it
-/// has this threshold. Takes its alpha; gives the episodes.
+/// Makes the entry one that was calibrated from n equal scores of n episodes, the fewest that alpha
+/// takes, so that it has this threshold. Takes its alpha; gives the episodes.
 std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry);
 /// Before there are thresholds: calibrated ones are NaN.
 std::optional<check::Model> load_uncalibrated(const std::string& text);

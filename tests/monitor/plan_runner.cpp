@@ -29,7 +29,9 @@ reference::Verdict observed(const etlmon::Verdict& verdict) {
         result.final = verdict.final();
         return result;
     }
-    result.status = verdict.satisfied() ? Status::satisfied : verdict.violated() ? Status::violated : Status::unknown;
+    result.status = verdict.satisfied()  ? Status::satisfied
+                    : verdict.violated() ? Status::violated
+                                         : Status::unknown;
     result.final = verdict.final();
     result.lower = verdict.lower;
     result.robustness = verdict.robustness;
@@ -38,14 +40,16 @@ reference::Verdict observed(const etlmon::Verdict& verdict) {
     return result;
 }
 
-PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits, check::Values values) : model_(model) {
+PlanRunner::PlanRunner(const check::Model& model, const plan::Limits& limits, check::Values values)
+    : model_(model) {
     ir::Program program = ir::lower(model);
     opt::optimise(program);
     diag::Sink sink;
     plan_ = plan::plan(program, limits, sink, values);
     for (const diag::Diagnostic& diagnostic : sink.sorted())
         if (diagnostic.severity() == diag::Severity::error)
-            refusal_ += std::string(refusal_.empty() ? "" : " ") + std::string(diag::info(diagnostic.code).code);
+            refusal_ += std::string(refusal_.empty() ? "" : " ") +
+                        std::string(diag::info(diagnostic.code).code);
     if (plan_) evaluator_.emplace(*plan_);
 }
 
@@ -55,30 +59,35 @@ Observed PlanRunner::run(const reference::Trace& trace, const Labels* labels) {
     for (std::size_t n = 0; n < trace.size(); ++n) {
         for (plan::Index p = 0; labels != nullptr && p < model_.predicates.size(); ++p)
             if (model_.predicates[p].threshold.adaptation)
-                for (const Label& label : (*labels)[n][p]) evaluator_->observe(p, label.distance, label.truth);
+                for (const Label& label : (*labels)[n][p])
+                    evaluator_->observe(p, label.distance, label.truth);
         result.verdicts.push_back(verdicts(evaluator_->step(samples_of(trace[n]))));
         result.telemetry.push_back(telemetry());
     }
     result.missing_steps = evaluator_->missing_steps();
     result.dependencies = dependencies();
     std::uint32_t calls = 0;
-    for (const plan::Monitor& monitor : plan_->monitors) calls = std::max(calls, monitor.sliding ? monitor.horizon : 0);
+    for (const plan::Monitor& monitor : plan_->monitors)
+        calls = std::max(calls, monitor.sliding ? monitor.horizon : 0);
     for (std::uint32_t call = 0; call < calls && !trace.empty(); ++call)
         result.finish.push_back(verdicts(evaluator_->finish()));
     return result;
 }
 
 Dependencies PlanRunner::dependencies() const {
-    Dependencies result{std::vector<bool>(model_.predicates.size()), std::vector<bool>(model_.inputs.size())};
+    Dependencies result{std::vector<bool>(model_.predicates.size()),
+                        std::vector<bool>(model_.inputs.size())};
     for (const plan::Index index : plan_->predicates) result.predicates[index] = true;
     for (const plan::Stream& stream : plan_->streams)
         if (stream.op == plan::StreamOp::flag) result.flags[stream.index] = true;
     return result;
 }
 
-std::vector<reference::Verdict> PlanRunner::verdicts(const std::vector<etlmon::Verdict>& from) const {
+std::vector<reference::Verdict> PlanRunner::verdicts(
+    const std::vector<etlmon::Verdict>& from) const {
     std::vector<reference::Verdict> result(model_.monitors.size());
-    for (std::size_t n = 0; n < from.size(); ++n) result[plan_->monitors[n].index] = observed(from[n]);
+    for (std::size_t n = 0; n < from.size(); ++n)
+        result[plan_->monitors[n].index] = observed(from[n]);
     return result;
 }
 
@@ -87,7 +96,8 @@ std::vector<Observed::Predicate> PlanRunner::telemetry() const {
     for (const plan::Index index : plan_->predicates) {
         result[index].computed = true;
         result[index].delta = static_cast<double>(evaluator_->distance(index));
-        if (model_.predicates[index].plain_distance()) result[index].nearest = evaluator_->nearest(index);
+        if (model_.predicates[index].plain_distance())
+            result[index].nearest = evaluator_->nearest(index);
     }
     return result;
 }

@@ -1,6 +1,6 @@
 // The plan's evaluator as a system under test.
-// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent of
-// each other, but for what labels did to thresholds.
+// Takes: a typed spec. Gives: what the evaluator says on a trace. Keeps true: runs are independent
+// of each other, but for what labels did to thresholds.
 #pragma once
 
 #include <optional>
@@ -15,7 +15,8 @@
 
 namespace etlc::tests {
 
-/// Above what any spec of the tests needs: all operators at once are more than one monitor class should hold.
+/// Above what any spec of the tests needs: all operators at once are more than one monitor class
+/// should hold.
 constexpr plan::Limits kRoomy{16U << 20U, 16U << 20U, 64U << 20U};
 
 class PlanRunner {
@@ -28,8 +29,8 @@ public:
     const std::string& refusal() const { return refusal_; }
     /// The atoms that the plan computes.
     Dependencies dependencies() const;
-    /// A run from reset to the last call of finish(), with labels before each step. Adaptive thresholds go on from
-    /// where the last run left them.
+    /// A run from reset to the last call of finish(), with labels before each step. Adaptive
+    /// thresholds go on from where the last run left them.
     Observed run(const reference::Trace& trace, const Labels* labels = nullptr);
 
 private:

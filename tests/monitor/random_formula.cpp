@@ -11,12 +11,14 @@ std::string RandomFormula::inside(const Piece& piece, Level outer) {
     return needed || random_.chance(0.1) ? "(" + piece.text + ")" : piece.text;
 }
 
-RandomFormula::Piece RandomFormula::unary(const std::string& word, const std::string& interval, const Piece& operand) {
+RandomFormula::Piece RandomFormula::unary(const std::string& word, const std::string& interval,
+                                          const Piece& operand) {
     return {word + interval + " " + inside(operand, prefix), prefix};
 }
 
-RandomFormula::Piece RandomFormula::binary(const Piece& left, const std::string& word, const std::string& interval,
-                                           const Piece& right, Level level) {
+RandomFormula::Piece RandomFormula::binary(const Piece& left, const std::string& word,
+                                           const std::string& interval, const Piece& right,
+                                           Level level) {
     return {inside(left, level) + " " + word + interval + " " + inside(right, level), level};
 }
 
@@ -66,12 +68,15 @@ RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
         case 2:
         case 3: return unary(random_.word({"G", "always"}), future_interval(), operand);
         case 4:
-            return binary(operand, random_.word({"U", "until"}), future_interval(), grow(depth - 1, allowed), until);
+            return binary(operand, random_.word({"U", "until"}), future_interval(),
+                          grow(depth - 1, allowed), until);
         case 5:
-            return binary(operand, random_.word({"R", "release"}), future_interval(), grow(depth - 1, allowed), until);
+            return binary(operand, random_.word({"R", "release"}), future_interval(),
+                          grow(depth - 1, allowed), until);
         case 6:
             if (shape_.unbounded)
-                return binary(operand, random_.word({"W", "weak_until"}), "", grow(depth - 1, allowed), until);
+                return binary(operand, random_.word({"W", "weak_until"}), "",
+                              grow(depth - 1, allowed), until);
             [[fallthrough]];
         default: return unary(random_.word({"X", "next"}), "", operand);
     }
@@ -86,7 +91,9 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
         case 1: return unary(random_.word({"O", "once"}), past_interval(), operand);
         case 2: return unary(random_.word({"H", "historically"}), past_interval(), operand);
         case 3:
-        case 4: return binary(operand, random_.word({"S", "since"}), past_interval(), grow(depth - 1, allowed), until);
+        case 4:
+            return binary(operand, random_.word({"S", "since"}), past_interval(),
+                          grow(depth - 1, allowed), until);
         default: return unary(random_.word({"Y", "previous"}), "", operand);
     }
 }

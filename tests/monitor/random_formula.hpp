@@ -1,4 +1,5 @@
-// Random formulas as text, with symbols or words, brackets where the grammar needs them and sometimes where not.
+// Random formulas as text, with symbols or words, brackets where the grammar needs them and
+// sometimes where not.
 #pragma once
 
 #include <functional>
@@ -22,8 +23,9 @@ struct FormulaShape {
 
 class RandomFormula {
 public:
-    RandomFormula(Random& random, std::vector<std::string> atoms, std::function<std::string()> comparison,
-                  FormulaShape shape, std::string let_name = "part")
+    RandomFormula(Random& random, std::vector<std::string> atoms,
+                  std::function<std::string()> comparison, FormulaShape shape,
+                  std::string let_name = "part")
         : random_(random),
           atoms_(std::move(atoms)),
           comparison_(std::move(comparison)),
@@ -61,8 +63,8 @@ private:
     Piece past(int depth, Allowed allowed);
     Piece named(Piece piece);
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
-    Piece binary(const Piece& left, const std::string& word, const std::string& interval, const Piece& right,
-                 Level level);
+    Piece binary(const Piece& left, const std::string& word, const std::string& interval,
+                 const Piece& right, Level level);
     /// In brackets unless it binds tighter than `outer`.
     std::string inside(const Piece& piece, Level outer);
     std::string bounded_interval();

@@ -37,7 +37,9 @@ public:
     const std::vector<std::string>& atoms() const { return atoms_; }
 
     /// A comparison that stands in a formula.
-    std::string comparison() { return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3)); }
+    std::string comparison() {
+        return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3));
+    }
 
 private:
     Random& random_;
@@ -46,12 +48,18 @@ private:
     std::map<std::string, int> rows_;  // of each target
     std::vector<std::string> atoms_;
 
-    std::string hold() { return random_.chance(0.3) ? fmt::format(" hold {}", random_.between(1, 3)) : ""; }
-    std::string number(int low, int high) { return fmt::format("{}", random_.grid(low, high, 0.25)); }
+    std::string hold() {
+        return random_.chance(0.3) ? fmt::format(" hold {}", random_.between(1, 3)) : "";
+    }
+    std::string number(int low, int high) {
+        return fmt::format("{}", random_.grid(low, high, 0.25));
+    }
     std::string compare() { return random_.word({"<=", "<", ">=", ">"}); }
 
     std::string scalar(const char* name) {
-        const char* range = random_.chance(0.6) ? " in [-4, 4]" : random_.chance(0.3) ? " in [-3.5, inf]" : "";
+        const char* range = random_.chance(0.6)   ? " in [-4, 4]"
+                            : random_.chance(0.3) ? " in [-3.5, inf]"
+                                                  : "";
         return fmt::format("input {} : f32{}{};\n", name, range, hold());
     }
 
@@ -70,7 +78,8 @@ private:
         for (int row = 0; row < count; ++row) {
             std::string values;
             // A row must not be zero under cosine and angular: the first element is not.
-            for (int n = 0; n < columns; ++n) values += (n > 0 ? ", " : "") + (n > 0 ? number(-3, 3) : number(1, 3));
+            for (int n = 0; n < columns; ++n)
+                values += (n > 0 ? ", " : "") + (n > 0 ? number(-3, 3) : number(1, 3));
             rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
         }
         return fmt::format("target {} = [{}];\n", name, rows);
@@ -86,7 +95,9 @@ private:
             }
             std::string values;  // symmetric and diagonally dominant
             for (int n = 0; n < columns; ++n)
-                values += (n > 0 ? ", " : "") + std::string(n == row ? "2" : (n + row) % 2 == 0 ? "0.25" : "-0.25");
+                values += (n > 0 ? ", " : "") + std::string(n == row             ? "2"
+                                                            : (n + row) % 2 == 0 ? "0.25"
+                                                                                 : "-0.25");
             rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
         }
         return fmt::format("mahalanobis([{}])", rows);
@@ -94,7 +105,8 @@ private:
 
     std::string metric(int columns) {
         if (exact_) return random_.word({"l1", "linf", "l2sq"});
-        const std::string name = random_.word({"l1", "linf", "l2sq", "l2", "l2", "cosine", "angular", "mahalanobis"});
+        const std::string name =
+            random_.word({"l1", "linf", "l2sq", "l2", "l2", "cosine", "angular", "mahalanobis"});
         return name == "mahalanobis" ? weights(columns) : name;
     }
 
@@ -104,7 +116,8 @@ private:
     }
 
     std::string distance() {
-        if (random_.chance(0.3)) return fmt::format("{} {}([x, y], spots)", aggregation("spots"), metric(2));
+        if (random_.chance(0.3))
+            return fmt::format("{} {}([x, y], spots)", aggregation("spots"), metric(2));
         const std::string target = random_.word({"near", "far"});
         return fmt::format("{} {}(v, {})", aggregation(target), metric(dimension_), target);
     }
@@ -132,7 +145,8 @@ private:
     std::string predicate() {
         const int kind = random_.between(0, 9);
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
-        if (kind < 7) return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
+        if (kind < 7)
+            return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };
@@ -158,13 +172,15 @@ std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
     std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
     const auto comparison = [&] { return declarations.comparison(); };
     RandomFormula prefix(random, declarations.atoms(), comparison, formula_shape(shape, false));
-    RandomFormula sliding(random, declarations.atoms(), comparison, formula_shape(shape, true), "sliding_part");
+    RandomFormula sliding(random, declarations.atoms(), comparison, formula_shape(shape, true),
+                          "sliding_part");
     for (int n = 0; n < shape.monitors; ++n) {
         const bool slides = shape.formulas == SpecShape::Formulas::sliding ||
                             (shape.formulas == SpecShape::Formulas::mixed && n % 2 == 1);
         RandomFormula& formula = slides ? sliding : prefix;
         const std::string text = formula.make();
-        result += formula.take_lets() + fmt::format("{}monitor m{} = {};\n", slides ? "sliding " : "", n, text);
+        result += formula.take_lets() +
+                  fmt::format("{}monitor m{} = {};\n", slides ? "sliding " : "", n, text);
     }
     return result;
 }

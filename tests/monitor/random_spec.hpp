@@ -1,7 +1,8 @@
 // Random specs as .etl text.
-// Takes: a seed and a shape. Gives: a spec that the compiler accepts. Keeps true: the same seed gives the same bytes.
-// Inputs are scalars with and without ranges, a bool and an embedding of any element type, some held; predicates use
-// all comparisons, distances, aggregations and expressions; formulas all words and symbols of the operators, and lets.
+// Takes: a seed and a shape. Gives: a spec that the compiler accepts. Keeps true: the same seed
+// gives the same bytes. Inputs are scalars with and without ranges, a bool and an embedding of any
+// element type, some held; predicates use all comparisons, distances, aggregations and expressions;
+// formulas all words and symbols of the operators, and lets.
 #pragma once
 
 #include <cstdint>
@@ -12,7 +13,8 @@ namespace etlc::tests {
 struct SpecShape {
     enum class Formulas : std::uint8_t {
         unnested,           ///< temporal operators over Boolean combinations of atoms
-        unbounded_nesting,  ///< future operators without bounds in each other, as F (a && F b) and G (a -> F b)
+        unbounded_nesting,  ///< future operators without bounds in each other, as F (a && F b) and
+                            ///< G (a -> F b)
         prefix,             ///< any nesting that a prefix monitor takes
         sliding,            ///< sliding monitors: future bounded, past over future too
         mixed,              ///< prefix and sliding monitors in turn
@@ -22,7 +24,8 @@ struct SpecShape {
     int depth = 2;        ///< nesting of operators
     int window = 4;       ///< largest upper bound of an interval
     double future = 0.5;  ///< share of future operators
-    /// Only expressions and distances that float32 computes without rounding on samples that are multiples of 1/4.
+    /// Only expressions and distances that float32 computes without rounding on samples that are
+    /// multiples of 1/4.
     bool exact = true;
 };
 

@@ -65,7 +65,8 @@ std::vector<double> extreme_sample(Random& random, const check::Input& input) {
 std::vector<std::string> columns(const check::Input& input) {
     if (!input.is_embedding()) return {input.name};
     std::vector<std::string> result;
-    for (std::uint32_t n = 0; n < input.dimension; ++n) result.push_back(fmt::format("{}[{}]", input.name, n));
+    for (std::uint32_t n = 0; n < input.dimension; ++n)
+        result.push_back(fmt::format("{}[{}]", input.name, n));
     return result;
 }
 
@@ -85,7 +86,8 @@ double recorded(const check::Input& input, double value) {
 
 }  // namespace
 
-reference::Trace random_trace(const check::Model& model, std::uint64_t seed, const TraceShape& shape) {
+reference::Trace random_trace(const check::Model& model, std::uint64_t seed,
+                              const TraceShape& shape) {
     Random random(seed);
     reference::Trace trace;
     for (std::size_t n = 0; n < shape.steps; ++n) {
@@ -108,14 +110,16 @@ reference::Trace random_trace(const check::Model& model, std::uint64_t seed, con
 std::string to_csv(const check::Model& model, const reference::Trace& trace) {
     std::string result;
     for (const check::Input& input : model.inputs)
-        for (const std::string& column : columns(input)) result += (result.empty() ? "" : ",") + column;
+        for (const std::string& column : columns(input))
+            result += (result.empty() ? "" : ",") + column;
     result += '\n';
     for (const reference::Step& step : trace) {
         std::string line;
         for (std::size_t n = 0; n < model.inputs.size(); ++n)
             for (std::uint32_t element = 0; element < model.inputs[n].dimension; ++element) {
                 if (n + element > 0) line += ',';
-                if (!step[n].empty()) line += fmt::format("{:.17g}", recorded(model.inputs[n], step[n][element]));
+                if (!step[n].empty())
+                    line += fmt::format("{:.17g}", recorded(model.inputs[n], step[n][element]));
             }
         result += line + '\n';
     }
@@ -142,7 +146,8 @@ reference::Trace read_csv(const check::Model& model, const std::string& path) {
         if (!more || !*more) return result;
         reference::Step step;
         for (std::size_t n = 0; n < channels.size(); ++n)
-            step.push_back(sample.present[n] ? real_values(model.inputs[n], sample.values[n]) : std::vector<double>{});
+            step.push_back(sample.present[n] ? real_values(model.inputs[n], sample.values[n])
+                                             : std::vector<double>{});
         result.push_back(std::move(step));
     }
 }

@@ -1,4 +1,5 @@
-// `--values boolean`: the plan's evaluator on truth values held to the reference, where comparisons decide exactly.
+// `--values boolean`: the plan's evaluator on truth values held to the reference, where comparisons
+// decide exactly.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -20,10 +21,13 @@ using namespace etlc::tests;
 using check::Values;
 using Formulas = SpecShape::Formulas;
 
-void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace) {
-    const auto mismatch =
-        first_mismatch(model, reference::evaluate(model, trace, Values::boolean), runner.run(trace), {});
-    ASSERT_FALSE(mismatch) << *mismatch << "\n" << model.file.text() << "\n" << to_csv(model, trace);
+void expect_agreement(const check::Model& model, PlanRunner& runner,
+                      const reference::Trace& trace) {
+    const auto mismatch = first_mismatch(model, reference::evaluate(model, trace, Values::boolean),
+                                         runner.run(trace), {});
+    ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                           << model.file.text() << "\n"
+                           << to_csv(model, trace);
 }
 
 TEST(BooleanExhaustive, PrefixAndSlidingMonitorsWithGaps) {
@@ -80,7 +84,9 @@ const RandomCase kCases[] = {
     {"Prefix", {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3}, 60},
     {"Sliding", {.formulas = Formulas::sliding, .depth = 4, .window = 3}, 60},
     {"Mixed", {.formulas = Formulas::mixed, .monitors = 6, .depth = 3, .window = 3}, 40},
-    {"PrefixLongWindows", {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25}, 40},
+    {"PrefixLongWindows",
+     {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25},
+     40},
 };
 
 INSTANTIATE_TEST_SUITE_P(Shapes, BooleanRandom, testing::ValuesIn(kCases),

@@ -1,5 +1,5 @@
-// The named cases, each of which once showed a fault. Expected values come from the reference when the test runs; a new
-// case is two new files. test_generated compiles them too.
+// The named cases, each of which once showed a fault. Expected values come from the reference when
+// the test runs; a new case is two new files. test_generated compiles them too.
 #include <gtest/gtest.h>
 
 #include <string>
@@ -26,11 +26,13 @@ TEST_P(Case, PlanAgreesWithTheReference) {
     ASSERT_FALSE(trace.empty());
     PlanRunner runner(*model);
     ASSERT_EQ(runner.refusal(), "");
-    const auto mismatch = first_mismatch(*model, reference::evaluate(*model, trace), runner.run(trace), {});
+    const auto mismatch =
+        first_mismatch(*model, reference::evaluate(*model, trace), runner.run(trace), {});
     EXPECT_FALSE(mismatch) << *mismatch;
 }
 
-// docs/semantics.md: what is reported is the bounds of the simplified formula, which are tighter than the definition's.
+// docs/semantics.md: what is reported is the bounds of the simplified formula, which are tighter
+// than the definition's.
 TEST(Constants, GoBeforeBoundsAreFound) {
     const std::string stem = case_path("constants");
     const auto model = load(read_text(stem + ".etl"), stem + ".etl");
@@ -46,6 +48,7 @@ TEST(Constants, GoBeforeBoundsAreFound) {
     EXPECT_EQ(reported.upper, simplified.upper);
 }
 
-INSTANTIATE_TEST_SUITE_P(Named, Case, testing::ValuesIn(case_names()), [](const auto& name) { return name.param; });
+INSTANTIATE_TEST_SUITE_P(Named, Case, testing::ValuesIn(case_names()),
+                         [](const auto& name) { return name.param; });
 
 }  // namespace

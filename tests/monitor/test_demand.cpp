@@ -1,4 +1,5 @@
-// What a Boolean class measures, seen in its telemetry: NaN is "not asked for" where the sample was there.
+// What a Boolean class measures, seen in its telemetry: NaN is "not asked for" where the sample was
+// there.
 #include <gtest/gtest.h>
 
 #include "demand.hpp"
@@ -43,7 +44,8 @@ TEST(Demand, OneAfterTheOther) {
     EXPECT_FALSE(measured(monitor.distance_b()));
 }
 
-// G (armed && c -> F[0,2] d): nothing while not armed, c while nothing is due, only d while an answer is due.
+// G (armed && c -> F[0,2] d): nothing while not armed, c while nothing is due, only d while an
+// answer is due.
 TEST(Demand, OnlyWhatIsDue) {
     demand::Monitor monitor;
     monitor.step(see(kFar, kOrigin, false));
@@ -52,7 +54,8 @@ TEST(Demand, OnlyWhatIsDue) {
     monitor.step(see(kFar, kBetween, true));
     EXPECT_TRUE(measured(monitor.distance_c()));
     EXPECT_FALSE(measured(monitor.distance_d()));
-    EXPECT_TRUE(monitor.step(see(kFar, kOrigin, true)).answered.violated());  // asked; no answer on this prefix
+    EXPECT_TRUE(monitor.step(see(kFar, kOrigin, true))
+                    .answered.violated());  // asked; no answer on this prefix
     EXPECT_TRUE(measured(monitor.distance_c()));
     EXPECT_TRUE(measured(monitor.distance_d()));
     monitor.step(see(kFar, kOrigin, true));

@@ -1,5 +1,5 @@
-// The plan's evaluator, which `etlc run` steps, held to the reference: every operator on all short traces, and random
-// specs on random traces.
+// The plan's evaluator, which `etlc run` steps, held to the reference: every operator on all short
+// traces, and random specs on random traces.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -22,12 +22,17 @@ using namespace etlc;
 using namespace etlc::tests;
 using Formulas = SpecShape::Formulas;
 
-/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
+/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1,
+/// relative above.
 constexpr double kRounding = 1e-5;
 
-void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace, double rounding) {
-    const auto mismatch = first_mismatch(model, reference::evaluate(model, trace), runner.run(trace), {rounding});
-    ASSERT_FALSE(mismatch) << *mismatch << "\n" << model.file.text() << "\n" << to_csv(model, trace);
+void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace,
+                      double rounding) {
+    const auto mismatch =
+        first_mismatch(model, reference::evaluate(model, trace), runner.run(trace), {rounding});
+    ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                           << model.file.text() << "\n"
+                           << to_csv(model, trace);
 }
 
 void expect_agreement_on_all(const std::string& spec, std::size_t steps, bool gaps) {
@@ -52,10 +57,12 @@ TEST(PlanExhaustive, PrefixMonitorsWithGaps) {
 
 // For sliding monitors the end of the trace matters too.
 TEST(PlanExhaustive, SlidingMonitors) {
-    for (std::size_t steps = 1; steps <= 6; ++steps) expect_agreement_on_all(exhaustive_sliding_spec(), steps, false);
+    for (std::size_t steps = 1; steps <= 6; ++steps)
+        expect_agreement_on_all(exhaustive_sliding_spec(), steps, false);
 }
 TEST(PlanExhaustive, SlidingMonitorsWithGaps) {
-    for (std::size_t steps = 1; steps <= 4; ++steps) expect_agreement_on_all(exhaustive_sliding_spec(), steps, true);
+    for (std::size_t steps = 1; steps <= 4; ++steps)
+        expect_agreement_on_all(exhaustive_sliding_spec(), steps, true);
 }
 
 struct RandomCase {
@@ -88,7 +95,8 @@ TEST_P(PlanRandom, AgreesWithTheReference) {
         if (!runner.refusal().empty() && ++refused <= random.refused * specs) continue;
         ASSERT_EQ(runner.refusal(), "") << model->file.text();
         for (int t = 0; t < 6; ++t) {
-            TraceShape shape{.steps = static_cast<std::size_t>(5 + 9 * t), .grid = random.shape.exact};
+            TraceShape shape{.steps = static_cast<std::size_t>(5 + 9 * t),
+                             .grid = random.shape.exact};
             if (t % 3 > 0) shape.missing = 0.1 * t;
             if (t % 3 > 1) shape.invalid = 0.1;
             expect_agreement(*model, runner, random_trace(*model, 100 * n + t, shape),
@@ -103,12 +111,19 @@ const RandomCase kCases[] = {
     {"UnnestedRounded", {.formulas = Formulas::unnested, .depth = 2, .exact = false}, 40},
     {"UnboundedNesting", {.formulas = Formulas::unbounded_nesting, .monitors = 4, .depth = 3}, 80},
     {"Prefix", {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3}, 120},
-    {"PrefixRounded", {.formulas = Formulas::prefix, .monitors = 4, .depth = 2, .exact = false}, 40},
+    {"PrefixRounded",
+     {.formulas = Formulas::prefix, .monitors = 4, .depth = 2, .exact = false},
+     40},
     {"Sliding", {.formulas = Formulas::sliding, .depth = 4, .window = 3}, 100},
     {"Mixed", {.formulas = Formulas::mixed, .monitors = 6, .depth = 3, .window = 3}, 60},
     {"PrefixDeep", {.formulas = Formulas::prefix, .monitors = 2, .depth = 5, .window = 6}, 40, 0.1},
-    {"PrefixLongWindows", {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25}, 60, 0.1},
-    {"SlidingLongWindows", {.formulas = Formulas::sliding, .monitors = 2, .depth = 3, .window = 15}, 40},
+    {"PrefixLongWindows",
+     {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25},
+     60,
+     0.1},
+    {"SlidingLongWindows",
+     {.formulas = Formulas::sliding, .monitors = 2, .depth = 3, .window = 15},
+     40},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

@@ -1,5 +1,6 @@
-// The generated classes, compiled and stepped, held to the reference: g++ and clang++, under harsh warnings, with
-// sanitizers and with -ffast-math; two instances in turns, reset, many headers in one program, and no memory asked for.
+// The generated classes, compiled and stepped, held to the reference: g++ and clang++, under harsh
+// warnings, with sanitizers and with -ffast-math; two instances in turns, reset, many headers in
+// one program, and no memory asked for.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,7 +24,8 @@ using namespace etlc;
 using namespace etlc::tests;
 using Formulas = SpecShape::Formulas;
 
-/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1, relative above.
+/// Where distances round: float32 sums of a few elements, against double. Stated for |value| <= 1,
+/// relative above.
 constexpr double kRounding = 1e-5;
 
 struct Subject {
@@ -34,7 +36,8 @@ struct Subject {
 };
 
 std::vector<Subject> subjects() {
-    std::vector<Subject> result{{exhaustive_spec(), true, true}, {exhaustive_sliding_spec(), true, true}};
+    std::vector<Subject> result{{exhaustive_spec(), true, true},
+                                {exhaustive_sliding_spec(), true, true}};
     const std::vector<SpecShape> shapes = {
         {.formulas = Formulas::unnested, .depth = 3},
         {.formulas = Formulas::unbounded_nesting, .depth = 3},
@@ -49,17 +52,22 @@ std::vector<Subject> subjects() {
         const SpecShape& shape = shapes[n % shapes.size()];
         result.push_back({random_spec(9000 + n, shape), shape.exact});
     }
-    for (const std::string& name : case_names()) result.push_back({read_text(case_path(name) + ".etl")});
+    for (const std::string& name : case_names())
+        result.push_back({read_text(case_path(name) + ".etl")});
     // Truth values need exact comparisons: numbers on a grid.
     result.push_back({exhaustive_spec("boolean_prefix"), true, true, check::Values::boolean});
-    result.push_back({exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});
+    result.push_back(
+        {exhaustive_sliding_spec("boolean_sliding"), true, true, check::Values::boolean});
     for (std::size_t n = 0; n < shapes.size(); ++n)
-        if (shapes[n].exact) result.push_back({random_spec(9100 + n, shapes[n]), true, false, check::Values::boolean});
+        if (shapes[n].exact)
+            result.push_back(
+                {random_spec(9100 + n, shapes[n]), true, false, check::Values::boolean});
     return result;
 }
 
 /// Pairs of traces for one spec.
-std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec, const Subject& subject) {
+std::vector<Request> requests_for(const check::Model& model, std::uint32_t spec,
+                                  const Subject& subject) {
     std::vector<Request> result;
     if (subject.exhaustive) {
         for (const bool gaps : {false, true}) {
@@ -88,17 +96,20 @@ struct Expectation {
     double rounding;
     check::Values values;
 
-    std::optional<std::string> mismatch(const reference::Trace& trace, Observed observed, const char* run) const {
+    std::optional<std::string> mismatch(const reference::Trace& trace, Observed observed,
+                                        const char* run) const {
         observed.dependencies = dependencies;
         const Comparison comparison{rounding, values == check::Values::boolean};
-        const auto found = first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
+        const auto found =
+            first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
         if (!found) return {};
         return fmt::format("{}: {}\n{}\n{}", run, *found, model.file.text(), to_csv(model, trace));
     }
 
     std::optional<std::string> mismatch(const Request& request, const Answer& answer) const {
         if (auto found = mismatch(request.first, answer[0], "first instance")) return found;
-        if (auto found = mismatch(request.second, answer[1], "second instance, in turns")) return found;
+        if (auto found = mismatch(request.second, answer[1], "second instance, in turns"))
+            return found;
         return mismatch(request.second, answer[2], "first instance after reset");
     }
 };
@@ -113,7 +124,8 @@ TEST_P(Generated, AgreesWithTheReference) {
         const auto model = load(subject.spec);
         ASSERT_TRUE(model);
         ASSERT_TRUE(program.add(*model, subject.values));
-        const auto more = requests_for(*model, static_cast<std::uint32_t>(program.size() - 1), subject);
+        const auto more =
+            requests_for(*model, static_cast<std::uint32_t>(program.size() - 1), subject);
         requests.insert(requests.end(), more.begin(), more.end());
     }
     ASSERT_TRUE(program.compile(GetParam()));
@@ -140,7 +152,8 @@ TEST_P(Generated, AgreesWithTheReference) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Builds, Generated,
-                         testing::Values(kGccSanitized, kClangSanitized, kGccFastMath, kClangFastMath, kAarch64),
+                         testing::Values(kGccSanitized, kClangSanitized, kGccFastMath,
+                                         kClangFastMath, kAarch64),
                          [](const auto& build) { return build.param.name; });
 
 }  // namespace

@@ -1,5 +1,5 @@
-// What the definitions promise, held to the reference on random specs and traces: the bounds are sound, gaps are
-// answered for every way of filling them, and negation mirrors all four numbers.
+// What the definitions promise, held to the reference on random specs and traces: the bounds are
+// sound, gaps are answered for every way of filling them, and negation mirrors all four numbers.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -41,17 +41,20 @@ TEST(ReferenceProperties, BoundsHoldForEveryContinuation) {
     for (int n = 0; n < kSpecs; ++n) {
         const auto model = load(random_spec(1000 + n, shape_of(n, Formulas::prefix)));
         ASSERT_TRUE(model);
-        TraceShape shape{.steps = kSteps, .missing = n % 2 == 0 ? 0 : 0.15, .invalid = n % 3 == 0 ? 0.05 : 0};
+        TraceShape shape{
+            .steps = kSteps, .missing = n % 2 == 0 ? 0 : 0.15, .invalid = n % 3 == 0 ? 0.05 : 0};
         const Trace trace = random_trace(*model, n, shape);
         const auto run = evaluate(*model, trace);
         for (std::size_t i = 0; i < kSteps; i += 3) {
             shape.steps = 6;
-            const auto other = evaluate(*model, continued(trace, i + 1, random_trace(*model, 77 * n + i, shape)));
+            const auto other =
+                evaluate(*model, continued(trace, i + 1, random_trace(*model, 77 * n + i, shape)));
             for (std::size_t later = i; later < other.verdicts.size(); ++later)
                 for (std::size_t m = 0; m < model->monitors.size(); ++m) {
                     const Verdict& now = run.verdicts[i][m];
                     const Verdict& then = other.verdicts[later][m];
-                    ASSERT_LE(now.lower, then.robustness) << model->file.text() << i << ", " << later << ": m" << m;
+                    ASSERT_LE(now.lower, then.robustness)
+                        << model->file.text() << i << ", " << later << ": m" << m;
                     ASSERT_GE(now.upper, then.robustness_high)
                         << model->file.text() << i << ", " << later << ": m" << m;
                 }
@@ -59,7 +62,8 @@ TEST(ReferenceProperties, BoundsHoldForEveryContinuation) {
     }
 }
 
-/// Fills the gaps with random valid samples; `hold` must be off for the filled trace to say what the gaps hid.
+/// Fills the gaps with random valid samples; `hold` must be off for the filled trace to say what
+/// the gaps hid.
 Trace filled(const check::Model& model, const Trace& trace, std::uint64_t seed) {
     Trace result = trace;
     const Trace other = random_trace(model, seed, {.steps = trace.size()});
@@ -71,7 +75,8 @@ Trace filled(const check::Model& model, const Trace& trace, std::uint64_t seed) 
 
 TEST(ReferenceProperties, UnknownCoversEveryFilling) {
     for (int n = 0; n < kSpecs; ++n) {
-        auto model = load(random_spec(2000 + n, shape_of(n, n % 2 == 0 ? Formulas::prefix : Formulas::sliding)));
+        auto model = load(
+            random_spec(2000 + n, shape_of(n, n % 2 == 0 ? Formulas::prefix : Formulas::sliding)));
         ASSERT_TRUE(model);
         for (check::Input& input : model->inputs) input.hold = 0;
         const Trace trace = random_trace(*model, n, {.steps = kSteps, .missing = 0.2});
@@ -82,8 +87,10 @@ TEST(ReferenceProperties, UnknownCoversEveryFilling) {
                 for (std::size_t m = 0; m < model->monitors.size(); ++m) {
                     const Verdict& known = gapped.verdicts[i][m];
                     const Verdict& actual = full.verdicts[i][m];
-                    ASSERT_LE(known.robustness, actual.robustness) << model->file.text() << i << ": m" << m;
-                    ASSERT_GE(known.robustness_high, actual.robustness) << model->file.text() << i << ": m" << m;
+                    ASSERT_LE(known.robustness, actual.robustness)
+                        << model->file.text() << i << ": m" << m;
+                    ASSERT_GE(known.robustness_high, actual.robustness)
+                        << model->file.text() << i << ": m" << m;
                     ASSERT_LE(known.lower, actual.lower) << model->file.text() << i << ": m" << m;
                     ASSERT_GE(known.upper, actual.upper) << model->file.text() << i << ": m" << m;
                     ASSERT_LE(known.lower, known.robustness);
@@ -105,7 +112,8 @@ check::Model negated(check::Model model) {
     return model;
 }
 
-void expect_mirrored(const std::vector<std::vector<Verdict>>& rows, const std::vector<std::vector<Verdict>>& mirror) {
+void expect_mirrored(const std::vector<std::vector<Verdict>>& rows,
+                     const std::vector<std::vector<Verdict>>& mirror) {
     ASSERT_EQ(rows.size(), mirror.size());
     for (std::size_t i = 0; i < rows.size(); ++i)
         for (std::size_t m = 0; m < rows[i].size(); ++m) {
@@ -119,9 +127,11 @@ void expect_mirrored(const std::vector<std::vector<Verdict>>& rows, const std::v
 
 TEST(ReferenceProperties, NegationMirrors) {
     for (int n = 0; n < kSpecs; ++n) {
-        const auto model = load(random_spec(3000 + n, shape_of(n, n % 2 == 0 ? Formulas::prefix : Formulas::sliding)));
+        const auto model = load(
+            random_spec(3000 + n, shape_of(n, n % 2 == 0 ? Formulas::prefix : Formulas::sliding)));
         ASSERT_TRUE(model);
-        const Trace trace = random_trace(*model, n, {.steps = kSteps, .missing = 0.1, .invalid = 0.1});
+        const Trace trace =
+            random_trace(*model, n, {.steps = kSteps, .missing = 0.1, .invalid = 0.1});
         const auto run = evaluate(*model, trace);
         const auto mirror = evaluate(negated(*model), trace);
         SCOPED_TRACE(std::string(model->file.text()) + to_csv(*model, trace));
@@ -138,7 +148,8 @@ TEST(ReferenceProperties, RangesHoldWhatIsMeasured) {
         spec_shape.exact = false;
         const auto model = load(random_spec(4000 + n, spec_shape));
         ASSERT_TRUE(model);
-        const auto run = evaluate(*model, random_trace(*model, n, {.steps = 40, .grid = n % 2 == 0}));
+        const auto run =
+            evaluate(*model, random_trace(*model, n, {.steps = 40, .grid = n % 2 == 0}));
         for (const auto& step : run.telemetry)
             for (std::size_t p = 0; p < model->predicates.size(); ++p) {
                 const check::Predicate& predicate = model->predicates[p];

@@ -1,4 +1,5 @@
-// `etlc run` on traces too long to hold: memory does not grow with them, and every step is answered.
+// `etlc run` on traces too long to hold: memory does not grow with them, and every step is
+// answered.
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
@@ -48,8 +49,8 @@ protected:
         const std::string trace = folder_ / "trace.csv";
         const pid_t child = ::fork();
         if (child == 0) {
-            ::execl(ETLC_COMMAND, ETLC_COMMAND, "run", spec.c_str(), "--trace", trace.c_str(), "-o", output.c_str(),
-                    nullptr);
+            ::execl(ETLC_COMMAND, ETLC_COMMAND, "run", spec.c_str(), "--trace", trace.c_str(), "-o",
+                    output.c_str(), nullptr);
             ::_exit(127);
         }
         int status = 0;
@@ -67,7 +68,8 @@ TEST_F(Run, MemoryDoesNotGrowWithTheTrace) {
     const long few = peak_memory("/dev/null");
     write_trace(1000000);
     const long many = peak_memory("/dev/null");
-    EXPECT_LT(many - few, 2048) << "kilobytes more for a thousand times the steps (the file alone has 6000)";
+    EXPECT_LT(many - few, 2048)
+        << "kilobytes more for a thousand times the steps (the file alone has 6000)";
 }
 
 TEST_F(Run, AnswersEveryStepOnce) {

@@ -1,5 +1,5 @@
-// Monitors that are calibrated as a whole: `etlc run` and the generated classes say what the reference says, less the
-// shift in one float32 subtraction.
+// Monitors that are calibrated as a whole: `etlc run` and the generated classes say what the
+// reference says, less the shift in one float32 subtraction.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -33,7 +33,8 @@ struct ShiftedSpec {
     std::optional<check::Model> model;
 };
 
-/// random_spec with most of its monitors shifted: by little, by much, by what rounds, and by nothing.
+/// random_spec with most of its monitors shifted: by little, by much, by what rounds, and by
+/// nothing.
 ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
     Random random(seed ^ 0x51f7ULL);
     std::string text;
@@ -60,7 +61,8 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
         const float shift = random.chance(0.2)   ? 0.0F
                             : random.chance(0.3) ? static_cast<float>(random.grid(-3, 3, 0.25))
                                                  : static_cast<float>(4 * random.uniform() - 2);
-        entry.episodes = calibrate_to(shift, monitor.calibration->against == check::Against::missed_alarm, entry);
+        entry.episodes = calibrate_to(
+            shift, monitor.calibration->against == check::Against::missed_alarm, entry);
         entry.predicate = provenance.predicate;
         entry.truth = provenance.truth;
         entry.targets = provenance.targets;
@@ -78,7 +80,8 @@ double less(double value, float shift) {
 
 void shift(const check::Monitor& monitor, Verdict& verdict) {
     if (!monitor.calibration || verdict.status == Status::undecided) return;
-    for (double* number : {&verdict.lower, &verdict.robustness, &verdict.robustness_high, &verdict.upper})
+    for (double* number :
+         {&verdict.lower, &verdict.robustness, &verdict.robustness_high, &verdict.upper})
         *number = less(*number, monitor.calibration->threshold.value);
     verdict.status = verdict.robustness >= 0       ? Status::satisfied
                      : verdict.robustness_high < 0 ? Status::violated
@@ -95,21 +98,27 @@ reference::Run expected_run(const check::Model& model, const Trace& trace) {
 }
 
 TraceShape trace_shape(std::size_t n) {
-    return {.steps = 5 + 4 * (n % 6), .missing = n % 2 == 0 ? 0 : 0.15, .invalid = n % 3 == 0 ? 0.05 : 0};
+    return {.steps = 5 + 4 * (n % 6),
+            .missing = n % 2 == 0 ? 0 : 0.15,
+            .invalid = n % 3 == 0 ? 0.05 : 0};
 }
 
 TEST(ShiftedPlan, AgreesWithTheReferenceLessTheShift) {
     int shifted = 0;
     for (int n = 0; n < 150; ++n) {
-        const ShiftedSpec spec = random_shifted_spec(80000 + n, kSmallShapes[n % std::size(kSmallShapes)]);
+        const ShiftedSpec spec =
+            random_shifted_spec(80000 + n, kSmallShapes[n % std::size(kSmallShapes)]);
         ASSERT_TRUE(spec.model);
         PlanRunner runner(*spec.model, kRoomy);
         if (!runner.refusal().empty()) continue;
-        for (const check::Monitor& monitor : spec.model->monitors) shifted += monitor.calibration ? 1 : 0;
+        for (const check::Monitor& monitor : spec.model->monitors)
+            shifted += monitor.calibration ? 1 : 0;
         for (int t = 0; t < 5; ++t) {
             const Trace trace = random_trace(*spec.model, 100 * n + t, trace_shape(t));
-            const auto mismatch = first_mismatch(*spec.model, expected_run(*spec.model, trace), runner.run(trace), {});
-            ASSERT_FALSE(mismatch) << *mismatch << "\n" << spec.model->file.text() << to_csv(*spec.model, trace);
+            const auto mismatch = first_mismatch(*spec.model, expected_run(*spec.model, trace),
+                                                 runner.run(trace), {});
+            ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                                   << spec.model->file.text() << to_csv(*spec.model, trace);
         }
     }
     EXPECT_GT(shifted, 300);
@@ -121,7 +130,8 @@ TEST_P(ShiftedGenerated, AgreesWithTheReferenceAndWithRun) {
     GeneratedProgram program(std::string("shifted") + GetParam().name);
     std::vector<Request> requests;
     for (std::uint32_t n = 0; n < 2 * std::size(kSmallShapes); ++n) {
-        const ShiftedSpec spec = random_shifted_spec(81000 + n, kSmallShapes[n % std::size(kSmallShapes)]);
+        const ShiftedSpec spec =
+            random_shifted_spec(81000 + n, kSmallShapes[n % std::size(kSmallShapes)]);
         ASSERT_TRUE(spec.model);
         ASSERT_TRUE(program.add(*spec.model, check::Values::robustness, spec.thresholds));
         for (int t = 0; t < 8; ++t)
@@ -143,7 +153,8 @@ TEST_P(ShiftedGenerated, AgreesWithTheReferenceAndWithRun) {
             Observed observed = result.answers[n][run];
             observed.dependencies = runner.dependencies();
             const auto mismatch = first_mismatch(model, expected_run(model, trace), observed, {});
-            ASSERT_FALSE(mismatch) << *mismatch << "\n" << model.file.text() << to_csv(model, trace);
+            ASSERT_FALSE(mismatch) << *mismatch << "\n"
+                                   << model.file.text() << to_csv(model, trace);
             const Observed evaluated = runner.run(trace);
             for (std::size_t step = 0; step < trace.size(); ++step)
                 for (std::size_t m = 0; m < model.monitors.size(); ++m) {

@@ -1,7 +1,8 @@
-// What bounds on distances are held to: distances in double, and how far narrow rows are from the rows.
-// Takes: a case, its narrow rows widened to float32. Gives: the aggregated distance by its definition; the greatest
-// move of a row in the norm that etlmon/enclosed.hpp asks for, rounded up. Keeps true: shares no arithmetic with the
-// kernels; cosine and angular by the chord and Kahan's formula, which lose nothing near 0.
+// What bounds on distances are held to: distances in double, and how far narrow rows are from the
+// rows. Takes: a case, its narrow rows widened to float32. Gives: the aggregated distance by its
+// definition; the greatest move of a row in the norm that etlmon/enclosed.hpp asks for, rounded up.
+// Keeps true: shares no arithmetic with the kernels; cosine and angular by the chord and Kahan's
+// formula, which lose nothing near 0.
 #pragma once
 
 #include <algorithm>
@@ -18,12 +19,14 @@ inline double distance_of(const exact::Case& c, const float* g) {
     double l1 = 0, linf = 0, square = 0, z_square = 0, g_square = 0, apart = 0, along = 0;
     for (std::size_t i = 0; i < c.dimension; ++i) {
         const double z = double{c.z[i]}, x = double{g[i]}, e = std::abs(z - x);
-        const double w = c.metric == etlmon::MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
+        const double w =
+            c.metric == etlmon::MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
         l1 += e, linf = std::max(linf, e), square += w * e * e;
         z_square += z * z, g_square += x * x;
     }
     for (std::size_t i = 0; i < c.dimension; ++i) {
-        const double u = double{c.z[i]} / std::sqrt(z_square), v = double{g[i]} / std::sqrt(g_square);
+        const double u = double{c.z[i]} / std::sqrt(z_square),
+                     v = double{g[i]} / std::sqrt(g_square);
         apart += (u - v) * (u - v), along += (u + v) * (u + v);
     }
     switch (c.metric) {
@@ -38,7 +41,8 @@ inline double distance_of(const exact::Case& c, const float* g) {
 
 inline double aggregated(const exact::Case& c, exact::Aggregate aggregate) {
     std::vector<double> rows;
-    for (std::size_t k = 0; k < c.rows; ++k) rows.push_back(distance_of(c, c.targets.data() + k * c.dimension));
+    for (std::size_t k = 0; k < c.rows; ++k)
+        rows.push_back(distance_of(c, c.targets.data() + k * c.dimension));
     if (aggregate.id == etlmon::AggregationId::mean)
         return std::accumulate(rows.begin(), rows.end(), 0.0) / static_cast<double>(rows.size());
     std::sort(rows.begin(), rows.end());
@@ -51,14 +55,16 @@ inline float greatest_move(const exact::Case& c, const std::vector<float>& narro
     double greatest = 0;
     for (std::size_t k = 0; k < c.rows; ++k) {
         double length = 0;
-        for (std::size_t i = 0; i < c.dimension; ++i) length += std::pow(double{c.targets[k * c.dimension + i]}, 2);
+        for (std::size_t i = 0; i < c.dimension; ++i)
+            length += std::pow(double{c.targets[k * c.dimension + i]}, 2);
         const bool unit = etlmon::distance(c.metric).prepared == etlmon::Prepared::unit_rows;
         length = unit ? std::sqrt(length) : 1;
         double l1 = 0, linf = 0, square = 0;
         for (std::size_t i = 0; i < c.dimension; ++i) {
             const std::size_t at = k * c.dimension + i;
             const double e = std::abs(double{narrow[at]} - double{c.targets[at]} / length);
-            const double w = c.metric == etlmon::MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
+            const double w =
+                c.metric == etlmon::MetricId::mahalanobis_diagonal ? double{c.weights[i]} : 1.0;
             l1 += e, linf = std::max(linf, e), square += w * e * e;
         }
         greatest = std::max(greatest, c.metric == etlmon::MetricId::l1     ? l1

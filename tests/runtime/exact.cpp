@@ -26,7 +26,8 @@ Vector vector(const float* x, std::uint32_t n) {
 
 Matrix weights_of(const Case& c) {
     const auto d = static_cast<Eigen::Index>(c.dimension);
-    if (c.metric == MetricId::mahalanobis_diagonal) return vector(c.weights.data(), c.dimension).asDiagonal();
+    if (c.metric == MetricId::mahalanobis_diagonal)
+        return vector(c.weights.data(), c.dimension).asDiagonal();
     if (c.metric != MetricId::mahalanobis) return {};
     using Given = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     return Eigen::Map<const Given>(c.weights.data(), d, d).cast<Real>();
@@ -41,7 +42,8 @@ Real distance(MetricId metric, const Vector& z, const Vector& g, const Matrix& w
         case MetricId::linf: return d.lpNorm<Eigen::Infinity>();
         case MetricId::cosine: return (z.normalized() - g.normalized()).squaredNorm() / 2;
         case MetricId::angular:
-            return 2 * std::atan2((z.normalized() - g.normalized()).norm(), (z.normalized() + g.normalized()).norm());
+            return 2 * std::atan2((z.normalized() - g.normalized()).norm(),
+                                  (z.normalized() + g.normalized()).norm());
         case MetricId::mahalanobis:
         case MetricId::mahalanobis_diagonal: return std::sqrt(std::max<Real>(0, d.dot(w * d)));
     }
@@ -72,16 +74,21 @@ std::string report(Real got, Interval want) {
 }  // namespace
 
 Judge::Judge(const Case& c, bool flushes_denormals)
-    : metric_(c.metric), denormals_(flushes_denormals ? etlmon::Denormals::flushed : etlmon::Denormals::kept) {
-    const auto is_zero = [&](float x) { return flushes_denormals ? std::fabs(x) < FLT_MIN : x == 0; };
-    unknown_ = etlmon::distance(c.metric).zero_is_unknown && std::all_of(c.z.begin(), c.z.end(), is_zero);
+    : metric_(c.metric),
+      denormals_(flushes_denormals ? etlmon::Denormals::flushed : etlmon::Denormals::kept) {
+    const auto is_zero = [&](float x) {
+        return flushes_denormals ? std::fabs(x) < FLT_MIN : x == 0;
+    };
+    unknown_ =
+        etlmon::distance(c.metric).zero_is_unknown && std::all_of(c.z.begin(), c.z.end(), is_zero);
     const Vector z = vector(c.z.data(), c.dimension);
     const Matrix w = weights_of(c);
     for (std::uint32_t row = 0; row < c.rows && !unknown_; ++row) {
         const Vector g = vector(c.targets.data() + std::size_t{row} * c.dimension, c.dimension);
         const Real d = distance(c.metric, z, g, w);
         const Vector size = (z - g).cwiseAbs();
-        const Real magnitude = c.metric == MetricId::mahalanobis ? size.dot(w.cwiseAbs() * size) : 0;
+        const Real magnitude =
+            c.metric == MetricId::mahalanobis ? size.dot(w.cwiseAbs() * size) : 0;
         const Real bound = etlmon::rounding_bound(c.metric, c.dimension, static_cast<double>(d),
                                                   static_cast<double>(magnitude), denormals_);
         low_.push_back(std::max<Real>(0, d - bound));
@@ -90,20 +97,25 @@ Judge::Judge(const Case& c, bool flushes_denormals)
     }
 }
 
-std::string Judge::mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::uint32_t nearest) const {
+std::string Judge::mismatch(Aggregate aggregate, std::uint32_t delta_bits,
+                            std::uint32_t nearest) const {
     float delta = 0;
     std::memcpy(&delta, &delta_bits, sizeof delta);
     if (unknown_) {
-        return std::isnan(delta) && nearest == 0 ? "" : "a zero vector has no distance, got " + std::to_string(delta);
+        return std::isnan(delta) && nearest == 0
+                   ? ""
+                   : "a zero vector has no distance, got " + std::to_string(delta);
     }
     if (std::isnan(delta)) return "NaN";
     if (nearest >= exact_.size()) return "nearest row " + std::to_string(nearest);
-    if (delta < 0 || delta > etlmon::distance(metric_).highest) return "out of range: " + std::to_string(delta);
+    if (delta < 0 || delta > etlmon::distance(metric_).highest)
+        return "out of range: " + std::to_string(delta);
 
     Interval want{aggregated(low_, aggregate), aggregated(high_, aggregate)};
     if (aggregate.id == AggregationId::mean) {
         const auto mean = static_cast<double>(aggregated(exact_, aggregate));
-        const Real more = etlmon::mean_bound(static_cast<std::uint32_t>(exact_.size()), mean, denormals_);
+        const Real more =
+            etlmon::mean_bound(static_cast<std::uint32_t>(exact_.size()), mean, denormals_);
         want = {want.low - more, want.high + more};
     }
     // Distances beyond FLT_MAX are equal to the kernels, and make a mean infinite.
@@ -111,7 +123,8 @@ std::string Judge::mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::
     const Real highest = *std::max_element(high_.begin(), high_.end());
     const bool overflows = (aggregate.id == AggregationId::mean ? highest : want.high) > most;
     if (std::min(low_[nearest], most) > *std::min_element(high_.begin(), high_.end())) {
-        return "row " + std::to_string(nearest) + " is not the nearest: " + report(low_[nearest], want);
+        return "row " + std::to_string(nearest) +
+               " is not the nearest: " + report(low_[nearest], want);
     }
     if (std::isinf(delta)) return overflows ? "" : report(delta, want);
     return want.low <= delta && delta <= want.high ? "" : report(delta, want);
@@ -122,7 +135,8 @@ std::vector<float> positive_definite(std::uint32_t dimension, std::uint32_t seed
     std::normal_distribution<float> normal;
     const auto d = static_cast<Eigen::Index>(dimension);
     using Given = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
-    Given factor = Given::NullaryExpr(d, std::min<Eigen::Index>(d, 8), [&] { return normal(random); });
+    Given factor =
+        Given::NullaryExpr(d, std::min<Eigen::Index>(d, 8), [&] { return normal(random); });
     Given w = factor * factor.transpose() / 8 + Given::Identity(d, d) * 0.5F;
     w = ((w + w.transpose()) / 2).eval();
     return {w.data(), w.data() + w.size()};

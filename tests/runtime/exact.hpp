@@ -1,8 +1,9 @@
 // Distances straight from their definitions, in Real with Eigen: the judge of the kernels.
-// Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the exact distance and the
-// bound on the kernel's error; the verdict on what a kernel computed. Keeps true: compiled without -ffast-math,
-// whatever the kernels under test are compiled with; shares no arithmetic with them. No function takes a type of the
-// runtime: under other flags that is another type.
+// Takes: the float32 numbers a kernel takes, targets as the user gave them. Gives: per row the
+// exact distance and the bound on the kernel's error; the verdict on what a kernel computed. Keeps
+// true: compiled without -ffast-math, whatever the kernels under test are compiled with; shares no
+// arithmetic with them. No function takes a type of the runtime: under other flags that is another
+// type.
 #pragma once
 
 #include <cfloat>
@@ -15,7 +16,8 @@
 
 namespace exact {
 
-/// The widest type that the machine computes with; elsewhere than on x86 long double is emulated, and slow.
+/// The widest type that the machine computes with; elsewhere than on x86 long double is emulated,
+/// and slow.
 using Real = std::conditional_t<LDBL_MANT_DIG == 64, long double, double>;
 
 struct Case {
@@ -24,7 +26,8 @@ struct Case {
     std::uint32_t dimension = 0;
     std::vector<float> z;        ///< dimension
     std::vector<float> targets;  ///< rows x dimension, row-major
-    std::vector<float> weights;  ///< dimension^2 for mahalanobis, dimension for mahalanobis_diagonal
+    std::vector<float>
+        weights;  ///< dimension^2 for mahalanobis, dimension for mahalanobis_diagonal
 };
 
 struct Aggregate {
@@ -36,9 +39,10 @@ struct Aggregate {
 class Judge {
 public:
     Judge(const Case& c, bool flushes_denormals);
-    /// Empty where `delta` (given as bits, so that no flag can touch it) and `nearest` are within the bounds; else what
-    /// is wrong.
-    std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits, std::uint32_t nearest) const;
+    /// Empty where `delta` (given as bits, so that no flag can touch it) and `nearest` are within
+    /// the bounds; else what is wrong.
+    std::string mismatch(Aggregate aggregate, std::uint32_t delta_bits,
+                         std::uint32_t nearest) const;
 
 private:
     etlmon::MetricId metric_;

@@ -1,4 +1,5 @@
-// Everything of the distance side that generated code may call, instantiated once: what does its object refer to?
+// Everything of the distance side that generated code may call, instantiated once: what does its
+// object refer to?
 #include "etlmon/adaptation.hpp"
 #include "etlmon/bytes.hpp"
 #include "etlmon/expression.hpp"
@@ -24,8 +25,10 @@ const float kFull[kD * kD] = {1.0f};
 template <class Metric>
 etlmon::Measured all(const float* z) {
     using namespace etlmon;
-    const Measured a = measure<Metric, Min, kK, kD>(z, kTargets), b = measure<Metric, Max, kK, kD>(z, kTargets);
-    const Measured c = measure<Metric, Mean, kK, kD>(z, kTargets), d = measure<Metric, Kth<3>, kK, kD>(z, kTargets);
+    const Measured a = measure<Metric, Min, kK, kD>(z, kTargets),
+                   b = measure<Metric, Max, kK, kD>(z, kTargets);
+    const Measured c = measure<Metric, Mean, kK, kD>(z, kTargets),
+                   d = measure<Metric, Kth<3>, kK, kD>(z, kTargets);
     return {smaller(add(a.delta, b.delta), greater(c.delta, root(absolute(d.delta)))), a.nearest};
 }
 
@@ -66,7 +69,8 @@ etlmon::Enclosed in_integers(const float* z) {
     using namespace etlmon;
     const Enclosed a = measure_bytes<L2, Min, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
     const Enclosed b = measure_bytes<L2Sq, Mean, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
-    const Enclosed c = measure_bytes<Cosine, Kth<3>, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.125f);
+    const Enclosed c =
+        measure_bytes<Cosine, Kth<3>, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.125f);
     return a.doubtful({1.0f}) ? b.doubtful({1.0f}) ? c : b : a;
 }
 

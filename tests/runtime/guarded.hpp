@@ -1,7 +1,7 @@
 // Memory that ends where nothing may be read: a kernel that reads past its rows stops the program.
-// Takes: the elements to hold. Gives: a copy whose last byte lies before a page without access. Keeps
-// true: this finds vector loads past the end in every build, at full speed; a sanitizer finds them
-// only in what it was compiled into.
+// Takes: the elements to hold. Gives: a copy whose last byte lies before a page without access.
+// Keeps true: this finds vector loads past the end in every build, at full speed; a sanitizer finds
+// them only in what it was compiled into.
 #pragma once
 
 #include <sys/mman.h>
@@ -35,7 +35,8 @@ private:
         release();
         const auto page = static_cast<std::size_t>(::sysconf(_SC_PAGESIZE));
         room_ = (bytes / page + 1) * page;
-        void* begin = ::mmap(nullptr, room_ + page, PROT_READ | PROT_WRITE, MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
+        void* begin = ::mmap(nullptr, room_ + page, PROT_READ | PROT_WRITE,
+                             MAP_PRIVATE | MAP_ANONYMOUS, -1, 0);
         if (begin == MAP_FAILED) std::abort();
         end_ = static_cast<unsigned char*>(begin) + room_;
         if (::mprotect(end_, page, PROT_NONE) != 0) std::abort();

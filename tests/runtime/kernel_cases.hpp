@@ -25,11 +25,13 @@ inline const std::vector<std::uint32_t> kRows{1, 2, 3, 4, 5, 8, 17, 64};
 
 inline std::vector<etlmon::MetricId> metrics() {
     std::vector<etlmon::MetricId> all;
-    for (std::size_t i = 0; i < std::size(etlmon::kDistances); ++i) all.push_back(static_cast<etlmon::MetricId>(i));
+    for (std::size_t i = 0; i < std::size(etlmon::kDistances); ++i)
+        all.push_back(static_cast<etlmon::MetricId>(i));
     return all;
 }
 
-/// Sets whose matrix products, the judge's above all, take most of the time: they get fewer kinds of input.
+/// Sets whose matrix products, the judge's above all, take most of the time: they get fewer kinds
+/// of input.
 inline bool is_heavy(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
     return metric == etlmon::MetricId::mahalanobis && dimension * rows > 1000;
 }
@@ -37,14 +39,16 @@ inline bool is_heavy(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t 
 /// Every aggregation; where it costs little, the first and the last too.
 inline std::vector<exact::Aggregate> aggregates(std::uint32_t rows, bool heavy = false) {
     using Id = etlmon::AggregationId;
-    std::vector<exact::Aggregate> all{{Id::min, 1}, {Id::max, 1}, {Id::mean, 1}, {Id::kth, (rows + 1) / 2}};
+    std::vector<exact::Aggregate> all{
+        {Id::min, 1}, {Id::max, 1}, {Id::mean, 1}, {Id::kth, (rows + 1) / 2}};
     if (!heavy) all.insert(all.end(), {{Id::kth, 1}, {Id::kth, rows}});
     return all;
 }
 
 enum class Kind { ordinary, near_target, touching, equal, huge, tiny, denormal, mixed, opposite };
-inline const std::vector<Kind> kKinds{Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal,   Kind::huge,
-                                      Kind::tiny,     Kind::denormal,    Kind::mixed,    Kind::opposite};
+inline const std::vector<Kind> kKinds{Kind::ordinary, Kind::near_target, Kind::touching,
+                                      Kind::equal,    Kind::huge,        Kind::tiny,
+                                      Kind::denormal, Kind::mixed,       Kind::opposite};
 inline const char* name(Kind kind) {
     static const char* names[] = {"ordinary", "near",     "touching", "equal",   "huge",
                                   "tiny",     "denormal", "mixed",    "opposite"};
@@ -52,8 +56,8 @@ inline const char* name(Kind kind) {
 }
 
 /// rows x dimension targets and a z of that kind; every number is finite.
-inline exact::Case make(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t dimension, Kind kind,
-                        std::uint32_t seed) {
+inline exact::Case make(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t dimension,
+                        Kind kind, std::uint32_t seed) {
     std::mt19937 random(seed * 7919 + rows * 131 + dimension);
     std::normal_distribution<float> normal;
     std::uniform_int_distribution<int> power(-30, 30);
@@ -72,15 +76,19 @@ inline exact::Case make(etlmon::MetricId metric, std::uint32_t rows, std::uint32
     for (std::uint32_t i = 0; i < dimension; ++i) {
         switch (kind) {
             case Kind::near_target: c.z.push_back(of[i] * (1 + 1e-4F * normal(random))); break;
-            case Kind::touching: c.z.push_back(std::nextafter(of[i], normal(random) > 0 ? 10.0F : -10.0F)); break;
+            case Kind::touching:
+                c.z.push_back(std::nextafter(of[i], normal(random) > 0 ? 10.0F : -10.0F));
+                break;
             case Kind::equal: c.z.push_back(of[i]); break;
             case Kind::opposite: c.z.push_back(-of[i] * (1 + 1e-5F * normal(random))); break;
             default: c.z.push_back(draw());
         }
     }
-    if (metric == etlmon::MetricId::mahalanobis) c.weights = exact::positive_definite(dimension, seed);
+    if (metric == etlmon::MetricId::mahalanobis)
+        c.weights = exact::positive_definite(dimension, seed);
     if (metric == etlmon::MetricId::mahalanobis_diagonal) {
-        for (std::uint32_t i = 0; i < dimension; ++i) c.weights.push_back(0.1F + std::abs(normal(random)));
+        for (std::uint32_t i = 0; i < dimension; ++i)
+            c.weights.push_back(0.1F + std::abs(normal(random)));
     }
     return c;
 }
@@ -97,8 +105,8 @@ etlmon::Measured run(const exact::Case& c, exact::Aggregate aggregate);
 inline std::string describe(const exact::Case& c, exact::Aggregate a, const char* kind) {
     static const char* aggregations[] = {"min", "max", "mean", "kth"};
     return std::string(aggregations[static_cast<int>(a.id)]) + "(" + std::to_string(a.n) + ") " +
-           etlmon::distance(c.metric).word + ", D " + std::to_string(c.dimension) + ", K " + std::to_string(c.rows) +
-           ", " + kind;
+           etlmon::distance(c.metric).word + ", D " + std::to_string(c.dimension) + ", K " +
+           std::to_string(c.rows) + ", " + kind;
 }
 
 }  // namespace kernel_cases

@@ -1,6 +1,7 @@
 // The versions of the kernel that were compiled and that the CPU has.
-// Takes: a distance, an aggregation, how rows are stored. Gives: a function of each. Keeps true: `baseline` comes
-// first; a kernel on rows whose number is known at run time is compiled once per program, in row_kernels_*.cpp.
+// Takes: a distance, an aggregation, how rows are stored. Gives: a function of each. Keeps true:
+// `baseline` comes first; a kernel on rows whose number is known at run time is compiled once per
+// program, in row_kernels_*.cpp.
 #pragma once
 
 #include <functional>
@@ -28,18 +29,21 @@ std::vector<Version<Metric, Aggregation, Size, InColumns, G>> versions() {
 #if defined(ETLMON_DISPATCH)
     const std::uint32_t level = x86_64_level();
 #if ETLMON_X86_64 < 3
-    if (level >= 3) found.push_back({"v3", true, x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>});
+    if (level >= 3)
+        found.push_back({"v3", true, x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>});
 #endif
     if (level >= 4) {
         found.push_back({"v4", true, x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 1>});
         if constexpr (!InColumns && std::is_same_v<Aggregation, etlmon::Min>)
-            found.push_back({"v4, four streams", true, x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>});
+            found.push_back({"v4, four streams", true,
+                             x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>});
     }
 #endif
     return found;
 }
 
-/// One version on rows whose number is known at run time, whatever the distance and the aggregation.
+/// One version on rows whose number is known at run time, whatever the distance and the
+/// aggregation.
 template <class G>
 struct RowVersion {
     const char* name;

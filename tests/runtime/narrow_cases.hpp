@@ -1,6 +1,7 @@
-// Rows of float16 and int8 for the kernel tests. Subnormals, zeros and the greatest numbers of either are among them.
-// Takes: a storage, a distance, sizes, a kind of case. Gives: the narrow rows and the float32 rows that they widen to,
-// and a check that every version of the kernel gives both the same bits, within the bounds of the definition.
+// Rows of float16 and int8 for the kernel tests. Subnormals, zeros and the greatest numbers of
+// either are among them. Takes: a storage, a distance, sizes, a kind of case. Gives: the narrow
+// rows and the float32 rows that they widen to, and a check that every version of the kernel gives
+// both the same bits, within the bounds of the definition.
 #pragma once
 
 #include <gtest/gtest.h>
@@ -20,8 +21,9 @@ using etlmon::detail::ScaledRows;
 /// A float16 by its definition (IEEE 754, 3.4 and 3.6).
 inline float half(std::uint16_t bits) {
     const int exponent = (bits >> 10) & 0x1f, fraction = bits & 0x3ff;
-    const double magnitude =
-        exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);  // finite ones only
+    const double magnitude = exponent == 0
+                                 ? std::ldexp(fraction, -24)
+                                 : std::ldexp(1024 + fraction, exponent - 25);  // finite ones only
     return static_cast<float>((bits & 0x8000) != 0 ? -magnitude : magnitude);
 }
 
@@ -38,29 +40,34 @@ enum class Storage { f16, i8 };
 inline std::uint16_t random_half(std::mt19937& random, Kind kind) {
     const auto sign = static_cast<std::uint16_t>((random() & 1) << 15);
     const std::uint32_t fraction = random() & 0x3ff;
-    const std::uint32_t exponent = kind == Kind::denormal ? random() % 2  // subnormal, or the least normal ones
-                                   : kind == Kind::huge   ? 29 + random() % 2
-                                   : kind == Kind::mixed  ? random() % 31
-                                                          : 12 + random() % 4;
-    return static_cast<std::uint16_t>(sign | exponent << 10 | fraction | (fraction == 0 && exponent == 0 ? 1 : 0));
+    const std::uint32_t exponent = kind == Kind::denormal
+                                       ? random() % 2  // subnormal, or the least normal ones
+                                   : kind == Kind::huge  ? 29 + random() % 2
+                                   : kind == Kind::mixed ? random() % 31
+                                                         : 12 + random() % 4;
+    return static_cast<std::uint16_t>(sign | exponent << 10 | fraction |
+                                      (fraction == 0 && exponent == 0 ? 1 : 0));
 }
 
-inline Narrow make_narrow(Storage storage, MetricId metric, std::uint32_t rows, std::uint32_t dimension, Kind kind) {
+inline Narrow make_narrow(Storage storage, MetricId metric, std::uint32_t rows,
+                          std::uint32_t dimension, Kind kind) {
     Narrow narrow{make(metric, rows, dimension, Kind::ordinary, 31), {}, {}, 0};
     std::mt19937 random(rows * 1009 + dimension);
     narrow.scale = kind == Kind::denormal ? 3e-40F : kind == Kind::huge ? 1e35F : 0.0173F;
     for (std::size_t i = 0; i < narrow.wide.targets.size(); ++i) {
         narrow.halves.push_back(random_half(random, kind));
         narrow.bytes.push_back(static_cast<std::int8_t>(random() % 256 - 128));
-        narrow.wide.targets[i] =
-            storage == Storage::f16 ? half(narrow.halves[i]) : narrow.scale * static_cast<float>(narrow.bytes[i]);
+        narrow.wide.targets[i] = storage == Storage::f16
+                                     ? half(narrow.halves[i])
+                                     : narrow.scale * static_cast<float>(narrow.bytes[i]);
     }
     const std::size_t row = random() % rows * dimension;
     std::normal_distribution<float> normal;
     for (std::size_t i = 0; i < dimension; ++i) {
         float& z = narrow.wide.z[i];
         if (kind == Kind::equal) z = narrow.wide.targets[row + i];
-        if (kind == Kind::near_target) z = narrow.wide.targets[row + i] * (1 + 1e-5F * normal(random));
+        if (kind == Kind::near_target)
+            z = narrow.wide.targets[row + i] * (1 + 1e-5F * normal(random));
     }
     return narrow;
 }
@@ -68,7 +75,8 @@ inline Narrow make_narrow(Storage storage, MetricId metric, std::uint32_t rows, 
 /// The versions that widen whole embeddings.
 template <class G>
 std::vector<void (*)(G, float*, std::uint32_t) noexcept> widenings() {
-    std::vector<void (*)(G, float*, std::uint32_t) noexcept> all{etlmon::detail::baseline::widen<G>};
+    std::vector<void (*)(G, float*, std::uint32_t) noexcept> all{
+        etlmon::detail::baseline::widen<G>};
 #if defined(ETLMON_DISPATCH)
     const std::uint32_t level = etlmon::detail::x86_64_level();
 #if ETLMON_X86_64 < 3
@@ -82,7 +90,8 @@ std::vector<void (*)(G, float*, std::uint32_t) noexcept> widenings() {
 inline std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
     if (is_heavy(metric, rows, dimension)) return {Kind::ordinary};
     if (rows * dimension > 2000) return {Kind::ordinary, Kind::equal};
-    return {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge, Kind::denormal};
+    return {Kind::ordinary, Kind::near_target, Kind::equal,
+            Kind::mixed,    Kind::huge,        Kind::denormal};
 }
 
 /// n elements of every length come out as they do one by one, and nothing is written behind them.
@@ -92,7 +101,8 @@ void expect_widened(G from, std::uint32_t greatest) {
         for (std::uint32_t n = 0; n <= greatest; ++n) {
             std::vector<float> to(n + 1, -1.0F);
             widen(from, to.data(), n);
-            for (std::uint32_t i = 0; i < n; ++i) ASSERT_EQ(bits(to[i]), bits(etlmon::detail::element(from, i))) << n;
+            for (std::uint32_t i = 0; i < n; ++i)
+                ASSERT_EQ(bits(to[i]), bits(etlmon::detail::element(from, i))) << n;
             ASSERT_EQ(to[n], -1.0F) << n;
         }
     }
@@ -105,10 +115,11 @@ inline ScaledRows rows_in(const Narrow& narrow, ScaledRows) {
     return {narrow.bytes.data(), narrow.scale};
 }
 
-/// Rows as G reads them, measured by every version. Where rows have to be of length 1 the judge knows nothing of
-/// others, and what float32 rows give is compared.
+/// Rows as G reads them, measured by every version. Where rows have to be of length 1 the judge
+/// knows nothing of others, and what float32 rows give is compared.
 template <class G>
-void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Aggregate aggregate, const char* kind) {
+void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Aggregate aggregate,
+                      const char* kind) {
     const exact::Case& c = narrow.wide;
     const bool judged = etlmon::distance(c.metric).prepared == etlmon::Prepared::as_given;
     const auto direct = row_versions<G>(c.metric, aggregate.id);
@@ -116,8 +127,10 @@ void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Ag
     for (std::size_t v = 0; v < direct.size(); ++v) {
         const Measured measured = direct[v].measure(c, rows_in(narrow, G{}), aggregate);
         const Measured of_wide = wide[v].measure(c, c.targets.data(), aggregate);
-        ASSERT_EQ(bits(measured.delta), bits(of_wide.delta)) << direct[v].name << ": " << describe(c, aggregate, kind);
-        ASSERT_EQ(measured.nearest, of_wide.nearest) << direct[v].name << ": " << describe(c, aggregate, kind);
+        ASSERT_EQ(bits(measured.delta), bits(of_wide.delta))
+            << direct[v].name << ": " << describe(c, aggregate, kind);
+        ASSERT_EQ(measured.nearest, of_wide.nearest)
+            << direct[v].name << ": " << describe(c, aggregate, kind);
         if (!judged) continue;
         ASSERT_EQ(judge.mismatch(aggregate, bits(measured.delta), measured.nearest), "")
             << direct[v].name << ": " << describe(c, aggregate, kind);
@@ -132,7 +145,8 @@ void expect_metric(Storage storage, MetricId metric) {
             for (const Kind kind : kinds_of(metric, rows, dimension)) {
                 const Narrow narrow = make_narrow(storage, metric, rows, dimension, kind);
                 const exact::Judge judge(narrow.wide, kFlushesDenormals);
-                for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(metric, rows, dimension)))
+                for (const exact::Aggregate aggregate :
+                     aggregates(rows, is_heavy(metric, rows, dimension)))
                     expect_aggregate<G>(narrow, judge, aggregate, name(kind));
                 if (testing::Test::HasFatalFailure()) return;
             }

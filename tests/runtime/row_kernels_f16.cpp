@@ -2,5 +2,6 @@
 #include "row_kernels.hpp"
 
 namespace kernel_cases {
-template std::vector<RowVersion<const std::uint16_t*>> row_versions(etlmon::MetricId, etlmon::AggregationId);
+template std::vector<RowVersion<const std::uint16_t*>> row_versions(etlmon::MetricId,
+                                                                    etlmon::AggregationId);
 }  // namespace kernel_cases

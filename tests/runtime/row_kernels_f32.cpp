@@ -3,14 +3,15 @@
 
 namespace kernel_cases {
 
-template std::vector<RowVersion<const float*>> row_versions(etlmon::MetricId, etlmon::AggregationId);
+template std::vector<RowVersion<const float*>> row_versions(etlmon::MetricId,
+                                                            etlmon::AggregationId);
 
 etlmon::Measured run(const exact::Case& c, exact::Aggregate aggregate) {
     std::vector<float> prepared = c.targets;
     std::vector<float> scratch(aggregate.n);
     etlmon::prepare(c.metric, prepared.data(), c.rows, c.dimension);
-    return etlmon::measure(c.metric, aggregate.id, aggregate.n, c.z.data(), prepared.data(), c.rows, c.dimension,
-                           c.weights.data(), scratch.data());
+    return etlmon::measure(c.metric, aggregate.id, aggregate.n, c.z.data(), prepared.data(), c.rows,
+                           c.dimension, c.weights.data(), scratch.data());
 }
 
 }  // namespace kernel_cases

@@ -1,7 +1,7 @@
-// What the temporal tests share: value types, random streams, and the operators written as loops over a stream.
-// Takes: a stream of right and left operands and a range of positions. Gives: the operator's value, by its definition.
-// Keeps true: nothing here calls the monoids or the windows under test; loops compare through min_of and max_of of V
-// alone.
+// What the temporal tests share: value types, random streams, and the operators written as loops
+// over a stream. Takes: a stream of right and left operands and a range of positions. Gives: the
+// operator's value, by its definition. Keeps true: nothing here calls the monoids or the windows
+// under test; loops compare through min_of and max_of of V alone.
 #pragma once
 
 #include <cstdint>
@@ -73,7 +73,8 @@ inline bool same(Bits a, Bits b) {
     return a.word == b.word;
 }
 
-/// A random value: mostly few levels, so that ties occur; infinities and the smallest denormals among them.
+/// A random value: mostly few levels, so that ties occur; infinities and the smallest denormals
+/// among them.
 template <class V>
 V random_value(std::mt19937& random);
 
@@ -105,7 +106,8 @@ inline Bits random_value<Bits>(std::mt19937& random) {
     return {static_cast<uint32_t>(random())};
 }
 
-/// One signal pair, g the right and f the left operand of a binary operator; unary operators read g.
+/// One signal pair, g the right and f the left operand of a binary operator; unary operators read
+/// g.
 template <class V>
 struct Streams {
     std::vector<V> g, f;
@@ -130,7 +132,8 @@ struct CaseNames {
     }
 };
 
-// Each operator: how its element is made, its result read, and its definition over positions [first, last].
+// Each operator: how its element is made, its result read, and its definition over positions
+// [first, last].
 
 template <class V>
 struct GreatestCase {

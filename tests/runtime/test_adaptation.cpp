@@ -1,5 +1,5 @@
-// Adaptive thresholds: the update against integers, the bound on misses on sequences that are chosen against it, and
-// what comes from outside: distances and kept thresholds of every kind.
+// Adaptive thresholds: the update against integers, the bound on misses on sequences that are
+// chosen against it, and what comes from outside: distances and kept thresholds of every kind.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -28,7 +28,8 @@ double wide(float x) {
     return static_cast<double>(x);
 }
 
-/// As etlc makes them, mirrored for >=; alpha and gamma in extended precision, which outlasts every rounding here.
+/// As etlc makes them, mirrored for >=; alpha and gamma in extended precision, which outlasts every
+/// rounding here.
 struct Rule {
     long double alpha;
     long double gamma;
@@ -36,7 +37,8 @@ struct Rule {
     bool mirrored;
 
     float start(double share) const {
-        const double steps = std::round((wide(by.lo) + share * (wide(by.hi) - wide(by.lo))) / wide(by.grid));
+        const double steps =
+            std::round((wide(by.lo) + share * (wide(by.hi) - wide(by.lo))) / wide(by.grid));
         return std::clamp(static_cast<float>(steps) * by.grid, by.lo, by.hi);
     }
 };
@@ -48,8 +50,9 @@ Rule rule(long double alpha, long double gamma, double lo, double hi, bool mirro
     const auto hit = static_cast<float>(std::floor(gamma * alpha / length) * length);
     return {alpha,
             gamma,
-            {static_cast<float>(std::floor(lo / grid) * grid), static_cast<float>(std::ceil(hi / grid) * grid),
-             mirrored ? -miss : miss, mirrored ? hit : -hit, static_cast<float>(grid)},
+            {static_cast<float>(std::floor(lo / grid) * grid),
+             static_cast<float>(std::ceil(hi / grid) * grid), mirrored ? -miss : miss,
+             mirrored ? hit : -hit, static_cast<float>(grid)},
             mirrored};
 }
 
@@ -72,7 +75,8 @@ etlmon::Truth found(const Rule& rule, const float& distance, const float& epsilo
 
 /// The same threshold as a number of grid lengths.
 std::int64_t steps(const Rule& rule, float x) {
-    return static_cast<std::int64_t>(std::llround(static_cast<double>(x) / static_cast<double>(rule.by.grid)));
+    return static_cast<std::int64_t>(
+        std::llround(static_cast<double>(x) / static_cast<double>(rule.by.grid)));
 }
 
 TEST(Adaptation, NoUpdateIsRounded) {
@@ -81,8 +85,9 @@ TEST(Adaptation, NoUpdateIsRounded) {
         float epsilon = r.start(0.4);
         std::int64_t exact = steps(r, epsilon);
         for (int n = 0; n < 20000; ++n) {
-            const float distance = static_cast<float>(wide(r.by.lo) + (wide(r.by.hi) - wide(r.by.lo)) *
-                                                                          static_cast<double>(engine() % 1000) / 999);
+            const float distance =
+                static_cast<float>(wide(r.by.lo) + (wide(r.by.hi) - wide(r.by.lo)) *
+                                                       static_cast<double>(engine() % 1000) / 999);
             const bool hit = r.mirrored ? distance >= epsilon : distance <= epsilon;
             exact += steps(r, hit ? r.by.on_hit : r.by.on_miss);
             exact = std::clamp(exact, steps(r, r.by.lo), steps(r, r.by.hi));
@@ -135,8 +140,9 @@ TEST(Adaptation, MissesStayBelowTheBound) {
     for (const Rule& r : rules())
         for (const World& world : worlds()) {
             float epsilon = r.start(0.3);
-            const long double room = r.mirrored ? static_cast<long double>(epsilon) - static_cast<long double>(r.by.lo)
-                                                : static_cast<long double>(r.by.hi) - static_cast<long double>(epsilon);
+            const long double room =
+                r.mirrored ? static_cast<long double>(epsilon) - static_cast<long double>(r.by.lo)
+                           : static_cast<long double>(r.by.hi) - static_cast<long double>(epsilon);
             std::uint64_t misses = 0;
             std::uint64_t held_back = 0;
             for (std::uint64_t n = 1; n <= 15000; ++n) {
@@ -156,7 +162,8 @@ TEST(Adaptation, MissesStayBelowTheBound) {
         }
 }
 
-/// The bound is met: a world that misses until the range is used up has as many misses as it allows.
+/// The bound is met: a world that misses until the range is used up has as many misses as it
+/// allows.
 TEST(Adaptation, TheBoundIsTight) {
     const Rule r = rule(0.25L, 0.5L, 0, 4, false);  // all exact
     float epsilon = 1;
@@ -164,7 +171,8 @@ TEST(Adaptation, TheBoundIsTight) {
     while (epsilon + r.by.on_miss <= r.by.hi) {
         ++misses;
         epsilon = adapted(epsilon, etlmon::kNo, r.by);
-        ASSERT_EQ(static_cast<double>(misses), 0.25 * static_cast<double>(misses) + (wide(epsilon) - 1) / 0.5);
+        ASSERT_EQ(static_cast<double>(misses),
+                  0.25 * static_cast<double>(misses) + (wide(epsilon) - 1) / 0.5);
     }
     EXPECT_EQ(misses, 8U);
 }
@@ -211,7 +219,8 @@ TEST(Adaptation, KeptThresholdsComeBack) {
             const float got = restored(any, epsilon, r.by);
             ASSERT_LE(r.by.lo, got);
             ASSERT_LE(got, r.by.hi);
-            ASSERT_EQ(static_cast<double>(got), static_cast<double>(steps(r, got)) * wide(r.by.grid));
+            ASSERT_EQ(static_cast<double>(got),
+                      static_cast<double>(steps(r, got)) * wide(r.by.grid));
         }
     }
 }

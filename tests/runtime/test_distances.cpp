@@ -1,4 +1,5 @@
-// Every distance and aggregation against exact.hpp, within the stated bounds, at every size and kind of input.
+// Every distance and aggregation against exact.hpp, within the stated bounds, at every size and
+// kind of input.
 #include <gtest/gtest.h>
 
 #include "kernel_cases.hpp"
@@ -13,14 +14,18 @@ class Distances : public testing::TestWithParam<MetricId> {};
 TEST_P(Distances, WithinTheirBounds) {
     for (const std::uint32_t dimension : kDimensions) {
         for (const std::uint32_t rows : kRows) {
-            const bool heavy = is_heavy(GetParam(), rows, dimension);  // test_kernel_versions.cpp has all of them
+            const bool heavy =
+                is_heavy(GetParam(), rows, dimension);  // test_kernel_versions.cpp has all of them
             if (heavy && rows > 5) continue;
-            for (const Kind kind : heavy ? std::vector<Kind>{Kind::ordinary, Kind::touching} : kKinds) {
+            for (const Kind kind :
+                 heavy ? std::vector<Kind>{Kind::ordinary, Kind::touching} : kKinds) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 1);
                 const exact::Judge judge(c, kFlushesDenormals);
-                for (const exact::Aggregate a : heavy ? std::vector<exact::Aggregate>{{}} : aggregates(rows)) {
+                for (const exact::Aggregate a :
+                     heavy ? std::vector<exact::Aggregate>{{}} : aggregates(rows)) {
                     const etlmon::Measured m = run(c, a);
-                    ASSERT_EQ(judge.mismatch(a, bits(m.delta), m.nearest), "") << describe(c, a, name(kind));
+                    ASSERT_EQ(judge.mismatch(a, bits(m.delta), m.nearest), "")
+                        << describe(c, a, name(kind));
                 }
             }
         }
@@ -38,9 +43,11 @@ TEST_P(Distances, NearestIsTheLowestOfEqualRows) {
     }
     c.z = row;
     c.z[1] += 0.125F;
-    for (const exact::Aggregate a : aggregates(c.rows)) EXPECT_EQ(run(c, a).nearest, 0U) << describe(c, a, "ties");
+    for (const exact::Aggregate a : aggregates(c.rows))
+        EXPECT_EQ(run(c, a).nearest, 0U) << describe(c, a, "ties");
     std::swap_ranges(c.targets.begin(), c.targets.begin() + 5, c.targets.begin() + 5);
-    for (const exact::Aggregate a : aggregates(c.rows)) EXPECT_EQ(run(c, a).nearest, 1U) << describe(c, a, "ties");
+    for (const exact::Aggregate a : aggregates(c.rows))
+        EXPECT_EQ(run(c, a).nearest, 1U) << describe(c, a, "ties");
 }
 
 TEST_P(Distances, ZeroVectors) {
@@ -55,12 +62,13 @@ TEST_P(Distances, ZeroVectors) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, Distances, testing::ValuesIn(metrics()),
-                         [](const auto& of) { return std::string(etlmon::distance(of.param).word); });
+INSTANTIATE_TEST_SUITE_P(All, Distances, testing::ValuesIn(metrics()), [](const auto& of) {
+    return std::string(etlmon::distance(of.param).word);
+});
 
 TEST(Distances, EqualVectorsAreAtZero) {
-    for (const MetricId metric : {MetricId::l2, MetricId::l2sq, MetricId::l1, MetricId::linf, MetricId::mahalanobis,
-                                  MetricId::mahalanobis_diagonal}) {
+    for (const MetricId metric : {MetricId::l2, MetricId::l2sq, MetricId::l1, MetricId::linf,
+                                  MetricId::mahalanobis, MetricId::mahalanobis_diagonal}) {
         for (const std::uint32_t dimension : {1U, 7U, 33U}) {
             const exact::Case c = make(metric, 4, dimension, Kind::equal, 5);
             EXPECT_EQ(bits(run(c, {}).delta), 0U) << describe(c, {}, "equal");
@@ -92,9 +100,11 @@ TEST(Distances, OverflowOnlyWhereTheDistanceDoes) {
     EXPECT_NEAR(run(fits, {}).delta * 1e-30F, 2.82842712e8F, 100.0F);
     const exact::Case apart{MetricId::l2, 1, 2, {most, most}, {-most, -most}, {}};
     EXPECT_EQ(bits(run(apart, {}).delta), 0x7f800000U);
-    const exact::Case weighted{MetricId::mahalanobis_diagonal, 1, 2, {most, 0}, {-most, 0}, {1e-30F, 1e-30F}};
+    const exact::Case weighted{
+        MetricId::mahalanobis_diagonal, 1, 2, {most, 0}, {-most, 0}, {1e-30F, 1e-30F}};
     EXPECT_NEAR(run(weighted, {}).delta * 1e-23F, 6.80564693F, 1e-6F);
-    const exact::Case full{MetricId::mahalanobis, 1, 2, {most, 0}, {-most, 0}, {1e-30F, 0, 0, 1e-30F}};
+    const exact::Case full{MetricId::mahalanobis, 1, 2, {most, 0}, {-most, 0},
+                           {1e-30F, 0, 0, 1e-30F}};
     EXPECT_NEAR(run(full, {}).delta * 1e-23F, 6.80564693F, 1e-6F);
 }
 
@@ -120,7 +130,8 @@ TEST(Distances, MahalanobisAgreesWithItsDiagonalForm) {
     full.weights.assign(49, 0.0F);
     for (std::size_t i = 0; i < 7; ++i) full.weights[i * 8] = diagonal.weights[i];
     for (const exact::Aggregate a : aggregates(5)) {
-        EXPECT_NEAR(run(full, a).delta, run(diagonal, a).delta, 1e-5F) << describe(full, a, "diagonal");
+        EXPECT_NEAR(run(full, a).delta, run(diagonal, a).delta, 1e-5F)
+            << describe(full, a, "diagonal");
     }
 }
 

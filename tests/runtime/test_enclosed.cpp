@@ -1,5 +1,6 @@
-// What narrow copies of targets say about the targets: the interval holds the distance in real arithmetic and what
-// every version of the kernel measures on the float32 rows, and a comparison that it leaves open is doubtful.
+// What narrow copies of targets say about the targets: the interval holds the distance in real
+// arithmetic and what every version of the kernel measures on the float32 rows, and a comparison
+// that it leaves open is doubtful.
 #include "etlmon/enclosed.hpp"
 
 #include <gtest/gtest.h>
@@ -17,8 +18,9 @@ using etlmon::Enclosed;
 using etlmon::Measured;
 using etlmon::MetricId;
 
-/// Prepared rows, what their narrow copies widen to, and how far these moved. The kernels give narrow rows the bits
-/// that they give widened ones (test_narrow_halves.cpp, test_narrow_bytes.cpp): here the widened ones are measured.
+/// Prepared rows, what their narrow copies widen to, and how far these moved. The kernels give
+/// narrow rows the bits that they give widened ones (test_narrow_halves.cpp,
+/// test_narrow_bytes.cpp): here the widened ones are measured.
 struct Copies {
     std::vector<float> rows, halves, bytes;
     float moved_halves = 0, moved_bytes = 0;
@@ -28,7 +30,8 @@ struct Copies {
 float truncated_half(float x) {
     const std::uint32_t b = bits(x);
     const int exponent = static_cast<int>((b >> 23) & 0xff) - 112;
-    const std::uint32_t half = exponent <= 0 ? 0 : static_cast<std::uint32_t>(exponent) << 10 | (b >> 13 & 0x3ff);
+    const std::uint32_t half =
+        exponent <= 0 ? 0 : static_cast<std::uint32_t>(exponent) << 10 | (b >> 13 & 0x3ff);
     const auto narrow = static_cast<std::uint16_t>((b >> 16 & 0x8000) | half);
     return etlmon::detail::element(&narrow, 0);
 }
@@ -50,8 +53,9 @@ Copies copies_of(const exact::Case& c) {
 }
 
 template <class Metric>
-void expect_enclosed(const exact::Case& c, const std::vector<float>& rows, const std::vector<float>& narrow_rows,
-                     float moved, exact::Aggregate aggregate, const std::string& what) {
+void expect_enclosed(const exact::Case& c, const std::vector<float>& rows,
+                     const std::vector<float>& narrow_rows, float moved, exact::Aggregate aggregate,
+                     const std::string& what) {
     const std::uint32_t averaged = aggregate.id == etlmon::AggregationId::mean ? c.rows : 0;
     const double exact = aggregated(c, aggregate);
     const auto all = row_versions<const float*>(c.metric, aggregate.id);
@@ -80,17 +84,21 @@ void expect_case(const exact::Case& c, const Copies& copies, const char* kind) {
     for (const exact::Aggregate aggregate :
          {exact::Aggregate{Id::min, 1}, {Id::mean, 1}, {Id::max, 1}, {Id::kth, (c.rows + 1) / 2}}) {
         const std::string what = describe(c, aggregate, kind);
-        expect_enclosed<Metric>(c, copies.rows, copies.halves, copies.moved_halves, aggregate, "f16, " + what);
-        expect_enclosed<Metric>(c, copies.rows, copies.bytes, copies.moved_bytes, aggregate, "i8, " + what);
+        expect_enclosed<Metric>(c, copies.rows, copies.halves, copies.moved_halves, aggregate,
+                                "f16, " + what);
+        expect_enclosed<Metric>(c, copies.rows, copies.bytes, copies.moved_bytes, aggregate,
+                                "i8, " + what);
     }
 }
 
-/// z on the line through a row and its narrow copy, where the distance changes by all that the row moved, near 0.
+/// z on the line through a row and its narrow copy, where the distance changes by all that the row
+/// moved, near 0.
 template <class Metric>
 void expect_along_the_move(exact::Case c, const Copies& copies) {
     for (const auto* narrow : {&copies.halves, &copies.bytes}) {
         for (const float t : {-3.0F, -0.5F, 0.0F, 0.5F, 0.999F, 1.0F, 1.5F, 4.0F}) {
-            for (std::size_t i = 0; i < c.dimension; ++i) c.z[i] = copies.rows[i] + t * ((*narrow)[i] - copies.rows[i]);
+            for (std::size_t i = 0; i < c.dimension; ++i)
+                c.z[i] = copies.rows[i] + t * ((*narrow)[i] - copies.rows[i]);
             if (std::all_of(c.z.begin(), c.z.end(), [](float x) { return x == 0; })) continue;
             expect_case<Metric>(c, copies, "along the move");
         }
@@ -101,13 +109,15 @@ template <class Metric>
 void expect_metric(MetricId metric) {
     for (const std::uint32_t dimension : kDimensions) {
         for (const std::uint32_t rows : kRows) {
-            for (const Kind kind :
-                 {Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal, Kind::tiny, Kind::opposite}) {
-                if (dimension * rows > 4000 && kind != Kind::ordinary && kind != Kind::equal) continue;
+            for (const Kind kind : {Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal,
+                                    Kind::tiny, Kind::opposite}) {
+                if (dimension * rows > 4000 && kind != Kind::ordinary && kind != Kind::equal)
+                    continue;
                 const exact::Case c = make(metric, rows, dimension, kind, 41);
                 const Copies copies = copies_of(c);
                 expect_case<Metric>(c, copies, name(kind));
-                if (kind == Kind::ordinary && dimension * rows < 2000) expect_along_the_move<Metric>(c, copies);
+                if (kind == Kind::ordinary && dimension * rows < 2000)
+                    expect_along_the_move<Metric>(c, copies);
                 if (testing::Test::HasFatalFailure()) return;
             }
         }
@@ -140,8 +150,10 @@ TEST(Enclosed, WhatIsNotFiniteIsDoubtful) {
     const etlmon::Cut far[] = {1.0F, {2.0F, 3.0F}};
     for (const float delta : {HUGE_VALF, etlmon::kMissing, 3e38F})
         EXPECT_TRUE(etlmon::enclose<etlmon::L2Sq>({delta, 0}, 1e30F, 384).doubtful(far)) << delta;
-    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384).doubtful(far));      // a square of which overflows
-    EXPECT_TRUE(etlmon::enclose<etlmon::Angular>({0.5F, 0}, 0.3F, 384).doubtful(far));  // the bound is for small moves
+    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384)
+                    .doubtful(far));  // a square of which overflows
+    EXPECT_TRUE(etlmon::enclose<etlmon::Angular>({0.5F, 0}, 0.3F, 384)
+                    .doubtful(far));  // the bound is for small moves
     EXPECT_FALSE(etlmon::enclose<etlmon::L2>({0.5F, 0}, 0.1F, 384).doubtful(far));
     EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.95F, 0}, 0.1F, 384).doubtful(far));
     EXPECT_TRUE(etlmon::enclose<etlmon::L2>({2.5F, 0}, 0.1F, 384).doubtful(far));  // inside a cut

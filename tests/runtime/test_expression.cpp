@@ -1,4 +1,5 @@
-// Arithmetic of EXPR: IEEE 754 results by bits, whatever this file is compiled with; NaN is never lost.
+// Arithmetic of EXPR: IEEE 754 results by bits, whatever this file is compiled with; NaN is never
+// lost.
 #include <gtest/gtest.h>
 
 #include <cstdint>
@@ -9,10 +10,12 @@
 
 namespace {
 
-constexpr std::uint32_t kInf = 0x7f800000, kMinusInf = 0xff800000, kNan = 0x7fc00000, kMinusNan = 0xffc00000;
-constexpr std::uint32_t kOne = 0x3f800000, kMinusOne = 0xbf800000, kZero = 0, kMinusZero = 0x80000000,
-                        kTwo = 0x40000000, kFour = 0x40800000, kMost = 0x7f7fffff, kTenth = 0x3dcccccd,
-                        kThird = 0x3eaaaaab, kThree = 0x40400000;
+constexpr std::uint32_t kInf = 0x7f800000, kMinusInf = 0xff800000, kNan = 0x7fc00000,
+                        kMinusNan = 0xffc00000;
+constexpr std::uint32_t kOne = 0x3f800000, kMinusOne = 0xbf800000, kZero = 0,
+                        kMinusZero = 0x80000000, kTwo = 0x40000000, kFour = 0x40800000,
+                        kMost = 0x7f7fffff, kTenth = 0x3dcccccd, kThird = 0x3eaaaaab,
+                        kThree = 0x40400000;
 
 float hidden(std::uint32_t b) {
     volatile std::uint32_t kept = b;
@@ -80,8 +83,10 @@ TEST(Expression, NanOperandsGiveNan) {
     for (const Binary operation : {kAdd, kSubtract, kMultiply, kDivide, kSmaller, kGreater}) {
         for (const std::uint32_t nan : {kNan, kMinusNan, 0x7f800001U, 0xffffffffU}) {
             for (const std::uint32_t other : {kZero, kOne, kMinusOne, kInf, kMinusInf, kNan}) {
-                EXPECT_EQ(bits(operation(hidden(nan), hidden(other))), kNan) << std::hex << nan << ", " << other;
-                EXPECT_EQ(bits(operation(hidden(other), hidden(nan))), kNan) << std::hex << other << ", " << nan;
+                EXPECT_EQ(bits(operation(hidden(nan), hidden(other))), kNan)
+                    << std::hex << nan << ", " << other;
+                EXPECT_EQ(bits(operation(hidden(other), hidden(nan))), kNan)
+                    << std::hex << other << ", " << nan;
             }
         }
     }
@@ -123,7 +128,8 @@ TEST(Expression, NeitherFusesNorReassociates) {
 TEST(Expression, ExtremesAreCompared) {
     EXPECT_EQ(bits(etlmon::smaller(hidden(1), hidden(2))), 1U) << "denormals";
     EXPECT_EQ(bits(etlmon::greater(hidden(0x80000001U), hidden(0x80000002U))), 0x80000001U);
-    EXPECT_EQ(bits(etlmon::smaller(hidden(kMinusZero), hidden(kZero))), kMinusZero) << "equal: the first";
+    EXPECT_EQ(bits(etlmon::smaller(hidden(kMinusZero), hidden(kZero))), kMinusZero)
+        << "equal: the first";
     EXPECT_EQ(bits(etlmon::greater(hidden(kZero), hidden(kMinusZero))), kZero);
 }
 

@@ -1,5 +1,6 @@
-// The kernel with sizes known to the compiler against the same kernel with sizes known at run time: equal bits.
-// Under -ffast-math the compiler may add in another order in each of them; there both must be within the bounds.
+// The kernel with sizes known to the compiler against the same kernel with sizes known at run time:
+// equal bits. Under -ffast-math the compiler may add in another order in each of them; there both
+// must be within the bounds.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -37,8 +38,10 @@ void expect_twins(MetricId metric, exact::Aggregate aggregate) {
         const Measured two = run(c, aggregate);
 #if defined(__FAST_MATH__)
         const exact::Judge judge(c, kFlushesDenormals);
-        EXPECT_EQ(judge.mismatch(aggregate, bits(one.delta), one.nearest), "") << describe(c, aggregate, name(kind));
-        EXPECT_EQ(judge.mismatch(aggregate, bits(two.delta), two.nearest), "") << describe(c, aggregate, name(kind));
+        EXPECT_EQ(judge.mismatch(aggregate, bits(one.delta), one.nearest), "")
+            << describe(c, aggregate, name(kind));
+        EXPECT_EQ(judge.mismatch(aggregate, bits(two.delta), two.nearest), "")
+            << describe(c, aggregate, name(kind));
 #else
         EXPECT_EQ(bits(one.delta), bits(two.delta)) << describe(c, aggregate, name(kind));
         EXPECT_EQ(one.nearest, two.nearest) << describe(c, aggregate, name(kind));
@@ -77,7 +80,8 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
     expect_nearest_twins<1, 384>();
     expect_nearest_twins<17, 384>();
     expect_nearest_twins<8, 1000>();
-    // In blocks of 64, 32 or 16 elements: some without whole blocks, some with vectors after them, some with a rest.
+    // In blocks of 64, 32 or 16 elements: some without whole blocks, some with vectors after them,
+    // some with a rest.
     expect_nearest_twins<1, 16>();
     expect_nearest_twins<1, 17>();
     expect_nearest_twins<1, 32>();
@@ -100,7 +104,9 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
 
 /// A number in [-1, 1) for each i.
 constexpr float number(std::size_t i) {
-    return static_cast<float>((static_cast<std::uint32_t>(i) * 2654435761u + 12345u) >> 8) / 8388608.0f - 1.0f;
+    return static_cast<float>((static_cast<std::uint32_t>(i) * 2654435761u + 12345u) >> 8) /
+               8388608.0f -
+           1.0f;
 }
 template <class Indices>
 struct Numbers;
@@ -114,7 +120,8 @@ void expect_told_twins(MetricId metric) {
     constexpr const auto& rows = Numbers<std::make_index_sequence<K * D>>::kValues;
     const auto expect_equal = [](etlmon::Vector<float, D> z, const std::string& which) {
         const Measured one = etlmon::measure<Metric, Aggregation, K, D, rows>(z);
-        const Measured two = etlmon::measure<Metric, Aggregation, K, D, rows>(etlmon::direction_of(z));
+        const Measured two =
+            etlmon::measure<Metric, Aggregation, K, D, rows>(etlmon::direction_of(z));
         EXPECT_EQ(bits(one.delta), bits(two.delta)) << which << ", " << K << " x " << D;
         EXPECT_EQ(one.nearest, two.nearest) << which << ", " << K << " x " << D;
     };
@@ -158,7 +165,8 @@ TEST(KernelTwins, ARowsValueDoesNotDependOnWhichTileItIsIn) {
         }
         std::sort(alone.begin(), alone.end());
         for (std::uint32_t n = 1; n <= 5; ++n) {
-            EXPECT_EQ(bits(run(all, {etlmon::AggregationId::kth, n}).delta), alone[n - 1]) << describe(all, {}, "rows");
+            EXPECT_EQ(bits(run(all, {etlmon::AggregationId::kth, n}).delta), alone[n - 1])
+                << describe(all, {}, "rows");
         }
     }
 }

@@ -1,5 +1,6 @@
-// Every version of the kernel that this machine can run, against exact.hpp: within the stated bounds at every size, and
-// the versions that fuse multiplication and addition against each other: equal bits.
+// Every version of the kernel that this machine can run, against exact.hpp: within the stated
+// bounds at every size, and the versions that fuse multiplication and addition against each other:
+// equal bits.
 #include <gtest/gtest.h>
 
 #include "kernel_versions.hpp"
@@ -18,8 +19,8 @@ struct Answer {
     Measured measured;
 };
 
-void expect_answers(const std::vector<Answer>& answers, const exact::Case& c, const exact::Judge& judge,
-                    exact::Aggregate aggregate, const char* kind) {
+void expect_answers(const std::vector<Answer>& answers, const exact::Case& c,
+                    const exact::Judge& judge, exact::Aggregate aggregate, const char* kind) {
     const Answer* fused = nullptr;
     for (const Answer& answer : answers) {
         const Measured m = answer.measured;
@@ -29,7 +30,8 @@ void expect_answers(const std::vector<Answer>& answers, const exact::Case& c, co
         if (answer.fused && fused != nullptr) {
             ASSERT_EQ(bits(m.delta), bits(fused->measured.delta))
                 << answer.version << ": " << describe(c, aggregate, kind);
-            ASSERT_EQ(m.nearest, fused->measured.nearest) << answer.version << ": " << describe(c, aggregate, kind);
+            ASSERT_EQ(m.nearest, fused->measured.nearest)
+                << answer.version << ": " << describe(c, aggregate, kind);
         }
 #endif
         if (answer.fused) fused = &answer;
@@ -37,8 +39,8 @@ void expect_answers(const std::vector<Answer>& answers, const exact::Case& c, co
 }
 
 /// rows: prepared.
-void expect_row_versions(const exact::Case& c, const exact::Judge& judge, const float* rows, exact::Aggregate aggregate,
-                         const char* kind) {
+void expect_row_versions(const exact::Case& c, const exact::Judge& judge, const float* rows,
+                         exact::Aggregate aggregate, const char* kind) {
     std::vector<Answer> answers;
     for (const auto& version : row_versions<const float*>(c.metric, aggregate.id))
         answers.push_back({version.name, version.fused, version.measure(c, rows, aggregate)});
@@ -61,7 +63,8 @@ TEST_P(KernelVersions, EveryAggregationAndSize) {
                 const exact::Judge judge(c, kFlushesDenormals);
                 std::vector<float> prepared = c.targets;
                 etlmon::prepare(c.metric, prepared.data(), rows, dimension);
-                for (const exact::Aggregate aggregate : aggregates(rows, is_heavy(GetParam(), rows, dimension)))
+                for (const exact::Aggregate aggregate :
+                     aggregates(rows, is_heavy(GetParam(), rows, dimension)))
                     expect_row_versions(c, judge, prepared.data(), aggregate, name(kind));
                 if (HasFatalFailure()) return;
             }
@@ -69,8 +72,9 @@ TEST_P(KernelVersions, EveryAggregationAndSize) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, KernelVersions, testing::ValuesIn(metrics()),
-                         [](const auto& of) { return std::string(etlmon::distance(of.param).word); });
+INSTANTIATE_TEST_SUITE_P(All, KernelVersions, testing::ValuesIn(metrics()), [](const auto& of) {
+    return std::string(etlmon::distance(of.param).word);
+});
 
 template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
 void expect_columns(MetricId metric, exact::Aggregate aggregate) {
@@ -85,16 +89,18 @@ void expect_columns(MetricId metric, exact::Aggregate aggregate) {
         const Columns<K, D> columns = columns_of<K, D>(rows);
         std::vector<Answer> answers;
         for (const auto& version : versions<Metric, Aggregation, Fixed<K, D>, true>())
-            answers.push_back({version.name, version.fused,
-                               unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
+            answers.push_back(
+                {version.name, version.fused,
+                 unpacked(version.run(c.z.data(), columns.values, c.weights.data(), {}, {}))});
         expect_answers(answers, c, judge, aggregate, name(kind));
         // The same rows, not in columns: the same bits.
-        const Measured in_rows =
-            best<Metric, Aggregation, Fixed<K, D>, false>(c.z.data(), rows, c.weights.data(), {}, {});
-        const Measured in_columns =
-            best<Metric, Aggregation, Fixed<K, D>, true>(c.z.data(), columns.values, c.weights.data(), {}, {});
+        const Measured in_rows = best<Metric, Aggregation, Fixed<K, D>, false>(
+            c.z.data(), rows, c.weights.data(), {}, {});
+        const Measured in_columns = best<Metric, Aggregation, Fixed<K, D>, true>(
+            c.z.data(), columns.values, c.weights.data(), {}, {});
 #if !defined(__FAST_MATH__)
-        ASSERT_EQ(bits(in_columns.delta), bits(in_rows.delta)) << describe(c, aggregate, name(kind));
+        ASSERT_EQ(bits(in_columns.delta), bits(in_rows.delta))
+            << describe(c, aggregate, name(kind));
         ASSERT_EQ(in_columns.nearest, in_rows.nearest) << describe(c, aggregate, name(kind));
 #endif
     }
@@ -109,12 +115,14 @@ TEST(ColumnVersions, WithinTheirBounds) {
     expect_columns<etlmon::Linf, etlmon::Max, 64, 33>(MetricId::linf, {Id::max, 1});
     expect_columns<etlmon::Cosine, etlmon::Min, 64, 32>(MetricId::cosine, {});
     expect_columns<etlmon::Angular, etlmon::Kth<3>, 8, 3>(MetricId::angular, {Id::kth, 3});
-    expect_columns<etlmon::MahalanobisDiagonal, etlmon::Min, 8, 3>(MetricId::mahalanobis_diagonal, {});
+    expect_columns<etlmon::MahalanobisDiagonal, etlmon::Min, 8, 3>(MetricId::mahalanobis_diagonal,
+                                                                   {});
 }
 
 TEST(LargeSetVersions, AgreeInOneStreamAndInFour) {
     constexpr std::uint32_t kRowsOfStream = 530, kDimension = 1000;
-    static_assert(etlmon::detail::order(kRowsOfStream, kDimension) == etlmon::detail::Order::four_chunks ||
+    static_assert(etlmon::detail::order(kRowsOfStream, kDimension) ==
+                      etlmon::detail::Order::four_chunks ||
                   !etlmon::detail::kHasPacks);
     const exact::Case c = make(MetricId::l2, kRowsOfStream, kDimension, Kind::near_target, 23);
     const exact::Judge judge(c, kFlushesDenormals);

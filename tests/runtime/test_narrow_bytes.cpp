@@ -1,5 +1,5 @@
-// Rows of int8: the same bits as the rows of float32 that they widen to, in every version of the kernel, and so
-// within the same bounds.
+// Rows of int8: the same bits as the rows of float32 that they widen to, in every version of the
+// kernel, and so within the same bounds.
 #include "narrow_cases.hpp"
 
 namespace {

@@ -1,5 +1,6 @@
-// Distances to int8 rows in integers: every version gives the same bits, the interval holds the distance to the float32
-// rows in real arithmetic and as any version of the kernel measures it, and is no wider than the two moves make it.
+// Distances to int8 rows in integers: every version gives the same bits, the interval holds the
+// distance to the float32 rows in real arithmetic and as any version of the kernel measures it, and
+// is no wider than the two moves make it.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -30,7 +31,9 @@ struct Rows {
     std::vector<std::int32_t> sums;
     float scale = 0, moved = 0;
 
-    ByteRows view() const { return {bytes.data(), sums.data(), scale, moved, wide.rows, wide.dimension}; }
+    ByteRows view() const {
+        return {bytes.data(), sums.data(), scale, moved, wide.rows, wide.dimension};
+    }
 };
 
 Rows rows_of(exact::Case wide, float scale) {
@@ -69,7 +72,8 @@ struct Answer {
 
 /// What the versions say that were compiled and that the CPU has.
 template <class Metric, class Aggregation>
-std::vector<Answer> answers([[maybe_unused]] const Rows& rows, [[maybe_unused]] Aggregation aggregation) {
+std::vector<Answer> answers([[maybe_unused]] const Rows& rows,
+                            [[maybe_unused]] Aggregation aggregation) {
     std::vector<Answer> all;
 #if defined(ETLMON_X86_64)
     const exact::Case& c = rows.wide;
@@ -77,10 +81,12 @@ std::vector<Answer> answers([[maybe_unused]] const Rows& rows, [[maybe_unused]] 
     const std::uint32_t averaged = Aggregation::kOfDistances ? c.rows : 0;
     const auto ask = [&](const char* version, auto run) {
         const etlmon::detail::Approximate of =
-            run(c.z.data(), ScaledRows{rows.bytes.data(), rows.scale}, rows.sums.data(), scratch.data(),
-                Sizes{c.rows, c.dimension}, aggregation);
-        all.push_back({version, etlmon::detail::enclose_integers<Metric>(of, rows.moved, c.dimension, averaged),
-                       of.measured, of.moved});
+            run(c.z.data(), ScaledRows{rows.bytes.data(), rows.scale}, rows.sums.data(),
+                scratch.data(), Sizes{c.rows, c.dimension}, aggregation);
+        all.push_back(
+            {version,
+             etlmon::detail::enclose_integers<Metric>(of, rows.moved, c.dimension, averaged),
+             of.measured, of.moved});
     };
     ask("baseline", etlmon::detail::baseline::bytes::run<Metric, Aggregation, Sizes>);
 #if defined(ETLMON_DISPATCH)
@@ -110,8 +116,8 @@ double widest(MetricId metric, const Rows& rows, const Answer& answer) {
 }
 
 template <class Metric, class Aggregation>
-void expect_enclosed(const Rows& rows, MetricId metric, exact::Aggregate aggregate, Aggregation aggregation, bool fits,
-                     const std::string& what) {
+void expect_enclosed(const Rows& rows, MetricId metric, exact::Aggregate aggregate,
+                     Aggregation aggregation, bool fits, const std::string& what) {
     const exact::Case& c = rows.wide;
     const double exact = aggregated(c, aggregate);
     const auto wide = row_versions<const float*>(metric, aggregate.id);
@@ -119,8 +125,8 @@ void expect_enclosed(const Rows& rows, MetricId metric, exact::Aggregate aggrega
     const std::size_t known = all.size();
     std::vector<std::uint8_t> scratch(etlmon::detail::bytes_scratch(c.dimension));
     std::vector<float> kept(c.rows);
-    const Enclosed chosen =
-        etlmon::measure_bytes(metric, aggregate.id, aggregate.n, c.z.data(), rows.view(), scratch.data(), kept.data());
+    const Enclosed chosen = etlmon::measure_bytes(metric, aggregate.id, aggregate.n, c.z.data(),
+                                                  rows.view(), scratch.data(), kept.data());
     all.push_back({"chosen", chosen, chosen.measured, 0});
     for (std::size_t v = 0; v < all.size(); ++v) {
         const Answer& a = all[v];
@@ -136,7 +142,8 @@ void expect_enclosed(const Rows& rows, MetricId metric, exact::Aggregate aggrega
             ASSERT_LE(double{a.enclosed.high} - double{a.measured.delta}, half) << where;
         }
 #if !defined(__FAST_MATH__)
-        // Directions begin with a length in float32, which versions that fuse do not round as the others do.
+        // Directions begin with a length in float32, which versions that fuse do not round as the
+        // others do.
         if (v > 0 && v < known && etlmon::distance(metric).prepared == etlmon::Prepared::as_given) {
             ASSERT_EQ(bits(a.measured.delta), bits(all[0].measured.delta)) << where;
             ASSERT_EQ(a.measured.nearest, all[0].measured.nearest) << where;
@@ -159,7 +166,8 @@ void expect_case(MetricId metric, const Rows& rows, const char* kind, bool fits 
     const std::uint32_t n = (rows.wide.rows + 1) / 2;
     const auto expect = [&](exact::Aggregate aggregate, auto aggregation) {
         if (testing::Test::HasFatalFailure()) return;
-        expect_enclosed<Metric>(rows, metric, aggregate, aggregation, fits, describe(rows.wide, aggregate, kind));
+        expect_enclosed<Metric>(rows, metric, aggregate, aggregation, fits,
+                                describe(rows.wide, aggregate, kind));
     };
     expect({AggregationId::min, 1}, etlmon::Min{});
     expect({AggregationId::mean, 1}, etlmon::Mean{});
@@ -167,13 +175,15 @@ void expect_case(MetricId metric, const Rows& rows, const char* kind, bool fits 
     expect({AggregationId::kth, n}, etlmon::KthOf{kept.data(), n, 0});
 }
 
-/// z at distances from 0 to far beyond the rows, over all of which the grid changes, and where it ends.
+/// z at distances from 0 to far beyond the rows, over all of which the grid changes, and where it
+/// ends.
 template <class Metric>
 void expect_scaled(MetricId metric, Rows rows) {
     const std::vector<float> z = rows.wide.z;
     for (const float factor : {1e-30F, 1e-6F, 1e-3F, 0.02F, 0.3F, 7.0F, 100.0F, 3e3F}) {
         for (std::size_t i = 0; i < z.size(); ++i) rows.wide.z[i] = factor * z[i];
-        const bool no_length = etlmon::distance(metric).zero_is_unknown && factor < 1e-12F;  // its square vanishes
+        const bool no_length =
+            etlmon::distance(metric).zero_is_unknown && factor < 1e-12F;  // its square vanishes
         expect_case<Metric>(metric, rows, "scaled", !no_length);
     }
     if (etlmon::distance(metric).zero_is_unknown) return;
@@ -192,13 +202,14 @@ void expect_metric(MetricId metric) {
     for (const std::uint32_t dimension : kLengths) {
         for (const std::uint32_t number : kNumbers) {
             if (dimension * number > 6000 && number != 8) continue;
-            for (const Kind kind :
-                 {Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal, Kind::mixed, Kind::opposite}) {
+            for (const Kind kind : {Kind::ordinary, Kind::near_target, Kind::touching, Kind::equal,
+                                    Kind::mixed, Kind::opposite}) {
                 if (kind == Kind::mixed && etlmon::distance(metric).zero_is_unknown) continue;
                 const exact::Case c = make(metric, number, dimension, kind, 43);
                 const Rows rows = rows_of(c, scale_of(c));
                 expect_case<Metric>(metric, rows, name(kind));
-                if (kind == Kind::ordinary && dimension * number < 2000) expect_scaled<Metric>(metric, rows);
+                if (kind == Kind::ordinary && dimension * number < 2000)
+                    expect_scaled<Metric>(metric, rows);
                 if (testing::Test::HasFatalFailure()) return;
             }
         }
@@ -219,19 +230,23 @@ TEST(InIntegers, Angular) {
 }
 
 #if defined(ETLMON_X86_64)
-/// Rows that the bytes hold exactly, and z as far from one as rounding can hide: just below half a step of its grid in
-/// every element, where all that is measured is 0 and all of the distance is what z was moved by. A bound of 0.499
-/// steps an element fails here.
+/// Rows that the bytes hold exactly, and z as far from one as rounding can hide: just below half a
+/// step of its grid in every element, where all that is measured is 0 and all of the distance is
+/// what z was moved by. A bound of 0.499 steps an element fails here.
 TEST(InIntegers, MovesOfZ) {
     constexpr std::uint32_t kRow = 3, kNumber = 9;
     for (const std::uint32_t dimension : {65U, 384U, 1000U}) {
         exact::Case c = make(MetricId::l2, kNumber, dimension, Kind::ordinary, 47);
         constexpr float kScale = 0x1p-5F;
-        for (float& x : c.targets) x = kScale * std::round(std::min(3.9F, std::max(-3.9F, x)) / kScale);
+        for (float& x : c.targets)
+            x = kScale * std::round(std::min(3.9F, std::max(-3.9F, x)) / kScale);
         c.targets[kRow * std::size_t{dimension}] = kScale * 127;  // so that the grid is scale / 64
         constexpr float kUnit = kScale / 64;
         for (std::size_t i = 0; i < dimension; ++i)
-            c.z[i] = c.targets[kRow * dimension + i] + (i == 0 ? 0.0F : i % 2 == 0 ? -1.0F : 1.0F) * 0.4999F * kUnit;
+            c.z[i] = c.targets[kRow * dimension + i] + (i == 0       ? 0.0F
+                                                        : i % 2 == 0 ? -1.0F
+                                                                     : 1.0F) *
+                                                           0.4999F * kUnit;
         const Rows rows = rows_of(c, kScale);
         ASSERT_LE(rows.moved, 1e-30F);
         const double exact = aggregated(c, {AggregationId::min, 1});
@@ -240,12 +255,14 @@ TEST(InIntegers, MovesOfZ) {
             EXPECT_EQ(a.measured.delta, 0) << a.version;
             EXPECT_EQ(a.measured.nearest, kRow) << a.version;
             EXPECT_GE(double{a.enclosed.high}, exact) << a.version;
-            EXPECT_LE(double{a.enclosed.high}, 0.515 * double{kUnit} * std::sqrt(dimension)) << a.version;
+            EXPECT_LE(double{a.enclosed.high}, 0.515 * double{kUnit} * std::sqrt(dimension))
+                << a.version;
         }
     }
 }
 
-/// |z - g|^2 from integers is exact: with z on the grid too, it is that of double arithmetic, rounded, however near.
+/// |z - g|^2 from integers is exact: with z on the grid too, it is that of double arithmetic,
+/// rounded, however near.
 TEST(InIntegers, NothingCancels) {
     constexpr std::uint32_t kDimension = 384, kNumber = 12;
     constexpr float kScale = 0x1p-5F, kUnit = kScale / 64;
@@ -254,7 +271,8 @@ TEST(InIntegers, NothingCancels) {
     c.targets[0] = kScale * 127;
     for (const int steps : {0, 1, 2, 3, 100, 4000}) {
         std::copy_n(c.targets.begin(), kDimension, c.z.begin());
-        c.z[kDimension - 1] -= kUnit * static_cast<float>(steps % 128), c.z[7] -= kUnit * static_cast<float>(steps);
+        c.z[kDimension - 1] -= kUnit * static_cast<float>(steps % 128),
+            c.z[7] -= kUnit * static_cast<float>(steps);
         const Rows rows = rows_of(c, kScale);
         const auto exact = static_cast<float>(aggregated(c, {AggregationId::min, 1}));
         for (const Answer& a : answers<etlmon::L2Sq>(rows, etlmon::Min{}))
@@ -262,7 +280,8 @@ TEST(InIntegers, NothingCancels) {
     }
 }
 
-/// Products as large as they can be: every byte is the greatest, and every element of z the greatest of its grid.
+/// Products as large as they can be: every byte is the greatest, and every element of z the
+/// greatest of its grid.
 TEST(InIntegers, GreatestSums) {
     for (const std::uint32_t dimension : {2047U, 2111U, 16384U}) {
         exact::Case c = make(MetricId::l2, 8, 1, Kind::ordinary, 67);
@@ -273,8 +292,10 @@ TEST(InIntegers, GreatestSums) {
             const Rows rows = rows_of(c, 1.0F);
             const double exact = aggregated(c, {AggregationId::min, 1});
             for (const Answer& a : answers<etlmon::L2>(rows, etlmon::Min{})) {
-                ASSERT_LE(double{a.enclosed.low}, exact * (1 + 1e-12)) << a.version << ", " << dimension << ", " << x;
-                ASSERT_GE(double{a.enclosed.high}, exact * (1 - 1e-12)) << a.version << ", " << dimension << ", " << x;
+                ASSERT_LE(double{a.enclosed.low}, exact * (1 + 1e-12))
+                    << a.version << ", " << dimension << ", " << x;
+                ASSERT_GE(double{a.enclosed.high}, exact * (1 - 1e-12))
+                    << a.version << ", " << dimension << ", " << x;
             }
         }
     }
@@ -288,7 +309,8 @@ TEST(InIntegers, TiesGoToTheLowestRow) {
             exact::Case tied = c;
             for (std::uint32_t row = first; row < number; row += 3)
                 std::copy_n(c.z.begin(), 70, tied.targets.begin() + std::ptrdiff_t{70} * row);
-            for (const Answer& a : answers<etlmon::L2>(rows_of(tied, scale_of(tied)), etlmon::Min{}))
+            for (const Answer& a :
+                 answers<etlmon::L2>(rows_of(tied, scale_of(tied)), etlmon::Min{}))
                 ASSERT_EQ(a.measured.nearest, first) << a.version << ", " << number;
         }
     }
@@ -316,12 +338,14 @@ TEST(InIntegers, WhatDoesNotFitIsDoubtful) {
 #endif
 
 inline constexpr std::int8_t kBytes[8 * 66] = {1, -127, 127, 0, 5, -7};
-inline constexpr std::int32_t kSums[2 * 8] = {1 + 2 * 127 * 127 + 25 + 49, 0, 0, 0, 0, 0, 0, 0, 1 + 5 - 7};
+inline constexpr std::int32_t kSums[2 * 8] = {
+    1 + 2 * 127 * 127 + 25 + 49, 0, 0, 0, 0, 0, 0, 0, 1 + 5 - 7};
 
 /// As generated code calls it.
 TEST(InIntegers, Constants) {
     float z[66] = {0.5F, -63.5F, 63.5F, 1.5F, 2.5F, -3.5F};
-    const Enclosed e = etlmon::measure_bytes<etlmon::L2, etlmon::Min, 8, 66, kBytes, kSums>(z, 0.5F, 0.001F);
+    const Enclosed e =
+        etlmon::measure_bytes<etlmon::L2, etlmon::Min, 8, 66, kBytes, kSums>(z, 0.5F, 0.001F);
     EXPECT_EQ(e.measured.nearest, 0U);
     EXPECT_NEAR(e.measured.delta, 1.5F, 0.04F);
     EXPECT_LE(e.low, 1.5F);

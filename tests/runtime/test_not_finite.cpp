@@ -1,4 +1,5 @@
-// A point with an element that is not finite has no distance, whichever kernel measures it: NaN, and row 0.
+// A point with an element that is not finite has no distance, whichever kernel measures it: NaN,
+// and row 0.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -11,13 +12,15 @@ using namespace kernel_cases;
 using etlmon::Measured;
 using etlmon::MetricId;
 
-const std::vector<std::uint32_t> kNotFinite{0x7fc00000, 0xffc00000, 0x7f800001, 0x7f800000, 0xff800000};
+const std::vector<std::uint32_t> kNotFinite{0x7fc00000, 0xffc00000, 0x7f800001, 0x7f800000,
+                                            0xff800000};
 
 void put(exact::Case& c, std::uint32_t element, std::uint32_t bits_of_element) {
     std::memcpy(&c.z[element], &bits_of_element, sizeof(float));
 }
 
-void expect_unmeasured(Measured m, const exact::Case& c, exact::Aggregate aggregate, const char* version) {
+void expect_unmeasured(Measured m, const exact::Case& c, exact::Aggregate aggregate,
+                       const char* version) {
     ASSERT_TRUE(etlmon::is_nan(m.delta)) << version << ": " << describe(c, aggregate, "not finite");
     ASSERT_EQ(m.nearest, 0u) << version << ": " << describe(c, aggregate, "not finite");
 }
@@ -60,8 +63,9 @@ TEST_P(NotFinite, NoDistanceWhateverElse) {
     }
 }
 
-INSTANTIATE_TEST_SUITE_P(All, NotFinite, testing::ValuesIn(metrics()),
-                         [](const auto& of) { return std::string(etlmon::distance(of.param).word); });
+INSTANTIATE_TEST_SUITE_P(All, NotFinite, testing::ValuesIn(metrics()), [](const auto& of) {
+    return std::string(etlmon::distance(of.param).word);
+});
 
 template <class Metric, class Aggregation, std::uint32_t K, std::uint32_t D>
 void expect_columns(MetricId metric) {
@@ -75,8 +79,8 @@ void expect_columns(MetricId metric) {
         for (const std::uint32_t not_finite : kNotFinite) {
             exact::Case c = finite;
             put(c, element, not_finite);
-            const Measured m =
-                best<Metric, Aggregation, Fixed<K, D>, true>(c.z.data(), columns.values, c.weights.data(), {}, {});
+            const Measured m = best<Metric, Aggregation, Fixed<K, D>, true>(
+                c.z.data(), columns.values, c.weights.data(), {}, {});
             expect_unmeasured(m, c, {}, "columns");
         }
     }
@@ -109,7 +113,8 @@ TEST(NotFinite, SamplesAndPoints) {
     EXPECT_TRUE(is_nan(measure<L2, Min, 2, 2, kTargets>({z[0], missing}).delta));
 }
 
-/// What a compiler that assumes NaN away sees of a scalar outside its range: a choice between a number and a NaN.
+/// What a compiler that assumes NaN away sees of a scalar outside its range: a choice between a
+/// number and a NaN.
 TEST(NotFinite, ScalarsOutsideTheirRanges) {
     using namespace etlmon;
     volatile float outside = 2, inside = 0.5F;

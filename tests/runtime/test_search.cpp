@@ -1,5 +1,6 @@
-// A search gives, step by step, the bits of the plain kernel on the same rows: every distance that it knows, every
-// order of additions, whatever the embedding does. The plain kernel is held to the definitions elsewhere.
+// A search gives, step by step, the bits of the plain kernel on the same rows: every distance that
+// it knows, every order of additions, whatever the embedding does. The plain kernel is held to the
+// definitions elsewhere.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -18,7 +19,8 @@ std::uint32_t bits(float x) {
     return word;
 }
 
-/// K rows of D elements, padded; in clusters of `near` rows that lie close together, some rows twice.
+/// K rows of D elements, padded; in clusters of `near` rows that lie close together, some rows
+/// twice.
 template <std::uint32_t K, std::uint32_t D>
 struct Rows {
     static constexpr std::uint32_t kStride = etlmon::detail::padded(D);
@@ -38,7 +40,8 @@ struct Rows {
                 square += double{row[i]} * double{row[i]};
             }
             if (unit)
-                for (std::uint32_t i = 0; i < D; ++i) row[i] = static_cast<float>(row[i] / std::sqrt(square));
+                for (std::uint32_t i = 0; i < D; ++i)
+                    row[i] = static_cast<float>(row[i] / std::sqrt(square));
         }
     }
     float* at(std::uint32_t k) { return floats.data() + std::size_t{k} * kStride; }
@@ -62,7 +65,8 @@ void move(std::vector<float>& z, Set& rows, std::uint32_t count, std::mt19937& r
         if (kind > 10) z[i] += pace * normal(random);
         if (std::abs(z[i]) > 1e38F) z[i] = row[i];
     }
-    if (kind > 10 && (std::abs(z[0]) > 1e3F || std::abs(z[0]) < 1e-6F)) z.assign(row, row + z.size());
+    if (kind > 10 && (std::abs(z[0]) > 1e3F || std::abs(z[0]) < 1e-6F))
+        z.assign(row, row + z.size());
 }
 
 template <class Metric, std::uint32_t K, std::uint32_t D>
@@ -76,9 +80,12 @@ void expect_plain(std::uint32_t seed, std::uint32_t near, float pace, int steps)
         move(z, rows, K, random, pace);
         if (random() % 97 == 0) search->reset();
         const etlmon::Measured found = search->template nearest<Metric>(z.data(), rows.at(0));
-        const etlmon::Measured plain = etlmon::measure_stored<Metric, etlmon::Min, K, D>(z.data(), rows.at(0));
-        ASSERT_EQ(bits(found.delta), bits(plain.delta)) << "step " << step << ", seed " << seed << ", pace " << pace;
-        ASSERT_EQ(found.nearest, plain.nearest) << "step " << step << ", seed " << seed << ", pace " << pace;
+        const etlmon::Measured plain =
+            etlmon::measure_stored<Metric, etlmon::Min, K, D>(z.data(), rows.at(0));
+        ASSERT_EQ(bits(found.delta), bits(plain.delta))
+            << "step " << step << ", seed " << seed << ", pace " << pace;
+        ASSERT_EQ(found.nearest, plain.nearest)
+            << "step " << step << ", seed " << seed << ", pace " << pace;
     }
 }
 
@@ -110,9 +117,9 @@ TEST(Search, Cosine) {
     expect_plain<etlmon::Cosine>();
 }
 
-/// Two rows on a line, in different blocks, and z on it: at one of them almost, then half way between them but for a
-/// few roundings. Nothing is nearer than the triangle inequality says, so the room for rounding alone keeps the second
-/// row from being left out.
+/// Two rows on a line, in different blocks, and z on it: at one of them almost, then half way
+/// between them but for a few roundings. Nothing is nearer than the triangle inequality says, so
+/// the room for rounding alone keeps the second row from being left out.
 template <class Metric>
 void expect_plain_between_equals() {
     constexpr std::uint32_t kRows = 300, kDimension = 33, kFirst = 7, kSecond = 150;
@@ -126,14 +133,16 @@ void expect_plain_between_equals() {
     for (int trial = 0; trial < 4000; ++trial) {
         std::vector<float> line(kDimension), z(kDimension);
         for (float& x : line) x = normal(random);
-        for (std::uint32_t i = 0; i < kDimension; ++i) rows.at(kFirst)[i] = -line[i], rows.at(kSecond)[i] = line[i];
+        for (std::uint32_t i = 0; i < kDimension; ++i)
+            rows.at(kFirst)[i] = -line[i], rows.at(kSecond)[i] = line[i];
         const float start = -share(random), end = 2e-7F * normal(random);
         search->reset();
         for (const float at : {start, end}) {
             for (std::uint32_t i = 0; i < kDimension; ++i) z[i] = at * line[i];
             const etlmon::Measured found = search->template nearest<Metric>(z.data(), rows.at(0));
             const etlmon::Measured plain =
-                etlmon::measure_stored<Metric, etlmon::Min, kRows, kDimension>(z.data(), rows.at(0));
+                etlmon::measure_stored<Metric, etlmon::Min, kRows, kDimension>(z.data(),
+                                                                               rows.at(0));
             ASSERT_EQ(bits(found.delta), bits(plain.delta)) << "trial " << trial;
             ASSERT_EQ(found.nearest, plain.nearest) << "trial " << trial;
             nearest_second += plain.nearest == kSecond;

@@ -1,4 +1,5 @@
-// Files of targets: nothing but the right bytes, whole and aligned, is ready, whether mapped or given by pointer.
+// Files of targets: nothing but the right bytes, whole and aligned, is ready, whether mapped or
+// given by pointer.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -30,13 +31,15 @@ Bytes right_bytes() {
 class File {
 public:
     explicit File(const std::string& name)
-        : path_(std::filesystem::temp_directory_path() / ("etlmon-" + std::to_string(::getpid()) + name)) {}
+        : path_(std::filesystem::temp_directory_path() /
+                ("etlmon-" + std::to_string(::getpid()) + name)) {}
     File(const File&) = delete;
     File& operator=(const File&) = delete;
     ~File() { std::filesystem::remove_all(path_); }
 
     void write(const std::uint8_t* bytes, std::size_t size) const {
-        std::ofstream(path_, std::ios::binary).write(reinterpret_cast<const char*>(bytes), static_cast<long>(size));
+        std::ofstream(path_, std::ios::binary)
+            .write(reinterpret_cast<const char*>(bytes), static_cast<long>(size));
     }
     std::string path() const { return path_.string(); }
 

@@ -1,5 +1,5 @@
-// What the windows promise to cost: combinations in the worst step, counted by a monoid that also checks that every
-// aggregate is exactly the last N elements in order; bytes, held to sizeof.
+// What the windows promise to cost: combinations in the worst step, counted by a monoid that also
+// checks that every aggregate is exactly the last N elements in order; bytes, held to sizeof.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -12,8 +12,8 @@ using etlmon::Key;
 using etlmon::Value;
 using temporal::Bits;
 
-/// Stretches of consecutive step numbers under concatenation: neither commutative nor idempotent. Counts its
-/// combinations.
+/// Stretches of consecutive step numbers under concatenation: neither commutative nor idempotent.
+/// Counts its combinations.
 struct Stretch {
     struct Element {
         uint32_t first;
@@ -28,7 +28,8 @@ struct Stretch {
         if (older.count == 0) return newer;
         if (newer.count == 0) return older;
         const bool meet = older.first + older.count == newer.first;
-        return {older.first, older.count + newer.count, older.broken | newer.broken | (meet ? 0u : 1u)};
+        return {older.first, older.count + newer.count,
+                older.broken | newer.broken | (meet ? 0u : 1u)};
     }
 };
 uint32_t Stretch::combinations = 0;
@@ -37,7 +38,8 @@ struct StretchFromTheOldest : Stretch {
     static constexpr bool kNewestLast = false;
 };
 
-/// The most combinations in one step over `steps` steps; fails where an aggregate is not the last n elements in order.
+/// The most combinations in one step over `steps` steps; fails where an aggregate is not the last n
+/// elements in order.
 template <class Monoid>
 uint32_t worst_step(uint32_t n, uint32_t steps) {
     std::vector<Stretch::Element> storage(etlmon::window_elements(n));
@@ -46,11 +48,13 @@ uint32_t worst_step(uint32_t n, uint32_t steps) {
     etlmon::window_reset<Monoid>(storage.data(), cursor, n);
     for (uint32_t t = 0; t < steps; ++t) {
         Stretch::combinations = 0;
-        const Stretch::Element last = etlmon::window_push<Monoid>(storage.data(), cursor, n, {t, 1, 0});
+        const Stretch::Element last =
+            etlmon::window_push<Monoid>(storage.data(), cursor, n, {t, 1, 0});
         worst = std::max(worst, Stretch::combinations);
         const uint32_t count = std::min(n, t + 1);
         if (last.broken != 0 || last.count != count || last.first + count != t + 1) {
-            ADD_FAILURE() << "length " << n << ", step " << t << ": " << last.count << " from " << last.first;
+            ADD_FAILURE() << "length " << n << ", step " << t << ": " << last.count << " from "
+                          << last.first;
             return 0;
         }
     }
@@ -60,7 +64,8 @@ uint32_t worst_step(uint32_t n, uint32_t steps) {
 TEST(TemporalCost, WorstStepOfEveryLengthTo300) {
     for (uint32_t n = 1; n <= 300; ++n) {
         ASSERT_EQ(worst_step<Stretch>(n, 5 * n + 7), etlmon::window_operations(n)) << n;
-        ASSERT_EQ(worst_step<StretchFromTheOldest>(n, 5 * n + 7), etlmon::window_operations(n)) << n;
+        ASSERT_EQ(worst_step<StretchFromTheOldest>(n, 5 * n + 7), etlmon::window_operations(n))
+            << n;
     }
 }
 
@@ -111,8 +116,10 @@ constexpr bool kDelayFits = sizeof(etlmon::Delay<V, N>) == etlmon::delay_bytes<V
 static_assert(kWindowFits<etlmon::Greatest<Key>, 1> && kWindowFits<etlmon::Greatest<Key>, 10>);
 static_assert(kWindowFits<etlmon::Least<Value>, 11> && kWindowFits<etlmon::Since<Value>, 101>);
 static_assert(kWindowFits<etlmon::Until<Bits>, 4> && kWindowFits<etlmon::Release<float>, 100000>);
-static_assert(kWindowFits<etlmon::Greatest<narrow::Byte>, 2> && kWindowFits<etlmon::Trigger<narrow::Byte>, 7>);
-static_assert(kDelayFits<Key, 1> && kDelayFits<Value, 7> && kDelayFits<narrow::Byte, 1> && kDelayFits<narrow::Byte, 6>);
+static_assert(kWindowFits<etlmon::Greatest<narrow::Byte>, 2> &&
+              kWindowFits<etlmon::Trigger<narrow::Byte>, 7>);
+static_assert(kDelayFits<Key, 1> && kDelayFits<Value, 7> && kDelayFits<narrow::Byte, 1> &&
+              kDelayFits<narrow::Byte, 6>);
 static_assert(sizeof(etlmon::Window<etlmon::Greatest<Key>, 1001>) == 4 + 4 * 1002);
 static_assert(sizeof(etlmon::Window<etlmon::Since<Value>, 100>) == 4 + 12 + 2 * 8 * 102);
 static_assert(sizeof(etlmon::Widening<etlmon::Greatest<Key>, 50, 80>) == 4 + 4 * 30);

@@ -1,5 +1,6 @@
-// Formulas put together from windows and delays, as generated monitors do, against their definitions on every prefix:
-// offsets of intervals, bounded until over a delayed stream with its end, the pending half of G(p -> F[0,w] q).
+// Formulas put together from windows and delays, as generated monitors do, against their
+// definitions on every prefix: offsets of intervals, bounded until over a delayed stream with its
+// end, the pending half of G(p -> F[0,w] q).
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,8 @@ Key bounded_response(const Streams<Key>& s, size_t w, size_t i) {
     Key rho = etlmon::kTop;
     for (size_t k = 0; k <= i; ++k) {
         Key response = s.f[k];
-        for (size_t j = k; j <= std::min(k + w, i); ++j) response = etlmon::max_of(response, s.g[j]);
+        for (size_t j = k; j <= std::min(k + w, i); ++j)
+            response = etlmon::max_of(response, s.g[j]);
         rho = etlmon::min_of(rho, response);
     }
     return rho;
@@ -36,7 +38,8 @@ void expect_bounded_response() {
     Key unbounded = etlmon::kTop;
     const Streams<Key> s = random_streams<Key>(6 * W + 40, W);
     for (size_t i = 0; i < s.g.size(); ++i) {
-        settled = etlmon::min_of(settled, etlmon::max_of(not_p.push(s.f[i]), answered.push(s.g[i])));
+        settled =
+            etlmon::min_of(settled, etlmon::max_of(not_p.push(s.f[i]), answered.push(s.g[i])));
         const Key open = pending.push({etlmon::max_of(s.f[i], s.g[i]), s.g[i]}).value;
         unbounded = etlmon::max_of(etlmon::min_of(unbounded, s.f[i]), s.g[i]);
         const Key rho = bounded_response(s, W, i);
@@ -75,7 +78,8 @@ void expect_since_with_offset() {
     const Streams<Key> s = random_streams<Key>(5 * B + 20, 100 * A + B);
     for (size_t k = 0; k < s.g.size(); ++k) {
         const Key earlier = offset.push(since.push({s.g[k], s.f[k]}).value);
-        ASSERT_EQ(etlmon::min_of(earlier, held.push(s.f[k])), since_in(s, A, B, k)) << A << ' ' << B << ' ' << k;
+        ASSERT_EQ(etlmon::min_of(earlier, held.push(s.f[k])), since_in(s, A, B, k))
+            << A << ' ' << B << ' ' << k;
     }
 }
 
@@ -97,7 +101,8 @@ Key until_in(const Streams<Key>& s, size_t a, size_t b, size_t k, size_t last) {
     return rho;
 }
 
-/// Verdicts come B steps late; after the end, identity elements stand for the positions that never came.
+/// Verdicts come B steps late; after the end, identity elements stand for the positions that never
+/// came.
 template <uint32_t A, uint32_t B>
 void expect_until_with_its_end() {
     etlmon::Window<etlmon::Until<Key>, B - A + 1> until;
@@ -109,11 +114,13 @@ void expect_until_with_its_end() {
     const Streams<Key> s = random_streams<Key>(4 * B + 11, 100 * A + B);
     const size_t length = s.g.size();
     for (size_t i = 0; i < length + B; ++i) {
-        const Span<Key> element = i < length ? Span<Key>{s.g[i], s.f[i]} : etlmon::Until<Key>::identity();
+        const Span<Key> element =
+            i < length ? Span<Key>{s.g[i], s.f[i]} : etlmon::Until<Key>::identity();
         const Key from_a = until.push(element).value;            // over [i - B + A, i]
         const Key lead = held.push(before.push(element.guard));  // min of f over [i - B, i - B + A)
         if (i < B) continue;
-        ASSERT_EQ(etlmon::min_of(lead, from_a), until_in(s, A, B, i - B, length - 1)) << A << ' ' << B << ' ' << i;
+        ASSERT_EQ(etlmon::min_of(lead, from_a), until_in(s, A, B, i - B, length - 1))
+            << A << ' ' << B << ' ' << i;
     }
 }
 

@@ -1,5 +1,5 @@
-// Truth values: their algebra, the comparisons that make them, the answers made of them, and lazy evaluation, over all
-// combinations.
+// Truth values: their algebra, the comparisons that make them, the answers made of them, and lazy
+// evaluation, over all combinations.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -62,7 +62,8 @@ TEST(TemporalTruth, Answers) {
     for (const Truth holds : kAll)
         for (const bool surely : {false, true})
             for (const bool perhaps : {false, true}) {
-                const etlmon::BooleanVerdict verdict = etlmon::prefix_verdict(holds, surely, perhaps);
+                const etlmon::BooleanVerdict verdict =
+                    etlmon::prefix_verdict(holds, surely, perhaps);
                 EXPECT_EQ(verdict.satisfied(), rank(holds) == 2);
                 EXPECT_EQ(verdict.violated(), rank(holds) == 0);
                 EXPECT_EQ(verdict.unknown(), rank(holds) == 1);
@@ -93,8 +94,8 @@ TEST(TemporalTruth, LazyValuesAreAskedWhereTheyDecide) {
                 EXPECT_EQ(asked[0], 1);
                 EXPECT_EQ(asked[1], decided ? 0 : 1);
                 const Truth nested = max_of(min_of(a, negate(b)), min_of(negate(a), b));
-                EXPECT_TRUE(
-                    same(nested, max_of(min_of(first, etlmon::negate(second)), min_of(etlmon::negate(first), second))));
+                EXPECT_TRUE(same(nested, max_of(min_of(first, etlmon::negate(second)),
+                                                min_of(etlmon::negate(first), second))));
                 EXPECT_EQ(asked[0], 1);
                 EXPECT_LE(asked[1], 1);
             }

@@ -1,5 +1,6 @@
-// Keys, values and verdicts: order and round trip over every kind of float, classification of every kind of verdict.
-// Written without a float comparison, so that it means the same under -ffast-math and with denormals flushed.
+// Keys, values and verdicts: order and round trip over every kind of float, classification of every
+// kind of verdict. Written without a float comparison, so that it means the same under -ffast-math
+// and with denormals flushed.
 #include <gtest/gtest.h>
 
 #include <cstring>
@@ -19,12 +20,13 @@ using etlmon::Verdict;
 
 constexpr uint32_t kSignBit = 0x80000000u;
 
-/// Bit patterns of floats from -inf to +inf, ascending, one zero: every exponent, with its first, second, middle and
-/// last mantissas.
+/// Bit patterns of floats from -inf to +inf, ascending, one zero: every exponent, with its first,
+/// second, middle and last mantissas.
 std::vector<uint32_t> ascending_floats() {
     std::vector<uint32_t> magnitudes;
     for (uint32_t exponent = 0; exponent < 255; ++exponent)
-        for (const uint32_t mantissa : {0x0u, 0x1u, 0x2u, 0x3fffffu, 0x400000u, 0x400001u, 0x7ffffeu, 0x7fffffu})
+        for (const uint32_t mantissa :
+             {0x0u, 0x1u, 0x2u, 0x3fffffu, 0x400000u, 0x400001u, 0x7ffffeu, 0x7fffffu})
             magnitudes.push_back(exponent << 23 | mantissa);
     magnitudes.push_back(0x7f800000u);
     std::vector<uint32_t> ascending;
@@ -40,7 +42,8 @@ Key key_of_bits(uint32_t bits) {
 TEST(TemporalKey, OrderIsTheOrderOfTheFloats) {
     const std::vector<uint32_t> floats = ascending_floats();
     for (size_t i = 1; i < floats.size(); ++i)
-        ASSERT_LT(key_of_bits(floats[i - 1]), key_of_bits(floats[i])) << std::hex << floats[i - 1] << ' ' << floats[i];
+        ASSERT_LT(key_of_bits(floats[i - 1]), key_of_bits(floats[i]))
+            << std::hex << floats[i - 1] << ' ' << floats[i];
 }
 
 #ifndef __FAST_MATH__
@@ -75,7 +78,8 @@ TEST(TemporalKey, InfinitiesAreTheLatticeEnds) {
 }
 
 TEST(TemporalKey, NegatingAKeyNegatesTheFloat) {
-    for (const uint32_t bits : ascending_floats()) ASSERT_EQ(-key_of_bits(bits), key_of_bits(bits ^ kSignBit));
+    for (const uint32_t bits : ascending_floats())
+        ASSERT_EQ(-key_of_bits(bits), key_of_bits(bits ^ kSignBit));
 }
 
 TEST(TemporalValue, MinAndMaxPickTheSmallerAndTheGreaterFloat) {
@@ -116,8 +120,8 @@ TEST(TemporalValue, KnownAndBetween) {
     for (const uint32_t bits : ascending_floats()) {
         const float x = etlmon::float_of_bits(bits);
         ASSERT_TRUE(temporal::same(etlmon::known(x), {etlmon::key_of(x), etlmon::key_of(x)}));
-        ASSERT_TRUE(
-            temporal::same(etlmon::between(x, etlmon::float_of(etlmon::kTop)), {etlmon::key_of(x), etlmon::kTop}));
+        ASSERT_TRUE(temporal::same(etlmon::between(x, etlmon::float_of(etlmon::kTop)),
+                                   {etlmon::key_of(x), etlmon::kTop}));
     }
 }
 
@@ -127,13 +131,15 @@ TEST(TemporalValue, ThresholdsOfZero) {
     for (const uint32_t bits : ascending_floats()) {
         const float delta = etlmon::float_of_bits(bits);
         const bool denormal = (bits & 0x7f800000u) == 0 && (bits << 1) != 0;
-        if (denormal || !etlmon::is_finite(delta)) continue;  // some tests run where differences of these are flushed
+        if (denormal || !etlmon::is_finite(delta))
+            continue;  // some tests run where differences of these are flushed
         const float unseen = zero;
         ASSERT_TRUE(temporal::same(etlmon::at_least(delta, 0.0f, etlmon::kTrue),
                                    etlmon::at_least(delta, unseen, etlmon::kTrue)));
+        ASSERT_TRUE(temporal::same(etlmon::at_most(delta, 0.0f, etlmon::kTrue),
+                                   etlmon::at_most(delta, unseen, etlmon::kTrue)));
         ASSERT_TRUE(
-            temporal::same(etlmon::at_most(delta, 0.0f, etlmon::kTrue), etlmon::at_most(delta, unseen, etlmon::kTrue)));
-        ASSERT_TRUE(temporal::same(etlmon::at_least(delta, -0.0f, etlmon::kTrue), etlmon::known(delta)));
+            temporal::same(etlmon::at_least(delta, -0.0f, etlmon::kTrue), etlmon::known(delta)));
     }
 }
 
@@ -149,8 +155,10 @@ TEST(TemporalValue, Registers) {
 }
 
 static_assert(std::is_trivially_copyable_v<Value> && sizeof(Value) == 8, "two keys");
-static_assert(std::is_trivially_copyable_v<etlmon::Register> && sizeof(etlmon::Register) == 8, "a value");
-static_assert(std::is_trivially_copyable_v<Verdict> && std::is_standard_layout_v<Verdict>, "a record");
+static_assert(std::is_trivially_copyable_v<etlmon::Register> && sizeof(etlmon::Register) == 8,
+              "a value");
+static_assert(std::is_trivially_copyable_v<Verdict> && std::is_standard_layout_v<Verdict>,
+              "a record");
 static_assert(sizeof(Verdict) == 16 && alignof(Verdict) == 4, "three floats and a status");
 static_assert(max_of(etlmon::kFalse, etlmon::kTrue).low == etlmon::kTop, "usable in constants");
 

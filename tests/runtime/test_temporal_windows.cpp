@@ -1,5 +1,6 @@
-// Delays and windows against loops written from the operators' definitions: every length up to 70, long ones sampled,
-// all Boolean streams of length 9, over keys, floats, pairs of keys, truth values and packed Booleans.
+// Delays and windows against loops written from the operators' definitions: every length up to 70,
+// long ones sampled, all Boolean streams of length 9, over keys, floats, pairs of keys, truth
+// values and packed Booleans.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -26,7 +27,9 @@ public:
     explicit RuntimeWindow(uint32_t n) : n_(n), storage_(etlmon::window_elements(n)) {
         etlmon::window_reset<Monoid>(storage_.data(), cursor_, n_);
     }
-    Element push(Element element) { return etlmon::window_push<Monoid>(storage_.data(), cursor_, n_, element); }
+    Element push(Element element) {
+        return etlmon::window_push<Monoid>(storage_.data(), cursor_, n_, element);
+    }
 
 private:
     uint32_t n_;
@@ -36,10 +39,11 @@ private:
 
 constexpr size_t kNone = ~size_t{0};
 
-/// Pushes the streams through `window`; the first of the steps that `checked` picks where it is not as defined, or
-/// kNone.
+/// Pushes the streams through `window`; the first of the steps that `checked` picks where it is not
+/// as defined, or kNone.
 template <class Case, class Window, class Checked>
-size_t first_mismatch(Window& window, uint32_t n, const Streams<typename Case::Value>& streams, Checked checked) {
+size_t first_mismatch(Window& window, uint32_t n, const Streams<typename Case::Value>& streams,
+                      Checked checked) {
     for (size_t i = 0; i < streams.g.size(); ++i) {
         const auto value = Case::result(window.push(Case::element(streams, i)));
         const size_t first = i + 1 < n ? 0 : i + 1 - n;
@@ -54,16 +58,19 @@ template <class Case>
 class TemporalWindow : public testing::Test {};
 
 template <class V>
-using CasesOf = testing::Types<temporal::GreatestCase<V>, temporal::LeastCase<V>, temporal::SinceCase<V>,
-                               temporal::TriggerCase<V>, temporal::UntilCase<V>, temporal::ReleaseCase<V>>;
+using CasesOf =
+    testing::Types<temporal::GreatestCase<V>, temporal::LeastCase<V>, temporal::SinceCase<V>,
+                   temporal::TriggerCase<V>, temporal::UntilCase<V>, temporal::ReleaseCase<V>>;
 
 using AllCases = testing::Types<
-    temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>, temporal::TriggerCase<Key>,
-    temporal::UntilCase<Key>, temporal::ReleaseCase<Key>, temporal::GreatestCase<Value>, temporal::LeastCase<Value>,
-    temporal::SinceCase<Value>, temporal::TriggerCase<Value>, temporal::UntilCase<Value>, temporal::ReleaseCase<Value>,
-    temporal::GreatestCase<float>, temporal::LeastCase<float>, temporal::TriggerCase<float>, temporal::UntilCase<float>,
-    temporal::LeastCase<Bits>, temporal::SinceCase<Bits>, temporal::GreatestCase<Truth>, temporal::LeastCase<Truth>,
-    temporal::SinceCase<Truth>, temporal::TriggerCase<Truth>, temporal::UntilCase<Truth>, temporal::ReleaseCase<Truth>>;
+    temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>,
+    temporal::TriggerCase<Key>, temporal::UntilCase<Key>, temporal::ReleaseCase<Key>,
+    temporal::GreatestCase<Value>, temporal::LeastCase<Value>, temporal::SinceCase<Value>,
+    temporal::TriggerCase<Value>, temporal::UntilCase<Value>, temporal::ReleaseCase<Value>,
+    temporal::GreatestCase<float>, temporal::LeastCase<float>, temporal::TriggerCase<float>,
+    temporal::UntilCase<float>, temporal::LeastCase<Bits>, temporal::SinceCase<Bits>,
+    temporal::GreatestCase<Truth>, temporal::LeastCase<Truth>, temporal::SinceCase<Truth>,
+    temporal::TriggerCase<Truth>, temporal::UntilCase<Truth>, temporal::ReleaseCase<Truth>>;
 TYPED_TEST_SUITE(TemporalWindow, AllCases, temporal::CaseNames);
 
 TYPED_TEST(TemporalWindow, EveryLengthTo70) {
@@ -97,7 +104,8 @@ TYPED_TEST(TemporalWindow, ClassesAndReset) {
 
 // ---- pairs of keys, whose highs are only kept up where they differ from the lows
 
-/// Random pairs whose ends are the same but for bursts, after `quiet` steps of none, in which one in `rarity` differs.
+/// Random pairs whose ends are the same but for bursts, after `quiet` steps of none, in which one
+/// in `rarity` differs.
 Streams<Value> with_bursts(size_t length, uint32_t quiet, uint32_t rarity, uint32_t seed) {
     Streams<Value> streams = random_streams<Value>(length, seed);
     std::mt19937 random(seed + 1);
@@ -115,7 +123,8 @@ Streams<Value> with_bursts(size_t length, uint32_t quiet, uint32_t rarity, uint3
 template <class Case, uint32_t N>
 void expect_bursts() {
     const auto window = std::make_unique<etlmon::Window<typename Case::Monoid, N>>();
-    static_assert(sizeof(*window) == etlmon::window_bytes<typename Case::Monoid>(N), "as the budget says");
+    static_assert(sizeof(*window) == etlmon::window_bytes<typename Case::Monoid>(N),
+                  "as the budget says");
     for (const uint32_t quiet : {1u, N / 2 + 1, N, 2 * N + 3})
         for (const uint32_t rarity : {1u, 3u, N + 1}) {
             window->reset();
@@ -151,12 +160,15 @@ TYPED_TEST(TemporalLongWindow, SampledTo100000) {
         const uint32_t stride = n / 9 + 1;
         // A stride, and the steps on both sides of where blocks change.
         const auto checked = [=](size_t i) { return i % stride == 0 || (i + 2) % block <= 3; };
-        ASSERT_EQ(first_mismatch<TypeParam>(window, n, random_streams<Value>(3 * n + 7, n), checked), kNone) << n;
+        ASSERT_EQ(
+            first_mismatch<TypeParam>(window, n, random_streams<Value>(3 * n + 7, n), checked),
+            kNone)
+            << n;
     }
 }
 
-/// All streams: 4^length pairs of Boolean signals, 32 side by side. As min and max commute with thresholds, what holds
-/// for all Boolean streams of a length holds for all values.
+/// All streams: 4^length pairs of Boolean signals, 32 side by side. As min and max commute with
+/// thresholds, what holds for all Boolean streams of a length holds for all values.
 template <class Case>
 class TemporalBooleanWindow : public testing::Test {};
 TYPED_TEST_SUITE(TemporalBooleanWindow, CasesOf<Bits>, temporal::CaseNames);
@@ -172,16 +184,18 @@ TYPED_TEST(TemporalBooleanWindow, AllStreamsOfLength9) {
             }
         for (uint32_t n = 1; n <= kLength; ++n) {
             RuntimeWindow<typename TypeParam::Monoid> window(n);
-            ASSERT_EQ(first_mismatch<TypeParam>(window, n, streams, kEveryStep), kNone) << n << ' ' << batch;
+            ASSERT_EQ(first_mismatch<TypeParam>(window, n, streams, kEveryStep), kNone)
+                << n << ' ' << batch;
         }
     }
 }
 
 template <class Case>
 class TemporalWidening : public testing::Test {};
-using WideningCases = testing::Types<temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>,
-                                     temporal::TriggerCase<Key>, temporal::UntilCase<Key>, temporal::ReleaseCase<Key>,
-                                     temporal::SinceCase<Value>, temporal::ReleaseCase<Bits>>;
+using WideningCases =
+    testing::Types<temporal::GreatestCase<Key>, temporal::LeastCase<Key>, temporal::SinceCase<Key>,
+                   temporal::TriggerCase<Key>, temporal::UntilCase<Key>, temporal::ReleaseCase<Key>,
+                   temporal::SinceCase<Value>, temporal::ReleaseCase<Bits>>;
 TYPED_TEST_SUITE(TemporalWidening, WideningCases, temporal::CaseNames);
 
 template <class Case, uint32_t M, uint32_t N>
@@ -192,13 +206,16 @@ struct WidenedWindow {
         shorter.reset();
         widening.reset();
     }
-    auto push(typename Case::Monoid::Element element) { return widening.push(shorter.push(element)); }
+    auto push(typename Case::Monoid::Element element) {
+        return widening.push(shorter.push(element));
+    }
 };
 
 template <class Case, uint32_t M, uint32_t N>
 bool widens() {
     WidenedWindow<Case, M, N> window;
-    return first_mismatch<Case>(window, N, random_streams<typename Case::Value>(6 * N + 20, N), kEveryStep) == kNone;
+    return first_mismatch<Case>(window, N, random_streams<typename Case::Value>(6 * N + 20, N),
+                                kEveryStep) == kNone;
 }
 
 TYPED_TEST(TemporalWidening, ShortestToLongest) {
@@ -229,7 +246,8 @@ void expect_delay(V fill) {
         delay->reset(fill);
         const auto streams = random_streams<V>(2 * N + 1 + round, round);
         for (size_t i = 0; i < streams.g.size(); ++i)
-            ASSERT_TRUE(same(delay->push(streams.g[i]), i < N ? fill : streams.g[i - N])) << N << ' ' << i;
+            ASSERT_TRUE(same(delay->push(streams.g[i]), i < N ? fill : streams.g[i - N]))
+                << N << ' ' << i;
     }
 }
 

@@ -39,9 +39,11 @@ static_assert(std::is_convertible_v<std::int8_t (&)[3], Vector<std::int8_t, 3>>)
 
 static_assert(std::is_convertible_v<bool, Flag> && std::is_convertible_v<bool&, Flag>);
 static_assert(!std::is_constructible_v<Flag, int> && !std::is_constructible_v<Flag, float>);
-static_assert(!std::is_constructible_v<Flag, const char*> && !std::is_constructible_v<Flag, std::nullptr_t>);
+static_assert(!std::is_constructible_v<Flag, const char*> &&
+              !std::is_constructible_v<Flag, std::nullptr_t>);
 static_assert(std::is_trivially_copyable_v<Flag> && sizeof(Flag) == 1);
-static_assert(!Flag().present() && Flag(true).present() && Flag(true).value() && Flag(false).present());
+static_assert(!Flag().present() && Flag(true).present() && Flag(true).value() &&
+              Flag(false).present());
 static_assert(!Flag(false).value() && !Flag().value());
 
 /// Looks like std::span: no default constructor, a size in its type.
@@ -51,7 +53,8 @@ struct Span {
     const float* data() const { return at_; }
     const float* at_;
 };
-static_assert(std::is_convertible_v<Span, View> && !std::is_constructible_v<Vector<float, 5>, Span>);
+static_assert(std::is_convertible_v<Span, View> &&
+              !std::is_constructible_v<Vector<float, 5>, Span>);
 
 float from_bits(std::uint32_t b) {
     volatile std::uint32_t bits = b;
@@ -61,8 +64,10 @@ float from_bits(std::uint32_t b) {
     return x;
 }
 
-const std::vector<std::uint32_t> kNotFinite{0x7f800000, 0xff800000, 0x7fc00000, 0xffc00000, 0x7f800001, 0xffffffff};
-const std::vector<std::uint32_t> kFinite{0, 0x80000000, 1, 0x80000001, 0x007fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000};
+const std::vector<std::uint32_t> kNotFinite{0x7f800000, 0xff800000, 0x7fc00000,
+                                            0xffc00000, 0x7f800001, 0xffffffff};
+const std::vector<std::uint32_t> kFinite{0,          0x80000000, 1,          0x80000001,
+                                         0x007fffff, 0x7f7fffff, 0xff7fffff, 0x3f800000};
 
 TEST(Views, SeeWhatTheyView) {
     float numbers[6] = {1, 2, 3, 4, 5, 6};
@@ -110,17 +115,22 @@ TEST(Views, OneElementThatIsNotFiniteIsMissing) {
 TEST(Views, ScalarsAreFiniteAndInRange) {
     for (const std::uint32_t b : kNotFinite) {
         EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(b)))) << b;
-        EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000)))) << b;
+        EXPECT_TRUE(etlmon::is_nan(
+            etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000))))
+            << b;
     }
     for (const std::uint32_t b : kFinite) {
         EXPECT_FALSE(etlmon::is_nan(etlmon::accept(from_bits(b)))) << b;
-        EXPECT_FALSE(etlmon::is_nan(etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000)))) << b;
+        EXPECT_FALSE(etlmon::is_nan(
+            etlmon::accept(from_bits(b), from_bits(0xff800000), from_bits(0x7f800000))))
+            << b;
     }
     EXPECT_FALSE(etlmon::is_nan(etlmon::accept(0.0F, -0.0F, 1.0F)));
     EXPECT_FALSE(etlmon::is_nan(etlmon::accept(-0.0F, 0.0F, 1.0F)));
     EXPECT_FALSE(etlmon::is_nan(etlmon::accept(1.0F, 0.0F, 1.0F)));
     EXPECT_TRUE(etlmon::is_nan(etlmon::accept(1.00000012F, 0.0F, 1.0F)));
-    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(0x80000001), 0.0F, 1.0F))) << "a negative denormal";
+    EXPECT_TRUE(etlmon::is_nan(etlmon::accept(from_bits(0x80000001), 0.0F, 1.0F)))
+        << "a negative denormal";
     EXPECT_TRUE(etlmon::is_nan(etlmon::accept(-3.0F, -2.0F, -1.0F)));
     EXPECT_FALSE(etlmon::is_nan(etlmon::accept(-1.5F, -2.0F, -1.0F)));
     EXPECT_TRUE(etlmon::is_nan(etlmon::accept(kMissing)));
@@ -131,7 +141,8 @@ TEST(Views, ScalarsAreFiniteAndInRange) {
 double half_value(std::uint16_t h) {
     const int exponent = (h >> 10) & 0x1f;
     const double mantissa = h & 0x3ff;
-    const double size = exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
+    const double size =
+        exponent == 0 ? std::ldexp(mantissa, -24) : std::ldexp(1024 + mantissa, exponent - 25);
     return (h & 0x8000) != 0 ? -size : size;
 }
 

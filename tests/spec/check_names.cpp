@@ -1,4 +1,5 @@
-// check_names field|namespace <NAMES: prints those of the names, one a line, that a spec may declare.
+// check_names field|namespace <NAMES: prints those of the names, one a line, that a spec may
+// declare.
 #include <iostream>
 #include <string>
 

@@ -39,7 +39,8 @@ std::string read_text(const std::filesystem::path& path) {
     return text.str();
 }
 
-void expect_golden(const std::string& found, const std::filesystem::path& golden, bool may_be_absent) {
+void expect_golden(const std::string& found, const std::filesystem::path& golden,
+                   bool may_be_absent) {
     if (updating()) {
         if (found.empty() && may_be_absent)
             std::filesystem::remove(golden);
@@ -48,7 +49,8 @@ void expect_golden(const std::string& found, const std::filesystem::path& golden
         return;
     }
     const bool absent = !std::filesystem::exists(golden);
-    EXPECT_TRUE(!absent || (may_be_absent && found.empty())) << golden << " is missing; ETLC_UPDATE=1 writes it";
+    EXPECT_TRUE(!absent || (may_be_absent && found.empty()))
+        << golden << " is missing; ETLC_UPDATE=1 writes it";
     EXPECT_EQ(found, read_text(golden)) << "ETLC_UPDATE=1 rewrites " << golden;
 }
 

@@ -32,31 +32,37 @@ std::string_view group_title(std::string_view code) {
 std::string table() {
     std::string text =
         "# Diagnostics\n\n"
-        "Every error and warning of `etlc` bears a code. This table is made from compiler/diag/codes.def (a test keeps "
+        "Every error and warning of `etlc` bears a code. This table is made from "
+        "compiler/diag/codes.def (a test keeps "
         "the two\n"
-        "equal; `ETLC_UPDATE=1` rewrites it); tests/spec/error holds at least one example of each, with the exact "
+        "equal; `ETLC_UPDATE=1` rewrites it); tests/spec/error holds at least one example of each, "
+        "with the exact "
         "message.\n"
         "Errors come out with exit status 1; warnings do not, unless `-Werror` is given.\n"
         "\n"
         "| exit status | |\n"
         "| --- | --- |\n"
         "| 0 | all that was asked for is there |\n"
-        "| 1 | it is not: the spec or its data are wrong, memory is too short, or not all of the output or of the "
+        "| 1 | it is not: the spec or its data are wrong, memory is too short, or not all of the "
+        "output or of the "
         "diagnostics could be written |\n"
         "| 2 | the call is wrong |\n"
         "| 3 | etlc itself is at fault |\n"
         "\n"
-        "Whoever closes standard error (`2>&-`) wants no diagnostics, and gets none. When nobody reads standard output "
+        "Whoever closes standard error (`2>&-`) wants no diagnostics, and gets none. When nobody "
+        "reads standard output "
         "any more\n"
         "(`etlc run ... | head`), SIGPIPE ends etlc, as it ends other tools: the shell says 141.\n";
     std::string_view group;
     for (const diag::CodeInfo& info : diag::all_codes()) {
         if (group_title(info.code) != group) {
             group = group_title(info.code);
-            text += fmt::format("\n## {}\n\n| code | name | what it is about |\n| --- | --- | --- |\n", group);
+            text += fmt::format(
+                "\n## {}\n\n| code | name | what it is about |\n| --- | --- | --- |\n", group);
         }
         std::string summary(info.summary);
-        for (std::size_t at = 0; (at = summary.find('|', at)) != std::string::npos; at += 2) summary.insert(at, "\\");
+        for (std::size_t at = 0; (at = summary.find('|', at)) != std::string::npos; at += 2)
+            summary.insert(at, "\\");
         text += fmt::format("| {} | {} | {} |\n", info.code, info.name, summary);
     }
     return text;
@@ -73,12 +79,14 @@ TEST(Diagnostics, CodesAreSortedAndUnique) {
 
 TEST(Diagnostics, CodesSayTheirSeverity) {
     for (const diag::CodeInfo& info : diag::all_codes())
-        EXPECT_EQ(info.code.starts_with('W'), info.severity == diag::Severity::warning) << info.code;
+        EXPECT_EQ(info.code.starts_with('W'), info.severity == diag::Severity::warning)
+            << info.code;
 }
 
 TEST(Diagnostics, NamesAreUnique) {
     std::set<std::string_view> names;
-    for (const diag::CodeInfo& info : diag::all_codes()) EXPECT_TRUE(names.insert(info.name).second) << info.name;
+    for (const diag::CodeInfo& info : diag::all_codes())
+        EXPECT_TRUE(names.insert(info.name).second) << info.name;
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
-// A file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl compiles.
+// A file is a test: error/CODE_name.etl gives the diagnostics of CODE_name.expected, ok/NAME.etl
+// compiles.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -38,7 +39,8 @@ std::vector<std::string> cases_in(const std::string& folder) {
 std::string test_name(const ::testing::TestParamInfo<std::string>& info) {
     std::string name = fs::path(info.param).stem().string();
     std::replace_if(
-        name.begin(), name.end(), [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
+        name.begin(), name.end(),
+        [](char c) { return std::isalnum(static_cast<unsigned char>(c)) == 0; }, '_');
     return name;
 }
 
@@ -77,10 +79,11 @@ private:
 
 /// Output and errors of `etlc FILE --check`, run beside the file.
 Outcome check(const fs::path& file) {
-    return run(fmt::format("'{}' {} --check 2>&1", ETLC_EXECUTABLE, file.filename().string()), file.parent_path());
+    return run(fmt::format("'{}' {} --check 2>&1", ETLC_EXECUTABLE, file.filename().string()),
+               file.parent_path());
 }
 
-// ---- error/ --------------------------------------------------------------------------------------------------------
+// ---- error/ -------------------------------------------------------------------------------------
 
 class SpecError : public ::testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecError);
@@ -91,8 +94,9 @@ TEST_P(SpecError, IsDiagnosed) {
         const TemporaryFolder folder(file.stem().string());
         const std::string environment =
             fmt::format("ETLC='{}' SPECS='{}'", ETLC_EXECUTABLE, file.parent_path().string());
-        expect_golden(run(fmt::format("{} bash '{}' 2>&1", environment, file.string()), folder.path()).output,
-                      expected_of(GetParam()));
+        expect_golden(
+            run(fmt::format("{} bash '{}' 2>&1", environment, file.string()), folder.path()).output,
+            expected_of(GetParam()));
         return;
     }
     const Outcome outcome = check(file);
@@ -117,7 +121,8 @@ TEST(SpecErrors, EveryCaseIsNamedAfterACodeThatItShows) {
     for (const diag::CodeInfo& info : diag::all_codes()) codes.insert(std::string(info.code));
     for (const std::string& name : cases_in("error")) {
         EXPECT_TRUE(codes.contains(code_of(name))) << name;
-        EXPECT_NE(read_text(expected_of(name)).find(in_brackets(code_of(name))), std::string::npos) << name;
+        EXPECT_NE(read_text(expected_of(name)).find(in_brackets(code_of(name))), std::string::npos)
+            << name;
     }
 }
 
@@ -126,14 +131,14 @@ TEST(SpecErrors, EveryExpectedTextHasACase) {
         for (const auto& entry : fs::directory_iterator(kFolder / folder)) {
             fs::path file = entry.path();
             if (file.extension() != ".expected") continue;
-            const bool has_case =
-                fs::exists(file.replace_extension(".etl")) || fs::exists(file.replace_extension(".sh"));
+            const bool has_case = fs::exists(file.replace_extension(".etl")) ||
+                                  fs::exists(file.replace_extension(".sh"));
             EXPECT_TRUE(has_case) << entry.path();
         }
     }
 }
 
-// ---- ok/ -----------------------------------------------------------------------------------------------------------
+// ---- ok/ ----------------------------------------------------------------------------------------
 
 class SpecOk : public ::testing::TestWithParam<std::string> {};
 GTEST_ALLOW_UNINSTANTIATED_PARAMETERIZED_TEST(SpecOk);
@@ -152,9 +157,9 @@ TEST_P(SpecOk, EmitsItsGoldens) {
     for (const std::string stage : {"ast", "graph", "plan", "dot", "report"}) {
         const fs::path golden = fs::path(file).replace_extension(stage);
         if (!fs::exists(golden)) continue;
-        const Outcome outcome =
-            run(fmt::format("'{}' {} --emit {} 2>/dev/null", ETLC_EXECUTABLE, file.filename().string(), stage),
-                file.parent_path());
+        const Outcome outcome = run(fmt::format("'{}' {} --emit {} 2>/dev/null", ETLC_EXECUTABLE,
+                                                file.filename().string(), stage),
+                                    file.parent_path());
         EXPECT_EQ(outcome.status, 0) << stage;
         expect_golden(outcome.output, golden);
     }

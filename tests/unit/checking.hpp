@@ -17,7 +17,8 @@ struct Checked {
     ast::Spec spec;
     std::optional<check::Model> model;
 
-    explicit Checked(std::string text, const check::Options& options = {}, std::string path = "t.etl")
+    explicit Checked(std::string text, const check::Options& options = {},
+                     std::string path = "t.etl")
         : file(std::move(path), std::move(text)),
           spec(parse::parse(file, sink)),
           model(check::check(spec, file, options, sink)) {}
@@ -43,7 +44,9 @@ struct Checked {
         throw std::runtime_error("no monitor " + name);
     }
     /// The monitor's formula in canonical text.
-    std::string formula(const std::string& name) const { return check::print(*model, monitor(name).formula); }
+    std::string formula(const std::string& name) const {
+        return check::print(*model, monitor(name).formula);
+    }
 };
 
 }  // namespace etlc

@@ -1,5 +1,6 @@
 // Bytes of .npy and .npz files for tests, sound ones and broken ones.
-// Takes: header parts, members. Gives: the file's bytes. Keeps true: nothing is checked, so that tests can lie.
+// Takes: header parts, members. Gives: the file's bytes. Keeps true: nothing is checked, so that
+// tests can lie.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +32,8 @@ struct Member {
 /// A zip archive of the members, made by libzip in a temporary file.
 std::string zip_of(const std::vector<Member>& members);
 
-/// `bytes` with every `from` replaced by `to`, which has the same length. Fails the test where there is none.
+/// `bytes` with every `from` replaced by `to`, which has the same length. Fails the test where
+/// there is none.
 std::string patched(std::string bytes, const std::string& from, const std::string& to);
 
 /// `n` as `width` little-endian bytes.

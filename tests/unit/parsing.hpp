@@ -14,7 +14,8 @@ struct Parsed {
     diag::Sink sink;
     ast::Spec spec;
 
-    explicit Parsed(std::string text) : file("a.etl", std::move(text)), spec(parse::parse(file, sink)) {}
+    explicit Parsed(std::string text)
+        : file("a.etl", std::move(text)), spec(parse::parse(file, sink)) {}
 
     std::string tree() const { return tree_text::of(spec); }
     std::string errors() const { return diag::render_text(file, sink); }
@@ -22,7 +23,8 @@ struct Parsed {
     std::string brief() const {
         std::string result;
         for (const diag::Diagnostic& d : sink.sorted()) {
-            const source::Position at = d.span ? file.position(d.span->begin) : source::Position{0, 0};
+            const source::Position at =
+                d.span ? file.position(d.span->begin) : source::Position{0, 0};
             result += std::string(diag::info(d.code).code) + " " + std::to_string(at.line) + ":" +
                       std::to_string(at.column) + " " + d.message + "\n";
         }

@@ -1,5 +1,6 @@
 // Models and traces by hand, for tests of the reference.
-// Takes: pieces. Gives: a typed spec without parser or checker. Keeps true: operands stand before what uses them.
+// Takes: pieces. Gives: a typed spec without parser or checker. Keeps true: operands stand before
+// what uses them.
 #pragma once
 
 #include <cmath>
@@ -84,7 +85,8 @@ struct Spec {
     }
 
     /// The predicate as a formula; `range` is that of its robustness.
-    Index predicate(Expr expression, Comparison comparison, float epsilon, check::Range range = {}) {
+    Index predicate(Expr expression, Comparison comparison, float epsilon,
+                    check::Range range = {}) {
         check::Predicate predicate;
         predicate.expression = std::move(expression);
         predicate.comparison = comparison;
@@ -97,7 +99,9 @@ struct Spec {
     }
 
     /// x >= 0 for a new scalar in [-8, 8]: its robustness is the sample itself.
-    Index sample() { return predicate(scalar(ranged(-8, 8)), Comparison::greater_equal, 0, {-8, 8}); }
+    Index sample() {
+        return predicate(scalar(ranged(-8, 8)), Comparison::greater_equal, 0, {-8, 8});
+    }
 
     Index boolean() {
         const Index formula = f(Kind::boolean_input, {});
@@ -105,7 +109,8 @@ struct Spec {
         return formula;
     }
 
-    Index f(Kind kind, std::vector<Index> operands, std::uint32_t low = 0, std::uint32_t high = check::kUnbounded) {
+    Index f(Kind kind, std::vector<Index> operands, std::uint32_t low = 0,
+            std::uint32_t high = check::kUnbounded) {
         Formula formula;
         formula.kind = kind;
         formula.operands = std::move(operands);

@@ -22,12 +22,14 @@ const fs::path kCases = fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / "error";
 
 TEST(Check, InputsOfEveryType) {
     const Checked checked(
-        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : f16[6] hold 1; "
+        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : "
+        "f16[6] hold 1; "
         "input f : i8[7] scale 0.1;"
         "target t5 = load(\"none.npy\"); monitor m = G (c && a > 0 && b > 0);");
     EXPECT_EQ(checked.codes(), "E0401");
     const Checked good(
-        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : f16[6] hold 1; "
+        "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : "
+        "f16[6] hold 1; "
         "input f : i8[7] scale 0.1;"
         "monitor m = G (c && a > 0 && b > 0);");
     ASSERT_TRUE(good.model) << good.diagnostics();
@@ -49,7 +51,8 @@ TEST(Check, TargetsAndDependencies) {
     const std::string path = (kCases / "t.etl").string();
     const Checked checked(
         "spec t; input z : f32[2]; target row = load(\"row.npy\"); target corner = [[0.1, -2]];"
-        "predicate p = mahalanobis(load(\"./row.npy\"))(z, corner) <= 1; predicate q = l2(z, row) < 1; monitor m = F "
+        "predicate p = mahalanobis(load(\"./row.npy\"))(z, corner) <= 1; predicate q = l2(z, row) "
+        "< 1; monitor m = F "
         "(p && q);",
         {}, path);
     ASSERT_TRUE(checked.model) << checked.diagnostics();
@@ -79,7 +82,8 @@ TEST(Check, WeightsAreMadeSymmetric) {
 
 TEST(Check, WeightsFromATarget) {
     const Checked checked(
-        "spec t; input z : f32[2]; target c = [[1, 2]]; target w = [[2, -1], [-1, 2]]; target d = [[3, 4]];"
+        "spec t; input z : f32[2]; target c = [[1, 2]]; target w = [[2, -1], [-1, 2]]; target d = "
+        "[[3, 4]];"
         "monitor m = F (mahalanobis(w)(z, c) < 1 && mahalanobis(d)(z, c) < 1);");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.model->distances[0].weights, (std::vector<float>{2, -1, -1, 2}));
@@ -87,7 +91,8 @@ TEST(Check, WeightsFromATarget) {
     EXPECT_TRUE(checked.model->distances[1].weights_diagonal);
 }
 
-/// A random matrix A gives the positive definite A A^T + I, and with a negated pivot one that is not.
+/// A random matrix A gives the positive definite A A^T + I, and with a negated pivot one that is
+/// not.
 TEST(Check, DefinitenessOfRandomMatrices) {
     std::mt19937 random(1);
     std::normal_distribution<double> normal;
@@ -108,24 +113,27 @@ TEST(Check, DefinitenessOfRandomMatrices) {
                 }
                 out << "]";
             }
-            return "spec t; input z : f32[6]; target c = [[1, 2, 3, 4, 5, 6]]; monitor m = F mahalanobis(" + out.str() +
-                   "])(z, c) < 1;";
+            return "spec t; input z : f32[6]; target c = [[1, 2, 3, 4, 5, 6]]; monitor m = F "
+                   "mahalanobis(" +
+                   out.str() + "])(z, c) < 1;";
         };
         EXPECT_EQ(Checked(text(1)).codes(), "");
         EXPECT_EQ(Checked(text(-100)).codes(), "E0459");
     }
 }
 
-// ---- thresholds ----------------------------------------------------------------------------------------------------
+// ---- thresholds ---------------------------------------------------------------------------------
 
 constexpr const char* kCalibrated =
-    "spec t; input z : f32[1]; target goal = [[1]]; predicate a = l2(z, goal) <= calibrated(conformal, alpha = 0.10);"
+    "spec t; input z : f32[1]; target goal = [[1]]; predicate a = l2(z, goal) <= "
+    "calibrated(conformal, alpha = 0.10);"
     "monitor m = F a;";
 
 TEST(Thresholds, EpsilonComesFromTheFile) {
     const std::string file = (kCases / "E0652_threshold_stale.thresholds.json").string();
     const Checked checked(
-        "spec t; input z : f32[1]; target goal = [[1]]; predicate good = l2(z, goal) <= calibrated(conformal, alpha = "
+        "spec t; input z : f32[1]; target goal = [[1]]; predicate good = l2(z, goal) <= "
+        "calibrated(conformal, alpha = "
         "0.10); monitor m = F good;",
         {file, false});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
@@ -161,13 +169,14 @@ Provenance provenance_of(const std::string& text, const std::string& predicate) 
 
 TEST(Thresholds, ProvenanceSaysAllThatTheThresholdDependsOn) {
     const std::string head =
-        "spec t; input z : i8[1] scale 0.5; input px : f32; target goal = [[1]]; target spot = [[0]]; predicate held = "
+        "spec t; input z : i8[1] scale 0.5; input px : f32; target goal = [[1]]; target spot = "
+        "[[0]]; predicate held = "
         "px > 0.25;";
-    const Provenance found =
-        provenance_of(head +
-                          "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held || false;"
-                          "truth a = sure && l2([px], spot) < 0.50; monitor m = F a;",
-                      "a");
+    const Provenance found = provenance_of(
+        head +
+            "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held || false;"
+            "truth a = sure && l2([px], spot) < 0.50; monitor m = F a;",
+        "a");
     EXPECT_EQ(found.predicate, "mahalanobis([2])(z, goal) <= ");
     EXPECT_EQ(found.truth, "(held || false) && l2([px], spot) < 0.50 where held = px > 0.25");
     ASSERT_EQ(found.targets.size(), 3U);
@@ -178,11 +187,11 @@ TEST(Thresholds, ProvenanceSaysAllThatTheThresholdDependsOn) {
     EXPECT_TRUE(found.truth_targets.contains("spot"));
 }
 
-// ---- names ---------------------------------------------------------------------------------------------------------
+// ---- names --------------------------------------------------------------------------------------
 
 TEST(Names, SuggestionsMayBeDeclared) {
-    for (const char* name : {"int", "co_await", "NAN", "FLT_MAX", "a__b", "__", "_Up", "__x", "step", "Monitor",
-                             "signal", "int__", "___9", "EOF"}) {
+    for (const char* name : {"int", "co_await", "NAN", "FLT_MAX", "a__b", "__", "_Up", "__x",
+                             "step", "Monitor", "signal", "int__", "___9", "EOF"}) {
         for (const char* kind : {"input", "spec", "monitor"}) {
             const bool is_namespace = std::string(kind) == "spec";
             if (!why_forbidden(name, is_namespace)) continue;
@@ -194,8 +203,8 @@ TEST(Names, SuggestionsMayBeDeclared) {
 }
 
 TEST(Names, OrdinaryNamesPass) {
-    for (const char* name : {"x", "z", "at_goal", "near", "far", "gripper", "time", "index", "log", "min_distance",
-                             "I2", "reach_avoid", "final", "module"})
+    for (const char* name : {"x", "z", "at_goal", "near", "far", "gripper", "time", "index", "log",
+                             "min_distance", "I2", "reach_avoid", "final", "module"})
         EXPECT_FALSE(why_forbidden(name, false)) << name;
     EXPECT_FALSE(why_forbidden("dubins", true));
     EXPECT_TRUE(why_forbidden("time", true));
@@ -203,30 +212,35 @@ TEST(Names, OrdinaryNamesPass) {
 }
 
 TEST(Names, UnderscoresStandBetweenOthers) {
-    for (const char* name : {"_x", "x_", "a__b", "_X", "step_", "_"}) EXPECT_TRUE(why_forbidden(name, false)) << name;
+    for (const char* name : {"_x", "x_", "a__b", "_X", "step_", "_"})
+        EXPECT_TRUE(why_forbidden(name, false)) << name;
     EXPECT_EQ(allowed_name("finished_", "input", false), "finished");
     EXPECT_EQ(allowed_name("_a__b_", "input", false), "a_b");
 }
 
 TEST(Names, CapitalsAreLeftToMacros) {
-    for (const char* name : {"NAN", "SPI1", "A_B", "FLT_MAX", "PRIu8"}) EXPECT_TRUE(why_forbidden(name, false)) << name;
+    for (const char* name : {"NAN", "SPI1", "A_B", "FLT_MAX", "PRIu8"})
+        EXPECT_TRUE(why_forbidden(name, false)) << name;
     EXPECT_EQ(allowed_name("IMU", "input", false), "imu");
 }
 
 TEST(Names, AreDeclaredInAnyOrder) {
     const Checked checked(
-        "spec t; monitor m = F l; let l = p; predicate p = min l2(z, goal) <= 1; target goal = [[1, 2]]; input z : "
+        "spec t; monitor m = F l; let l = p; predicate p = min l2(z, goal) <= 1; target goal = "
+        "[[1, 2]]; input z : "
         "f32[2];");
     EXPECT_EQ(checked.codes(), "") << checked.diagnostics();
 }
 
-// ---- robustness ----------------------------------------------------------------------------------------------------
+// ---- robustness ---------------------------------------------------------------------------------
 
-/// Specs that lost, doubled or exchanged pieces: whatever is wrong with them is said, and nothing worse happens.
+/// Specs that lost, doubled or exchanged pieces: whatever is wrong with them is said, and nothing
+/// worse happens.
 TEST(Check, BearsDamagedSpecs) {
     std::vector<std::string> specs;
     for (const char* folder : {"error", "ok"})
-        for (const auto& entry : fs::directory_iterator(fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / folder)) {
+        for (const auto& entry :
+             fs::directory_iterator(fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / folder)) {
             if (entry.path().extension() != ".etl" || entry.file_size() > 4000) continue;
             std::ifstream in(entry.path());
             std::ostringstream text;

@@ -1,4 +1,5 @@
-// How adaptive thresholds move, from their decimal texts: rounded on the side that the guarantee needs, and exactly.
+// How adaptive thresholds move, from their decimal texts: rounded on the side that the guarantee
+// needs, and exactly.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -17,9 +18,11 @@ namespace etlc::check {
 namespace {
 
 Checked adaptive(const std::string& comparison, const std::string& arguments) {
-    return Checked(fmt::format("spec t; input x : f32; predicate p = x {} calibrated(adaptive, {}); monitor m = F p;",
-                               comparison, arguments),
-                   {"", true});
+    return Checked(
+        fmt::format(
+            "spec t; input x : f32; predicate p = x {} calibrated(adaptive, {}); monitor m = F p;",
+            comparison, arguments),
+        {"", true});
 }
 
 bool is_multiple(double x, double grid) {
@@ -31,7 +34,8 @@ TEST(Adaptation, IsAsWritten) {
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Threshold& threshold = checked.predicate("p").threshold;
     EXPECT_EQ(threshold.origin, ThresholdOrigin::adaptive);
-    EXPECT_EQ(threshold.text, "calibrated(adaptive, alpha = 0.10, gamma = 0.01, lo = 0.1, hi = 0.6)");
+    EXPECT_EQ(threshold.text,
+              "calibrated(adaptive, alpha = 0.10, gamma = 0.01, lo = 0.1, hi = 0.6)");
     EXPECT_EQ(threshold.alpha, "0.10");
     EXPECT_TRUE(std::isnan(threshold.value));
     EXPECT_EQ(threshold.range().high, 0.6F);  // the float32 above 0.6
@@ -57,8 +61,9 @@ TEST(Adaptation, BinaryFractionsAreExact) {
     EXPECT_EQ(adaptation.range.high, 1.5F);
 }
 
-/// A miss moves by at least gamma (1 - alpha), a hit by at most gamma alpha, each by less than a grid length and a bit
-/// more or less; [lo, hi] is inside the range. Long doubles are exact enough to tell: the texts are short.
+/// A miss moves by at least gamma (1 - alpha), a hit by at most gamma alpha, each by less than a
+/// grid length and a bit more or less; [lo, hi] is inside the range. Long doubles are exact enough
+/// to tell: the texts are short.
 TEST(Adaptation, RoundsAgainstTheMissRate) {
     std::mt19937_64 engine(5);
     const auto between = [&](int low, int high) {
@@ -70,8 +75,9 @@ TEST(Adaptation, RoundsAgainstTheMissRate) {
         const int lo = between(-9999, 9998);
         const int hi = between(lo + 100, 10099);
         const int gamma = between(20, 100);
-        const Checked checked = adaptive("<=", fmt::format("alpha = 0.{:02}, gamma = {}e{}, lo = {}e{}, hi = {}e{}",
-                                                           alpha, gamma, scale, lo, scale, hi, scale));
+        const Checked checked =
+            adaptive("<=", fmt::format("alpha = 0.{:02}, gamma = {}e{}, lo = {}e{}, hi = {}e{}",
+                                       alpha, gamma, scale, lo, scale, hi, scale));
         ASSERT_TRUE(checked.model) << checked.diagnostics();
         const Adaptation& adaptation = *checked.predicate("p").threshold.adaptation;
         const long double unit = std::pow(10.0L, static_cast<long double>(scale));
@@ -86,7 +92,8 @@ TEST(Adaptation, RoundsAgainstTheMissRate) {
         ASSERT_GE(adaptation.range.low, lo * unit - 2 * grid);
         ASSERT_GE(adaptation.range.high, hi * unit * (hi < 0 ? 1 + 1e-17L : 1 - 1e-17L));
         ASSERT_LE(adaptation.range.high, hi * unit + 2 * grid);
-        for (const float x : {adaptation.widen, adaptation.tighten, adaptation.range.low, adaptation.range.high})
+        for (const float x :
+             {adaptation.widen, adaptation.tighten, adaptation.range.low, adaptation.range.high})
             ASSERT_TRUE(is_multiple(x, adaptation.grid)) << checked.file.text();
     }
 }
@@ -106,14 +113,16 @@ TEST(Adaptation, StartsOnTheGenerousSide) {
     EXPECT_FALSE(start(adaptation, std::numeric_limits<float>::infinity(), true));
 }
 
-/// The thresholds of tests/spec/ok/adaptive.etl, as if x had been declared as in this spec when they were calibrated.
+/// The thresholds of tests/spec/ok/adaptive.etl, as if x had been declared as in this spec when
+/// they were calibrated.
 std::string thresholds_for(const std::string& spec) {
     const Checked uncalibrated(spec, {"", true});
     std::ifstream file(std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json");
     std::string json{std::istreambuf_iterator<char>(file), {}};
     const std::string declared = "\"x\": \"";
     const std::string hash = provenance(*uncalibrated.model, 0).targets.at("x");
-    for (std::size_t at = json.find(declared); at != std::string::npos; at = json.find(declared, at + 1))
+    for (std::size_t at = json.find(declared); at != std::string::npos;
+         at = json.find(declared, at + 1))
         json.replace(at + declared.size(), hash.size(), hash);
     std::string path = testing::TempDir() + "/adaptation.thresholds.json";
     std::ofstream(path) << json;
@@ -122,11 +131,14 @@ std::string thresholds_for(const std::string& spec) {
 
 /// The range of a predicate is that for every threshold that it may have.
 TEST(Adaptation, WidensTheRangeOfItsPredicate) {
-    const std::string path = std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json";
+    const std::string path =
+        std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json";
     const Checked checked(
-        "spec adaptive; input x : f32 in [0, 4]; input y : f32; predicate low = x <= calibrated(adaptive, alpha = "
+        "spec adaptive; input x : f32 in [0, 4]; input y : f32; predicate low = x <= "
+        "calibrated(adaptive, alpha = "
         "0.25, "
-        "gamma = 0.25, lo = 0.5, hi = 2); predicate high = x > calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = "
+        "gamma = 0.25, lo = 0.5, hi = 2); predicate high = x > calibrated(adaptive, alpha = 0.25, "
+        "gamma = 0.25, lo = "
         "1, "
         "hi = 3); truth low = y < 1; truth high = y > 2; monitor m = F low && G high;",
         {path, false});
@@ -142,10 +154,10 @@ TEST(Adaptation, WidensTheRangeOfItsPredicate) {
 /// A comparison that every threshold makes true is warned of, not one that only the start does.
 TEST(Adaptation, ConstantForEveryThreshold) {
     const auto codes = [&](const std::string& range, const std::string& lo) {
-        const std::string spec =
-            "spec adaptive; input x : f32 in " + range +
-            "; input y : f32; predicate low = x <= calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = " + lo +
-            ", hi = 2); truth low = y < 1; monitor m = F low;";
+        const std::string spec = "spec adaptive; input x : f32 in " + range +
+                                 "; input y : f32; predicate low = x <= calibrated(adaptive, alpha "
+                                 "= 0.25, gamma = 0.25, lo = " +
+                                 lo + ", hi = 2); truth low = y < 1; monitor m = F low;";
         return Checked(spec, {thresholds_for(spec), false}).codes();
     };
     EXPECT_EQ(codes("[0, 0.75]", "0.5"), "");

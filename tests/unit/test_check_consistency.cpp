@@ -1,4 +1,5 @@
-// Entries of the thresholds file against themselves: each contradiction names its key, what is there and what follows.
+// Entries of the thresholds file against themselves: each contradiction names its key, what is
+// there and what follows.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -54,8 +55,11 @@ TEST(Consistency, WhatCalibrationWritesIsBelieved) {
                       conformal(upper), [](Entry&) {}, upper),
                   "");
     EXPECT_EQ(said(conformal(true), [](Entry& e) { e.method = "adaptive"; }), "");
-    EXPECT_EQ(said(conformal(true), [](Entry& e) { e.scores[8] = std::numeric_limits<double>::infinity(); }), "");
-    for (const std::string method : {"f1", "class_conditional"}) EXPECT_EQ(said(pooled(method), [](Entry&) {}), "");
+    EXPECT_EQ(said(conformal(true),
+                   [](Entry& e) { e.scores[8] = std::numeric_limits<double>::infinity(); }),
+              "");
+    for (const std::string method : {"f1", "class_conditional"})
+        EXPECT_EQ(said(pooled(method), [](Entry&) {}), "");
 }
 
 TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
@@ -64,14 +68,16 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
               "'predicates.p.k' is 1, expected 8: the rank of alpha = 0.2 among 9 scores");
     EXPECT_EQ(said(good, [](Entry& e) { e.n = 10; }),
               "'predicates.p.scores' has 9 elements, expected n of them, which is 10");
-    EXPECT_EQ(said(good, [](Entry& e) { e.n = 0; }), "'predicates.p.n' is 0, expected a number of scores from 1");
+    EXPECT_EQ(said(good, [](Entry& e) { e.n = 0; }),
+              "'predicates.p.n' is 0, expected a number of scores from 1");
     EXPECT_EQ(said(good, [](Entry& e) { e.alpha = "0.05"; }),
               "'predicates.p.n' is 9, expected at least 19, which alpha = 0.05 takes");
     EXPECT_EQ(said(good, [](Entry& e) { std::swap(e.scores[2], e.scores[3]); }),
               "'predicates.p.scores[3]' is 1, expected at least 1.5, the score before it");
     EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.n = 100; }),
               "'predicates.p.k' is 8, expected 81: the rank of alpha = 0.2 among 100 scores");
-    EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.n = std::numeric_limits<std::uint64_t>::max(); }),
+    EXPECT_EQ(said(pooled("class_conditional"),
+                   [](Entry& e) { e.n = std::numeric_limits<std::uint64_t>::max(); }),
               "'predicates.p.n' is 18446744073709551615, expected a number of scores from 1");
     EXPECT_EQ(said(pooled("f1"), [](Entry& e) { e.scores.clear(); }),
               "'predicates.p.scores' has 0 elements, expected 1, the score that was taken");
@@ -79,37 +85,46 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
 
 TEST(Consistency, EpisodesAreThereOnceEach) {
     const Entry good = conformal(true);
-    EXPECT_EQ(said(
-                  good, [](Entry&) {}, true, episodes(8)),
-              "'episodes' has 8 elements, expected at least 9: one for each score of 'predicates.p'");
+    EXPECT_EQ(
+        said(
+            good, [](Entry&) {}, true, episodes(8)),
+        "'episodes' has 8 elements, expected at least 9: one for each score of 'predicates.p'");
     std::vector<std::string> twice = episodes(10);
     twice[7] = twice[2];
     EXPECT_EQ(said(
                   good, [](Entry&) {}, true, twice),
-              "'episodes[7]' is '0000000000000012', which stands in it before; expected each episode once");
+              "'episodes[7]' is '0000000000000012', which stands in it before; expected each "
+              "episode once");
     EXPECT_EQ(said(good, [](Entry& e) { e.against = "missed_alarm"; }, true, {}),
-              "'predicates.p.episodes' has 0 elements, expected at least 9: one for each score of 'predicates.p'");
-    EXPECT_EQ(said(pooled("f1"), [](Entry&) {}, true, {}), "'episodes' has 0 elements, expected at least 1");
+              "'predicates.p.episodes' has 0 elements, expected at least 9: one for each score of "
+              "'predicates.p'");
+    EXPECT_EQ(said(pooled("f1"), [](Entry&) {}, true, {}),
+              "'episodes' has 0 elements, expected at least 1");
 }
 
 TEST(Consistency, TheThresholdIsThatOfItsScore) {
-    EXPECT_EQ(said(conformal(true), [](Entry& e) { e.epsilon = 0.31F; }),
-              "'predicates.p.epsilon' is 0.310000002, expected 3.00000024: the first float32 beyond "
-              "'predicates.p.scores[7]', 3");
+    EXPECT_EQ(
+        said(conformal(true), [](Entry& e) { e.epsilon = 0.31F; }),
+        "'predicates.p.epsilon' is 0.310000002, expected 3.00000024: the first float32 beyond "
+        "'predicates.p.scores[7]', 3");
     EXPECT_EQ(said(
                   conformal(false), [](Entry& e) { e.epsilon = 1; }, false),
-              "'predicates.p.epsilon' is 1, expected 0.99999994: the first float32 beyond 'predicates.p.scores[1]', 1");
-    EXPECT_EQ(said(pooled("f1"), [](Entry& e) { e.epsilon = 0.5F; }),
-              "'predicates.p.epsilon' is 0.5, expected 0.25: that is 'predicates.p.scores[0]', 0.25");
+              "'predicates.p.epsilon' is 1, expected 0.99999994: the first float32 beyond "
+              "'predicates.p.scores[1]', 1");
+    EXPECT_EQ(
+        said(pooled("f1"), [](Entry& e) { e.epsilon = 0.5F; }),
+        "'predicates.p.epsilon' is 0.5, expected 0.25: that is 'predicates.p.scores[0]', 0.25");
     for (const bool upper : {false, true}) {
         Entry infinite = conformal(upper);
         infinite.scores.assign(9, upper ? INFINITY : -INFINITY);
         EXPECT_NE(said(
                       infinite, [](Entry&) {}, upper),
                   "");
-        for (const float toward : {-INFINITY, INFINITY})  // the next float32 on either side is another threshold
+        for (const float toward :
+             {-INFINITY, INFINITY})  // the next float32 on either side is another threshold
             EXPECT_NE(said(
-                          conformal(upper), [&](Entry& e) { e.epsilon = std::nextafter(e.epsilon, toward); }, upper),
+                          conformal(upper),
+                          [&](Entry& e) { e.epsilon = std::nextafter(e.epsilon, toward); }, upper),
                       "");
     }
 }

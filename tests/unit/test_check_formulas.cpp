@@ -14,7 +14,8 @@ namespace {
 
 using Kind = Formula::Kind;
 
-constexpr const char* kHead = "spec t; input x : f32; input on : bool; predicate p = x > 0; predicate q = x < 1; ";
+constexpr const char* kHead =
+    "spec t; input x : f32; input on : bool; predicate p = x > 0; predicate q = x < 1; ";
 
 Checked monitor(const std::string& formula, bool sliding = false) {
     return Checked(fmt::format("{}{}monitor m = {};", kHead, sliding ? "sliding " : "", formula));
@@ -55,17 +56,22 @@ TEST(Canonical, WordsAndIntervals) {
 
 TEST(Canonical, Expressions) {
     const Checked checked(
-        "spec t; input x, y : f32; input z : f32[2]; target t1 = [[1, 2]]; target t2 = [[1, 2], [2, 1]];"
-        "predicate a = x - (y - 0.50) * 2e0 <= 1; predicate b = -(x + y) / -y > 1.50; predicate c = abs(x) + min(x, y, "
+        "spec t; input x, y : f32; input z : f32[2]; target t1 = [[1, 2]]; target t2 = [[1, 2], "
+        "[2, 1]];"
+        "predicate a = x - (y - 0.50) * 2e0 <= 1; predicate b = -(x + y) / -y > 1.50; predicate c "
+        "= abs(x) + min(x, y, "
         "3) < 1;"
-        "predicate d = min  l2( z ,t1 ) <= 1; predicate e = kth(2) linf(z, t2) - mean cosine([x, y], t2) <= -1;"
-        "predicate f = mahalanobis([[1.0, 0], [0, 1]])(z, t1) < 1; monitor m = G (a && b && c && d && e && f);");
+        "predicate d = min  l2( z ,t1 ) <= 1; predicate e = kth(2) linf(z, t2) - mean cosine([x, "
+        "y], t2) <= -1;"
+        "predicate f = mahalanobis([[1.0, 0], [0, 1]])(z, t1) < 1; monitor m = G (a && b && c && d "
+        "&& e && f);");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.predicate("a").text, "x - (y - 0.5) * 2 <= ");
     EXPECT_EQ(checked.predicate("b").text, "-(x + y) / -y > ");
     EXPECT_EQ(checked.predicate("b").threshold.text, "1.50");
     EXPECT_EQ(checked.predicate("c").text, "abs(x) + min(x, y, 3) < ");
-    EXPECT_EQ(checked.predicate("d").text, "l2(z, t1) <= ");  // one row: any aggregation is the distance
+    EXPECT_EQ(checked.predicate("d").text,
+              "l2(z, t1) <= ");  // one row: any aggregation is the distance
     EXPECT_EQ(checked.predicate("e").text, "kth(2) linf(z, t2) - mean cosine([x, y], t2) <= ");
     EXPECT_EQ(checked.predicate("f").text, "mahalanobis([[1, 0], [0, 1]])(z, t1) < ");
 }
@@ -76,14 +82,18 @@ public:
 
     std::string formula(int depth) {
         static const std::vector<std::string> atoms{"p", "q", "on", "x > 0.5", "true", "false"};
-        static const std::vector<std::string> prefixes{"!",          "X ", "F ", "G ", "F[1, 3] ", "G[0, 2] ",
-                                                       "F[1, inf] ", "Y ", "O ", "H ", "O[1, 2] ", "H[1, inf] "};
-        static const std::vector<std::string> infixes{" && ", " || ",      " -> ",      " <-> ", " U ",      " W ",
-                                                      " R ",  " U[1, 2] ", " R[0, 3] ", " S ",   " S[1, 2] "};
+        static const std::vector<std::string> prefixes{
+            "!",          "X ", "F ", "G ", "F[1, 3] ", "G[0, 2] ",
+            "F[1, inf] ", "Y ", "O ", "H ", "O[1, 2] ", "H[1, inf] "};
+        static const std::vector<std::string> infixes{" && ",      " || ", " -> ",     " <-> ",
+                                                      " U ",       " W ",  " R ",      " U[1, 2] ",
+                                                      " R[0, 3] ", " S ",  " S[1, 2] "};
         if (depth == 0) return atoms[random_() % atoms.size()];
-        if (random_() % 2 == 0) return fmt::format("{}({})", prefixes[random_() % prefixes.size()], formula(depth - 1));
+        if (random_() % 2 == 0)
+            return fmt::format("{}({})", prefixes[random_() % prefixes.size()], formula(depth - 1));
         const std::string left = formula(depth - 1);
-        return fmt::format("({}){}({})", left, infixes[random_() % infixes.size()], formula(depth - 1));
+        return fmt::format("({}){}({})", left, infixes[random_() % infixes.size()],
+                           formula(depth - 1));
     }
 
 private:
@@ -94,7 +104,8 @@ private:
 std::string structure(const Model& model, Index index) {
     const Formula& f = model.formulas[index];
     std::string text = fmt::format("({}[{},{}]", static_cast<int>(f.kind), f.low, f.high);
-    if (f.kind == Kind::predicate) text += model.predicates[f.index].text + model.predicates[f.index].name;
+    if (f.kind == Kind::predicate)
+        text += model.predicates[f.index].text + model.predicates[f.index].name;
     if (f.kind == Kind::boolean_input) text += model.inputs[f.index].name;
     for (const Index operand : f.operands) text += structure(model, operand);
     return text.append(")");
@@ -111,7 +122,8 @@ TEST(Canonical, ReadsBackAsTheSameFormula) {
         ASSERT_TRUE(second.model) << second.diagnostics();
         EXPECT_EQ(second.formula("m"), text);
         // && and || of && and || lose brackets that mean nothing; all else is the same tree.
-        const bool flat = text.find("&&") == std::string::npos && text.find("||") == std::string::npos;
+        const bool flat =
+            text.find("&&") == std::string::npos && text.find("||") == std::string::npos;
         if (flat) {
             EXPECT_EQ(structure(*first.model, first.monitor("m").formula),
                       structure(*second.model, second.monitor("m").formula))
@@ -133,12 +145,12 @@ TEST(Canonical, ManyLetsStayShort) {
     EXPECT_LT(checked.model->formulas.size(), 500U);
 }
 
-// ---- the DAG -------------------------------------------------------------------------------------------------------
+// ---- the DAG ------------------------------------------------------------------------------------
 
 TEST(Dag, OperandsComeFirstAndLetsAreShared) {
-    const Checked checked(
-        std::string(kHead) +
-        "monitor a = G (later && F l); let l = F (k || on); let k = p U q; let later = l; monitor b = l;");
+    const Checked checked(std::string(kHead) +
+                          "monitor a = G (later && F l); let l = F (k || on); let k = p U q; let "
+                          "later = l; monitor b = l;");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Model& model = *checked.model;
     for (Index i = 0; i < model.formulas.size(); ++i)
@@ -166,7 +178,8 @@ TEST(Dag, ComparisonsInFormulasAreSharedAndComeAfterNamedPredicates) {
 TEST(Dag, EqualDistancesStandOnce) {
     const Checked checked(
         "spec t; input z : f32[2]; target a = [[1, 2]]; target b = [[2, 1], [3, 3]];"
-        "predicate p = l2(z, a) <= 1; predicate q = min l2(z, a) - min l2(z, b) < 0; predicate r = max l2(z, b) < 9;"
+        "predicate p = l2(z, a) <= 1; predicate q = min l2(z, a) - min l2(z, b) < 0; predicate r = "
+        "max l2(z, b) < 9;"
         "monitor m = F (p && q && r);");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.model->distances.size(), 3U);
@@ -174,7 +187,7 @@ TEST(Dag, EqualDistancesStandOnce) {
     EXPECT_FALSE(checked.predicate("q").plain_distance());
 }
 
-// ---- horizons ------------------------------------------------------------------------------------------------------
+// ---- horizons -----------------------------------------------------------------------------------
 
 std::uint32_t horizon(const std::string& formula) {
     const Checked checked = monitor(formula, true);
@@ -194,7 +207,7 @@ TEST(Horizon, IsTheSumAlongTheDeepestPath) {
     EXPECT_EQ(horizon("G[0, 2147483646] p"), 2147483646U);
 }
 
-// ---- constancy -----------------------------------------------------------------------------------------------------
+// ---- constancy ----------------------------------------------------------------------------------
 
 /// What is called constant is +inf or -inf in the reference, on prefixes of random traces.
 TEST(Constancy, HoldsInTheReference) {
@@ -210,7 +223,8 @@ TEST(Constancy, HoldsInTheReference) {
         ++constant;
         reference::Trace trace;
         for (int k = 0; k < 6; ++k)
-            trace.push_back({{static_cast<double>(values() % 5) - 1.5}, {static_cast<double>(values() % 2)}});
+            trace.push_back(
+                {{static_cast<double>(values() % 5) - 1.5}, {static_cast<double>(values() % 2)}});
         for (const auto& verdicts : reference::evaluate(*checked.model, trace).verdicts) {
             const double expected = found == Constancy::always ? INFINITY : -INFINITY;
             EXPECT_EQ(verdicts[0].robustness, expected) << checked.formula("m");
@@ -219,14 +233,17 @@ TEST(Constancy, HoldsInTheReference) {
     EXPECT_GT(constant, 50);
 }
 
-/// Operators over constants that never change on short traces of the reference are called constant: none is missed.
+/// Operators over constants that never change on short traces of the reference are called constant:
+/// none is missed.
 TEST(Constancy, FindsConstantsThatNoInputEnters) {
     EXPECT_EQ(monitor("true U p").codes(), "W0201 W0201");
     for (const char* formula :
-         {"true", "p || F true", "G true", "false U p && false", "Y p", "H[1, 3] p", "p R true", "p W true", "true W p",
-          "!(O[1, 1] p)", "p S[1, 2] q", "(false S[1, 2] p) && q", "true <-> G true", "p -> true"})
+         {"true", "p || F true", "G true", "false U p && false", "Y p", "H[1, 3] p", "p R true",
+          "p W true", "true W p", "!(O[1, 1] p)", "p S[1, 2] q", "(false S[1, 2] p) && q",
+          "true <-> G true", "p -> true"})
         EXPECT_NE(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
-    for (const char* formula : {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p", "p <-> q"})
+    for (const char* formula :
+         {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p", "p <-> q"})
         EXPECT_EQ(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
 }
 

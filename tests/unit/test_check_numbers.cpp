@@ -41,7 +41,9 @@ TEST(Decimal, CanonicalText) {
 }
 
 TEST(Decimal, Order) {
-    const auto less = [](std::string_view a, std::string_view b) { return Decimal::parse(a) < Decimal::parse(b); };
+    const auto less = [](std::string_view a, std::string_view b) {
+        return Decimal::parse(a) < Decimal::parse(b);
+    };
     EXPECT_TRUE(less("-1", "0"));
     EXPECT_TRUE(less("-10", "-9"));
     EXPECT_TRUE(less("0.9", "0.91"));
@@ -71,7 +73,8 @@ TEST(Decimal, OfADoubleIsExact) {
 }
 
 TEST(Float, IsRoundedOnce) {
-    // Half way between 1 and its successor, and a hair above: through a double both would become the half.
+    // Half way between 1 and its successor, and a hair above: through a double both would become
+    // the half.
     EXPECT_EQ(rounded("1.000000059604644775390625"), 1.0F);
     EXPECT_EQ(rounded("1.00000005960464477539062500000000000000001"), std::nextafter(1.0F, 2.0F));
     EXPECT_EQ(rounded("16777217"), 16777216.0F);
@@ -81,7 +84,8 @@ TEST(Float, IsRoundedOnce) {
 
 TEST(Float, OverflowAndUnderflow) {
     float value = 0;
-    EXPECT_EQ(to_float("3.4028235677973366163753939545815e38", value), Fit::overflow);  // half way to 2^128
+    EXPECT_EQ(to_float("3.4028235677973366163753939545815e38", value),
+              Fit::overflow);  // half way to 2^128
     EXPECT_EQ(value, kInfinity);
     EXPECT_EQ(to_float("-1e39", value), Fit::overflow);
     EXPECT_EQ(value, -kInfinity);
@@ -102,7 +106,8 @@ TEST(Float, OutwardRoundingEncloses) {
         EXPECT_EQ(round_down(exact.text()), value);
         EXPECT_EQ(round_up(exact.text()), value);
         if (exact.is_zero()) continue;
-        exact.digits += "000000000000000000000000000001";  // away from zero by much less than half an ulp
+        exact.digits +=
+            "000000000000000000000000000001";  // away from zero by much less than half an ulp
         const std::string text = exact.text();
         const float away = std::nextafter(value, exact.negative ? -kInfinity : kInfinity);
         EXPECT_EQ(round_down(text), exact.negative ? away : value) << text;
@@ -131,9 +136,10 @@ TEST(Float, RangesOfInputsAreRoundedOutward) {
     EXPECT_EQ(checked.model->predicates[0].threshold.value64, 0.1);
 }
 
-// ---- time ----------------------------------------------------------------------------------------------------------
+// ---- time ---------------------------------------------------------------------------------------
 
-StepCount steps(std::string_view duration, std::string_view unit, std::string_view step, std::string_view step_unit) {
+StepCount steps(std::string_view duration, std::string_view unit, std::string_view step,
+                std::string_view step_unit) {
     return count_steps({Decimal::parse(duration), unit}, {Decimal::parse(step), step_unit});
 }
 
@@ -187,7 +193,8 @@ TEST(Duration, AgreesWithSmallFractions) {
 }
 
 TEST(Duration, TextOfSteps) {
-    const auto text = [](std::uint64_t n, std::string_view step, std::string_view step_unit, std::string_view unit) {
+    const auto text = [](std::uint64_t n, std::string_view step, std::string_view step_unit,
+                         std::string_view unit) {
         return duration_text(n, {Decimal::parse(step), step_unit}, unit);
     };
     EXPECT_EQ(text(3, "20", "Hz", "ms"), "150 ms");
@@ -202,7 +209,8 @@ TEST(Duration, TextOfSteps) {
 TEST(Duration, IntervalsOfASpec) {
     const Checked checked(
         "spec t; rate 100 Hz; input x : f32; predicate p = x > 0;"
-        "sliding monitor a = G[0, 0.29 s] p; sliding monitor b = F[10 ms, 0.1 min] p; sliding monitor c = G[0 s, 3 s] "
+        "sliding monitor a = G[0, 0.29 s] p; sliding monitor b = F[10 ms, 0.1 min] p; sliding "
+        "monitor c = G[0 s, 3 s] "
         "p;"
         "monitor d = F[20 ms, inf] p;");
     ASSERT_TRUE(checked.model) << checked.diagnostics();

@@ -19,7 +19,8 @@ float value_of(const Expr& e, const std::vector<float>& inputs) {
     std::vector<float> a;
     for (const Expr& argument : e.arguments) a.push_back(value_of(argument, inputs));
     for (const float argument : a)
-        if (std::isnan(argument)) return argument;  // what has no value stays so, also under min and max
+        if (std::isnan(argument))
+            return argument;  // what has no value stays so, also under min and max
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return inputs[e.index];
@@ -64,7 +65,8 @@ public:
         if (below(4) == 0) return low;
         if (below(4) == 0) return high;
         const double t = std::uniform_real_distribution<double>(0, 1)(random_);
-        const auto value = static_cast<float>(static_cast<double>(low) * (1 - t) + static_cast<double>(high) * t);
+        const auto value =
+            static_cast<float>(static_cast<double>(low) * (1 - t) + static_cast<double>(high) * t);
         return std::clamp(value, low, high);
     }
 
@@ -72,7 +74,8 @@ private:
     int below(int n) { return static_cast<int>(random_() % static_cast<unsigned>(n)); }
 
     std::string leaf() {
-        static const std::vector<std::string> leaves{"x", "y", "v", "w", "0.1", "3", "1e-30", "7e20", "0.333333333"};
+        static const std::vector<std::string> leaves{"x", "y",     "v",    "w",          "0.1",
+                                                     "3", "1e-30", "7e20", "0.333333333"};
         return leaves[random_() % leaves.size()];
     }
 
@@ -85,7 +88,8 @@ TEST(Ranges, RandomSamplesStayInside) {
     for (int i = 0; i < 400; ++i) {
         const std::string text = random.expression(4);
         const Checked checked(
-            "spec t; input x : f32 in [-3.7, 2.3]; input y : f32 in [0.1, 5]; input v : f32 in [1e-20, 1e20]; input w "
+            "spec t; input x : f32 in [-3.7, 2.3]; input y : f32 in [0.1, 5]; input v : f32 in "
+            "[1e-20, 1e20]; input w "
             ": f32;"
             "predicate p = " +
             text + " <= 0.7; monitor m = G p;");
@@ -94,7 +98,8 @@ TEST(Ranges, RandomSamplesStayInside) {
         ASSERT_LE(p.delta.low, p.delta.high);
         for (int k = 0; k < 200; ++k) {
             std::vector<float> inputs;
-            for (const Input& input : checked.model->inputs) inputs.push_back(random.sample(input.range));
+            for (const Input& input : checked.model->inputs)
+                inputs.push_back(random.sample(input.range));
             const float delta = value_of(p.expression, inputs);
             if (std::isnan(delta)) continue;  // unknown
             ++checked_samples;
@@ -107,7 +112,8 @@ TEST(Ranges, RandomSamplesStayInside) {
 }
 
 Range range_of(const std::string& expression, const std::string& inputs) {
-    const Checked checked("spec t; " + inputs + " predicate p = " + expression + " <= 0.5; monitor m = G p;");
+    const Checked checked("spec t; " + inputs + " predicate p = " + expression +
+                          " <= 0.5; monitor m = G p;");
     EXPECT_TRUE(checked.model) << checked.diagnostics();
     return checked.model ? checked.model->predicates[0].delta : Range{};
 }
@@ -115,7 +121,8 @@ Range range_of(const std::string& expression, const std::string& inputs) {
 void expect_range(const std::string& expression, float low, float high) {
     const Range range =
         range_of(expression,
-                 "input x : f32 in [-2, 3]; input y : f32 in [1, 4]; input n : f32 in [0, inf]; input u : f32;"
+                 "input x : f32 in [-2, 3]; input y : f32 in [1, 4]; input n : f32 in [0, inf]; "
+                 "input u : f32;"
                  "input z : f32[2]; target t1 = [[1, 2]]; target t2 = [[2, 1], [1, 1]];");
     EXPECT_EQ(range.low, low) << expression;
     EXPECT_EQ(range.high, high) << expression;
@@ -134,7 +141,8 @@ TEST(Ranges, ByHand) {
     expect_range("y / (n + 1)", 0, 4);
     expect_range("abs(x)", 0, 3);
     expect_range("sqrt(y)", 1, 2);
-    expect_range("sqrt(x)", 0, std::nextafter(std::sqrt(3.0F), 2.0F));  // 1.73205078F lies below the root
+    expect_range("sqrt(x)", 0,
+                 std::nextafter(std::sqrt(3.0F), 2.0F));  // 1.73205078F lies below the root
     expect_range("min(x, y)", -2, 3);
     expect_range("max(x, y, 2)", 2, 4);
     expect_range("u", -kInfinity, kInfinity);
@@ -156,7 +164,8 @@ TEST(Ranges, OutwardWhereInexact) {
     const Range sum = range_of("x + 1e-9", "input x : f32 in [1, 2];");
     EXPECT_EQ(sum.low, 1.0F);
     EXPECT_EQ(sum.high, std::nextafter(2.0F, 3.0F));
-    const Range tiny = range_of("x - 1e-40", "input x : f32 in [1, 2];");  // beyond what a double holds of the sum
+    const Range tiny =
+        range_of("x - 1e-40", "input x : f32 in [1, 2];");  // beyond what a double holds of the sum
     EXPECT_EQ(tiny.low, std::nextafter(1.0F, 0.0F));
     const Range third = range_of("x / 3", "input x : f32 in [1, 1];");
     EXPECT_EQ(third.low, std::nextafter(1.0F / 3.0F, 0.0F));
@@ -167,7 +176,8 @@ TEST(Ranges, OutwardWhereInexact) {
 
 TEST(Ranges, OfRobustness) {
     const Checked checked(
-        "spec t; input x : f32 in [0, 1]; predicate p = x <= 0.25; predicate q = x > 0.25; monitor m = G (p || q);");
+        "spec t; input x : f32 in [0, 1]; predicate p = x <= 0.25; predicate q = x > 0.25; monitor "
+        "m = G (p || q);");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.predicate("p").robustness.low, -0.75F);
     EXPECT_EQ(checked.predicate("p").robustness.high, 0.25F);

@@ -16,8 +16,9 @@ namespace {
 using diag::Code;
 using diag::Failure;
 
-const std::vector<Channel> kChannels{
-    {"z", Channel::Kind::vector, 2}, {"grip", Channel::Kind::scalar, 1}, {"held", Channel::Kind::boolean, 1}};
+const std::vector<Channel> kChannels{{"z", Channel::Kind::vector, 2},
+                                     {"grip", Channel::Kind::scalar, 1},
+                                     {"held", Channel::Kind::boolean, 1}};
 
 /// All steps as text: "1 2|0.5|1", "-" where a channel is missing; then the failure that ended it.
 struct Read {
@@ -71,7 +72,8 @@ TEST(CsvTrace, AnOptionalColumnMayBeAbsent) {
                                         {"v", Channel::Kind::vector, 2, true}};
     const std::string lacking = "grip\n1\n2\n";
     EXPECT_EQ(read(lacking, channels).steps, (std::vector<std::string>{"-|1|-", "-|2|-"}));
-    EXPECT_EQ(read("grip,truth.at_a\n1,0\n2,\n", channels).steps, (std::vector<std::string>{"0|1|-", "-|2|-"}));
+    EXPECT_EQ(read("grip,truth.at_a\n1,0\n2,\n", channels).steps,
+              (std::vector<std::string>{"0|1|-", "-|2|-"}));
     auto trace = open_csv_trace(from_memory(lacking), channels);
     ASSERT_TRUE(trace);
     EXPECT_FALSE((*trace)->has(0));
@@ -94,19 +96,30 @@ TEST(Csv, Sound) {
         {"another order, extra columns",
          "t,held,z[1],note,grip,z[0]\n0.1,1,2,\"a, b\n c\",0.5,1\n0.2,0,4,,0.5,3\n",
          {"1 2|0.5|1", "3 4|0.5|0"}},
-        {"quotes", "\"z[0]\",\"z[1]\",\"grip\",\"held\"\n\"1\",\"2\",\"0.5\",\"1\"\n", {"1 2|0.5|1"}},
-        {"quotes in quotes", "z[0],z[1],grip,held,\"say \"\"z\"\"\"\n1,2,0.5,1,\"\"\"\"\n", {"1 2|0.5|1"}},
+        {"quotes",
+         "\"z[0]\",\"z[1]\",\"grip\",\"held\"\n\"1\",\"2\",\"0.5\",\"1\"\n",
+         {"1 2|0.5|1"}},
+        {"quotes in quotes",
+         "z[0],z[1],grip,held,\"say \"\"z\"\"\"\n1,2,0.5,1,\"\"\"\"\n",
+         {"1 2|0.5|1"}},
         {"blanks", "z[0], z[1] ,grip\t, held\n 1 ,2, 0.5,\t1\n", {"1 2|0.5|1"}},
-        {"empty cells", head + ",2,,\n1,,0.5,1\n,,,\n\"\",\"\",\"\",\"\"\n", {"-|-|-", "-|0.5|1", "-|-|-", "-|-|-"}},
+        {"empty cells",
+         head + ",2,,\n1,,0.5,1\n,,,\n\"\",\"\",\"\",\"\"\n",
+         {"-|-|-", "-|0.5|1", "-|-|-", "-|-|-"}},
         {"numbers", head + "1e3,+.5,1E-3,1.0\n-0,5.,0x0,0\n", {"1000 0.5|0.001|1"}},
-        {"not finite", head + "nan,2,inf,NaN\n-Infinity,NAN,1e999,-inf\n", {"nan 2|nan|nan", "nan nan|nan|nan"}},
+        {"not finite",
+         head + "nan,2,inf,NaN\n-Infinity,NAN,1e999,-inf\n",
+         {"nan 2|nan|nan", "nan nan|nan|nan"}},
         {"too small", head + "1e-999,-1e-999,0.0000001e-330,0\n", {"0 -0|0|0"}},
-        {"extra quoted text in UTF-8", "z[0],z[1],grip,held,ort\n1,2,0.5,1,\"Z\xc3\xbcrich\"\n", {"1 2|0.5|1"}},
+        {"extra quoted text in UTF-8",
+         "z[0],z[1],grip,held,ort\n1,2,0.5,1,\"Z\xc3\xbcrich\"\n",
+         {"1 2|0.5|1"}},
     };
     for (const Sound& one : table) {
         const Read got = read(one.bytes);
         const bool hexadecimal = one.what == "numbers";  // its second row is not a number
-        EXPECT_EQ(got.failure.has_value(), hexadecimal) << one.what << (got.failure ? got.failure->message : "");
+        EXPECT_EQ(got.failure.has_value(), hexadecimal)
+            << one.what << (got.failure ? got.failure->message : "");
         EXPECT_EQ(got.steps, one.steps) << one.what;
     }
 }
@@ -137,42 +150,51 @@ std::vector<Broken> broken() {
     std::string many = "t0";
     for (int i = 1; i < 12; ++i) many += ",t" + std::to_string(i);
     return {
-        {"empty", "", Code::malformed_csv, 0, 0, "is empty, expected a row with the names of the columns"},
-        {"UTF-16", std::string("\xff\xfez\0", 4), Code::malformed_csv, 0, 0, "is UTF-16, expected UTF-8"},
-        {"absent", "z[0],z[1],gripp,held\n", Code::no_such_channel, 1, 1, "no column 'grip'; did you mean 'gripp'?"},
+        {"empty", "", Code::malformed_csv, 0, 0,
+         "is empty, expected a row with the names of the columns"},
+        {"UTF-16", std::string("\xff\xfez\0", 4), Code::malformed_csv, 0, 0,
+         "is UTF-16, expected UTF-8"},
+        {"absent", "z[0],z[1],gripp,held\n", Code::no_such_channel, 1, 1,
+         "no column 'grip'; did you mean 'gripp'?"},
         {"absent, nothing near", many + "\n", Code::no_such_channel, 1, 1,
-         "no column 'z[0]', needed by input 'z' of 2 elements; there are 't0', 't1', 't2', 't3', 't4', 't5', 't6', "
+         "no column 'z[0]', needed by input 'z' of 2 elements; there are 't0', 't1', 't2', 't3', "
+         "'t4', 't5', 't6', "
          "'t7', 't8', "
          "'t9' and 2 more"},
         {"vector too short", "z[0],grip,held\n", Code::no_such_channel, 1, 1,
-         "no column 'z[1]', needed by input 'z' of 2 elements; there are 'z[0]', 'grip' and 'held'"},
+         "no column 'z[1]', needed by input 'z' of 2 elements; there are 'z[0]', 'grip' and "
+         "'held'"},
         {"vector too long", "z[0],z[1],z[2],grip,held\n", Code::trace_shape, 1, 1,
          "has a column 'z[2]', but input 'z' has 2 elements"},
-        {"column twice", "z[0],grip,z[1],grip,held\n", Code::no_such_channel, 1, 1, "2 columns are named 'grip'"},
+        {"column twice", "z[0],grip,z[1],grip,held\n", Code::no_such_channel, 1, 1,
+         "2 columns are named 'grip'"},
         {"too few cells", head + "1,2,0.5,1\n1,2,0.5\n", Code::malformed_csv, 3, 1,
          "row has 3 cells, the header has 4"},
-        {"too many cells", head + "1,2,0.5,1,\n", Code::malformed_csv, 2, 1, "row has 5 cells, the header has 4"},
+        {"too many cells", head + "1,2,0.5,1,\n", Code::malformed_csv, 2, 1,
+         "row has 5 cells, the header has 4"},
         {"empty line", head + "\n", Code::malformed_csv, 2, 1, "row has 1 cell, the header has 4"},
         {"no number", head + "1,2,0.5,1\n1, abc,0.5,1\n", Code::not_a_number, 3, 4,
          "column 'z[1]' holds 'abc', expected a number"},
-        {"no number after a line break in quotes", "n,z[0],z[1],grip,held\n\"a\nb\",1,2,?,1\n", Code::not_a_number, 3,
-         8, "column 'grip' holds '?', expected a number"},
-        {"no number after UTF-8", "n,z[0],z[1],grip,held\n\xc3\xbc,1,2,?,1\n", Code::not_a_number, 2, 7,
-         "column 'grip' holds '?', expected a number"},
+        {"no number after a line break in quotes", "n,z[0],z[1],grip,held\n\"a\nb\",1,2,?,1\n",
+         Code::not_a_number, 3, 8, "column 'grip' holds '?', expected a number"},
+        {"no number after UTF-8", "n,z[0],z[1],grip,held\n\xc3\xbc,1,2,?,1\n", Code::not_a_number,
+         2, 7, "column 'grip' holds '?', expected a number"},
         {"decimal comma", head + "1,2,\"0,5\",1\n", Code::not_a_number, 2, 5,
          "column 'grip' holds '0,5', expected a number"},
         {"two numbers", head + "1 2,2,0.5,1\n", Code::not_a_number, 2, 1,
          "column 'z[0]' holds '1 2', expected a number"},
         {"hexadecimal", head + "0x1,2,0.5,1\n", Code::not_a_number, 2, 1,
          "column 'z[0]' holds '0x1', expected a number"},
-        {"two signs", head + "+-1,2,0.5,1\n", Code::not_a_number, 2, 1, "column 'z[0]' holds '+-1', expected a number"},
+        {"two signs", head + "+-1,2,0.5,1\n", Code::not_a_number, 2, 1,
+         "column 'z[0]' holds '+-1', expected a number"},
         {"control characters", head + "\x1b[31m,2,0.5,1\n", Code::not_a_number, 2, 1,
          "column 'z[0]' holds '\\x1b[31m', expected a number"},
         {"NUL", head + std::string("1\0,2,0.5,1\n", 11), Code::not_a_number, 2, 1,
          "column 'z[0]' holds '1\\x00', expected a number"},
         {"long text", head + std::string(100, 'x') + ",2,0.5,1\n", Code::not_a_number, 2, 1,
          "column 'z[0]' holds '" + std::string(60, 'x') + "...', expected a number"},
-        {"bool", head + "1,2,0.5,2\n", Code::not_a_number, 2, 9, "column 'held' holds '2', expected 0 or 1"},
+        {"bool", head + "1,2,0.5,2\n", Code::not_a_number, 2, 9,
+         "column 'held' holds '2', expected 0 or 1"},
         {"bool in words", head + "1,2,0.5,True\n", Code::not_a_number, 2, 9,
          "column 'held' holds 'True', expected 0 or 1"},
         {"quote within", head + "1,2\",0.5,1\n", Code::malformed_csv, 2, 4,
@@ -183,11 +205,12 @@ std::vector<Broken> broken() {
          "quote that is not closed before the end of the file"},
         {"open quote in the header", "z[0],\"z[1],grip,held\n", Code::malformed_csv, 1, 6,
          "quote that is not closed before the end of the file"},
-        {"lone CR", head + "1,2,0.5,1\r3,4,0.5,1\r", Code::malformed_csv, 2, 10, "carriage return without a line feed"},
+        {"lone CR", head + "1,2,0.5,1\r3,4,0.5,1\r", Code::malformed_csv, 2, 10,
+         "carriage return without a line feed"},
         {"long row", head + std::string(kMaxRowBytes + 1, '1') + "\n", Code::malformed_csv, 2, 1,
          "row is longer than 4194304 bytes, the most that is read"},
-        {"long row of quotes", head + "\"" + std::string(kMaxRowBytes + 1, '\n') + "\"\n", Code::malformed_csv, 2, 1,
-         "row is longer than 4194304 bytes, the most that is read"},
+        {"long row of quotes", head + "\"" + std::string(kMaxRowBytes + 1, '\n') + "\"\n",
+         Code::malformed_csv, 2, 1, "row is longer than 4194304 bytes, the most that is read"},
         {"many cells", head + std::string(kMaxRowBytes + 1, ',') + "\n", Code::malformed_csv, 2, 1,
          "row is longer than 4194304 bytes, the most that is read"},
         {"long header", std::string(kMaxRowBytes + 1, ','), Code::malformed_csv, 1, 1,
@@ -232,7 +255,8 @@ private:
 };
 
 TEST(Csv, SeamsOfTheBufferDoNotShow) {
-    const std::string bytes = "n,\"z[0]\",z[1],grip,held\r\n\"a\"\"\r\nb\",1.25,2.5,\"3\",1\r\nx,4,5,,0\r\n";
+    const std::string bytes =
+        "n,\"z[0]\",z[1],grip,held\r\n\"a\"\"\r\nb\",1.25,2.5,\"3\",1\r\nx,4,5,,0\r\n";
     const std::vector<std::string> expected{"1.25 2.5|3|1", "4 5|-|0"};
     for (std::size_t piece = 3; piece <= bytes.size(); ++piece) {
         auto trace = open_csv_trace(std::make_unique<Pieces>(bytes, piece), kChannels);
@@ -277,8 +301,8 @@ TEST(Number, WholeTextOrNothing) {
     EXPECT_EQ(parse_number("0." + std::string(400, '0') + "1"), 0.0);
     EXPECT_EQ(parse_number("1e99999999999999999999999"), INFINITY);
     EXPECT_EQ(parse_number("1e-99999999999999999999999"), 0.0);
-    for (const char* text :
-         {"", "+", "-", ".", "e5", "1e", "1 ", " 1", "1,5", "0x10", "--1", "+-1", "1f", "nanx", "one"})
+    for (const char* text : {"", "+", "-", ".", "e5", "1e", "1 ", " 1", "1,5", "0x10", "--1", "+-1",
+                             "1f", "nanx", "one"})
         EXPECT_FALSE(parse_number(text)) << text;
 }
 

@@ -1,4 +1,5 @@
-// Sets of episodes: what folders and patterns stand for, and in which order; contents that are told apart.
+// Sets of episodes: what folders and patterns stand for, and in which order; contents that are told
+// apart.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -23,8 +24,8 @@ protected:
         const auto* test = testing::UnitTest::GetInstance()->current_test_info();
         folder_ = fs::path(testing::TempDir()) / (std::string("etlc_episodes_") + test->name());
         fs::remove_all(folder_);
-        for (const char* file :
-             {"a/ep10.csv", "a/ep2.npz", "a/ep1.csv", "a/notes.txt", "a/below/ep0.csv", "b/ep1.csv", "b/x[1].csv"}) {
+        for (const char* file : {"a/ep10.csv", "a/ep2.npz", "a/ep1.csv", "a/notes.txt",
+                                 "a/below/ep0.csv", "b/ep1.csv", "b/x[1].csv"}) {
             fs::create_directories((folder_ / file).parent_path());
             std::ofstream(folder_ / file).put('\n');
         }
@@ -59,12 +60,15 @@ TEST_F(Episodes, OfAFolderAreItsTracesByName) {
 TEST_F(Episodes, OfAPatternAreWhatMatches) {
     EXPECT_EQ(find({"*/ep1.csv"}), (Paths{"a/ep1.csv", "b/ep1.csv"}));
     EXPECT_EQ(find({"a/ep?.*"}), (Paths{"a/ep1.csv", "a/ep2.npz"}));
-    EXPECT_EQ(find({"[ab]"}), (Paths{"a/ep1.csv", "a/ep10.csv", "a/ep2.npz", "b/ep1.csv", "b/x[1].csv"}));
+    EXPECT_EQ(find({"[ab]"}),
+              (Paths{"a/ep1.csv", "a/ep10.csv", "a/ep2.npz", "b/ep1.csv", "b/x[1].csv"}));
 }
 
 TEST_F(Episodes, KeepTheOrderOfTheArgumentsAndStandOnce) {
-    EXPECT_EQ(find({"b/ep1.csv", "a"}), (Paths{"b/ep1.csv", "a/ep1.csv", "a/ep10.csv", "a/ep2.npz"}));
-    EXPECT_EQ(find({"a/ep2.npz", "a/../a", "a/*.csv"}), (Paths{"a/ep2.npz", "a/../a/ep1.csv", "a/../a/ep10.csv"}));
+    EXPECT_EQ(find({"b/ep1.csv", "a"}),
+              (Paths{"b/ep1.csv", "a/ep1.csv", "a/ep10.csv", "a/ep2.npz"}));
+    EXPECT_EQ(find({"a/ep2.npz", "a/../a", "a/*.csv"}),
+              (Paths{"a/ep2.npz", "a/../a/ep1.csv", "a/../a/ep10.csv"}));
 }
 
 TEST_F(Episodes, APathThatExistsIsNoPattern) {
@@ -81,12 +85,14 @@ TEST_F(Episodes, AreMissedWhereAnArgumentHasNone) {
         EXPECT_EQ(finding.code, Code::unreadable_trace);
         messages.insert(fs::path(finding.file).filename().string() + ": " + finding.message);
     }
-    EXPECT_EQ(messages, (std::set<std::string>{
-                            "no_such: no such file",
-                            "empty: holds no episodes, expected files that end in .npz, .csv or .h5",
-                            "*.h: no file matches this pattern",
-                            "em*: only folders match, without episodes, expected files that end in .npz, .csv or .h5",
-                        }));
+    EXPECT_EQ(messages,
+              (std::set<std::string>{
+                  "no_such: no such file",
+                  "empty: holds no episodes, expected files that end in .npz, .csv or .h5",
+                  "*.h: no file matches this pattern",
+                  "em*: only folders match, without episodes, expected files that end in .npz, "
+                  ".csv or .h5",
+              }));
 }
 
 std::string hash_of(const std::string& csv, const std::vector<Channel>& channels,
@@ -106,8 +112,9 @@ TEST(EpisodeHash, TellsContentsApart) {
     EXPECT_EQ(one.size(), 16U);
     EXPECT_EQ(hash_of("y,note,x\r\n2,a,1.0\r\n4,b,3e0\r\n", channels, both), one);
     std::set<std::string> different{one};
-    for (const char* csv : {"x,y\n3,4\n1,2\n", "x,y\n1,2\n", "x,y\n1,2\n3,4\n3,4\n", "x,y\n1,2\n3,4.0000005\n",
-                            "x,y\n1,2\n3,\n", "x,y\n2,1\n3,4\n", "x,y\n", "x,y\n0,0\n", "x,y\n,\n"})
+    for (const char* csv :
+         {"x,y\n3,4\n1,2\n", "x,y\n1,2\n", "x,y\n1,2\n3,4\n3,4\n", "x,y\n1,2\n3,4.0000005\n",
+          "x,y\n1,2\n3,\n", "x,y\n2,1\n3,4\n", "x,y\n", "x,y\n0,0\n", "x,y\n,\n"})
         EXPECT_TRUE(different.insert(hash_of(csv, channels, both)).second) << csv;
 }
 

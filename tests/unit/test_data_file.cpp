@@ -64,11 +64,13 @@ TEST(Hash, PublishedValues) {
 }
 
 TEST(Hash, AgreesWithTheReferenceLibrary) {
-    // XXH64 of the bytes 0, 1, ... n - 1 with seed n, by libxxhash 0.8.1: every path through the tail.
+    // XXH64 of the bytes 0, 1, ... n - 1 with seed n, by libxxhash 0.8.1: every path through the
+    // tail.
     const std::pair<std::size_t, std::uint64_t> table[] = {
-        {0, 0xef46db3751d8e999},  {1, 0x771917c7f6ee2451},  {4, 0xbbc1c9489fc87eba},  {8, 0x0dfc1d486cf5e934},
-        {31, 0xba30fb3300bd71ca}, {32, 0x35dee9a72ef74939}, {33, 0x4d3992b427942d69}, {63, 0xad2949b4f8374543},
-        {64, 0x041e5bf40b6caf5a}, {100, 0xce0bd8dd7405ab42}};
+        {0, 0xef46db3751d8e999},  {1, 0x771917c7f6ee2451},  {4, 0xbbc1c9489fc87eba},
+        {8, 0x0dfc1d486cf5e934},  {31, 0xba30fb3300bd71ca}, {32, 0x35dee9a72ef74939},
+        {33, 0x4d3992b427942d69}, {63, 0xad2949b4f8374543}, {64, 0x041e5bf40b6caf5a},
+        {100, 0xce0bd8dd7405ab42}};
     for (const auto& [n, expected] : table) {
         std::string bytes;
         for (std::size_t i = 0; i < n; ++i) bytes += static_cast<char>(i);
@@ -106,7 +108,8 @@ TEST(Quote, EscapesAndCuts) {
     EXPECT_EQ(in_quotes("Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x98\x80"),
               "'Z\xc3\xbcrich \xe2\x82\xac \xf0\x9f\x98\x80'");
     EXPECT_EQ(in_quotes(std::string("\0\t\x1b\x7f", 4)), "'\\x00\\x09\\x1b\\x7f'");
-    // A C1 control, a lone continuation byte, an overlong form, a surrogate, beyond Unicode, a character cut off.
+    // A C1 control, a lone continuation byte, an overlong form, a surrogate, beyond Unicode, a
+    // character cut off.
     EXPECT_EQ(in_quotes("\xc2\x9b\x80\xc0\xaf"), "'\\u{9B}\\x80\\xc0\\xaf'");
     EXPECT_EQ(in_quotes("\xe0\x80\xaf\xed\xa0\x80"), "'\\xe0\\x80\\xaf\\xed\\xa0\\x80'");
     EXPECT_EQ(in_quotes("\xf4\x90\x80\x80\xe2\x82"), "'\\xf4\\x90\\x80\\x80\\xe2\\x82'");

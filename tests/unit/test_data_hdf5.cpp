@@ -1,4 +1,5 @@
-// .h5 traces through the reading process: element types, shapes, groups, links, damage, and readers that die.
+// .h5 traces through the reading process: element types, shapes, groups, links, damage, and readers
+// that die.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -34,7 +35,9 @@ protected:
             if (!*more) return {Code::unreadable_trace, "nothing is wrong"};
         }
     }
-    static std::string message(const std::vector<Channel>& channels) { return failure(kFile, channels).message; }
+    static std::string message(const std::vector<Channel>& channels) {
+        return failure(kFile, channels).message;
+    }
 };
 
 TEST_F(Hdf5Trace, StepsOfEveryKind) {
@@ -60,8 +63,10 @@ TEST_F(Hdf5Trace, StepsOfEveryKind) {
         ASSERT_TRUE(*more);
         for (const int z : {0, 1, 2, 3})
             EXPECT_EQ(sample.values[z], (std::vector<double>{t + 0.0, t + 0.25, t + 0.5})) << z;
-        for (const int g : {4, 5, 9}) EXPECT_EQ(sample.values[g], std::vector<double>{t / 8.0}) << g;
-        for (const int b : {6, 8}) EXPECT_EQ(sample.values[b], std::vector<double>{t % 2 + 0.0}) << b;
+        for (const int g : {4, 5, 9})
+            EXPECT_EQ(sample.values[g], std::vector<double>{t / 8.0}) << g;
+        for (const int b : {6, 8})
+            EXPECT_EQ(sample.values[b], std::vector<double>{t % 2 + 0.0}) << b;
         EXPECT_FALSE(sample.present[7]);
     }
     const auto more = (*trace)->next(sample);
@@ -80,7 +85,8 @@ TEST_F(Hdf5Trace, WhatIsNotFiniteIsMissing) {
 }
 
 TEST_F(Hdf5Trace, OfAGroup) {
-    const std::vector<Channel> channels{{"obs/z", Kind::vector, 3}, {"truth.at_a", Kind::boolean, 1, true}};
+    const std::vector<Channel> channels{{"obs/z", Kind::vector, 3},
+                                        {"truth.at_a", Kind::boolean, 1, true}};
     auto trace = open_trace(kFile + ":data/demo_2", channels);
     ASSERT_TRUE(trace) << trace.failure().message;
     Sample sample;
@@ -90,28 +96,31 @@ TEST_F(Hdf5Trace, OfAGroup) {
         EXPECT_EQ(sample.values[1], std::vector<double>{t > 2 ? 1.0 : 0.0});
     }
     EXPECT_EQ(failure(kFile + ":data/demo_3", channels).message,
-              "no group 'data/demo_3'; there are 'column', 'cube', 'data', 'elsewhere', 'external', 'gripper', 'held', "
+              "no group 'data/demo_3'; there are 'column', 'cube', 'data', 'elsewhere', "
+              "'external', 'gripper', 'held', "
               "'held_int' and 12 more");
 }
 
 TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
     diag::Sink sink;
     const std::vector<std::string> found = find_episodes({kFile}, "data/demo_*[0-9]", sink);
-    EXPECT_EQ(found,
-              (std::vector<std::string>{kFile + ":data/demo_1", kFile + ":data/demo_10", kFile + ":data/demo_2"}));
+    EXPECT_EQ(found, (std::vector<std::string>{kFile + ":data/demo_1", kFile + ":data/demo_10",
+                                               kFile + ":data/demo_2"}));
     EXPECT_EQ(find_episodes({kFile}, "", sink), std::vector<std::string>{kFile});
     EXPECT_FALSE(sink.has_errors());
     EXPECT_TRUE(find_episodes({kFile}, "nothing/*", sink).empty());
     EXPECT_TRUE(find_episodes({kFile}, "data/*", sink).empty());
     ASSERT_EQ(sink.errors(), 2U);
     EXPECT_EQ(sink.sorted()[0].message, "no group of it matches 'nothing/*'");
-    EXPECT_EQ(sink.sorted()[1].message,
-              "has a group with a name that cannot be printed or is too long: 'data/demo_\\x1b[31m'");
+    EXPECT_EQ(
+        sink.sorted()[1].message,
+        "has a group with a name that cannot be printed or is too long: 'data/demo_\\x1b[31m'");
 }
 
 TEST_F(Hdf5Trace, NamesWhatIsNotThere) {
     EXPECT_EQ(message({{"zz", Kind::vector, 3}}),
-              "no dataset 'zz'; there are 'column', 'cube', 'data', 'elsewhere', 'external', 'gripper', 'held', "
+              "no dataset 'zz'; there are 'column', 'cube', 'data', 'elsewhere', 'external', "
+              "'gripper', 'held', "
               "'held_int' and 12 more");
     EXPECT_EQ(failure(kFile, {{"zz", Kind::vector, 3}}).code, Code::no_such_channel);
     EXPECT_EQ(message({{"data", Kind::vector, 3}}), "'data' is no dataset");
@@ -119,20 +128,26 @@ TEST_F(Hdf5Trace, NamesWhatIsNotThere) {
 }
 
 TEST_F(Hdf5Trace, ShapesFitTheirInputs) {
-    EXPECT_EQ(message({{"z", Kind::vector, 4}}), "array 'z': has shape (7, 3), expected (steps, 4)");
-    EXPECT_EQ(message({{"cube", Kind::vector, 3}}), "array 'cube': has shape (7, 3, 2), expected (steps, 3)");
-    EXPECT_EQ(message({{"one", Kind::scalar, 1}}), "array 'one': has shape (), expected (steps,) or (steps, 1)");
+    EXPECT_EQ(message({{"z", Kind::vector, 4}}),
+              "array 'z': has shape (7, 3), expected (steps, 4)");
+    EXPECT_EQ(message({{"cube", Kind::vector, 3}}),
+              "array 'cube': has shape (7, 3, 2), expected (steps, 3)");
+    EXPECT_EQ(message({{"one", Kind::scalar, 1}}),
+              "array 'one': has shape (), expected (steps,) or (steps, 1)");
     EXPECT_EQ(message({{"z", Kind::vector, 3}, {"short", Kind::scalar, 1}}),
               "arrays differ in length: 'z' has 7 steps, 'short' has 5");
     EXPECT_EQ(message({{"none", Kind::vector, 3}}), "nothing is wrong");  // an episode of no steps
 }
 
 TEST_F(Hdf5Trace, ElementsFitTheirInputs) {
-    EXPECT_EQ(message({{"text", Kind::scalar, 1}}), "dataset 'text' has elements that are neither numbers nor bools");
-    EXPECT_EQ(message({{"pairs", Kind::scalar, 1}}), "dataset 'pairs' has elements that are neither numbers nor bools");
+    EXPECT_EQ(message({{"text", Kind::scalar, 1}}),
+              "dataset 'text' has elements that are neither numbers nor bools");
+    EXPECT_EQ(message({{"pairs", Kind::scalar, 1}}),
+              "dataset 'pairs' has elements that are neither numbers nor bools");
     EXPECT_EQ(message({{"held", Kind::scalar, 1}}),
               "array 'held': has bool elements, expected numbers: the input is no bool");
-    EXPECT_EQ(message({{"gripper", Kind::boolean, 1}}), "array 'gripper': holds 0.125 in step 1, expected 0 or 1");
+    EXPECT_EQ(message({{"gripper", Kind::boolean, 1}}),
+              "array 'gripper': holds 0.125 in step 1, expected 0 or 1");
 }
 
 TEST_F(Hdf5Trace, NothingLeadsOutOfTheFile) {
@@ -141,18 +156,23 @@ TEST_F(Hdf5Trace, NothingLeadsOutOfTheFile) {
                   "'" + std::string(link) + "' is a soft or external link, which is not followed");
     for (const char* dataset : {"elsewhere", "virtual"})
         EXPECT_EQ(message({{dataset, Kind::scalar, 1}}),
-                  "dataset '" + std::string(dataset) + "' keeps its data in other files, which are not read");
+                  "dataset '" + std::string(dataset) +
+                      "' keeps its data in other files, which are not read");
 }
 
 TEST_F(Hdf5Trace, WhatKillsTheReaderIsAMessage) {
-    const std::vector<Channel> channels{
-        {"z", Kind::vector, 2}, {"p", Kind::vector, 2}, {"g", Kind::scalar, 1}, {"b", Kind::boolean, 1}};
+    const std::vector<Channel> channels{{"z", Kind::vector, 2},
+                                        {"p", Kind::vector, 2},
+                                        {"g", Kind::scalar, 1},
+                                        {"b", Kind::boolean, 1}};
     EXPECT_EQ(failure(kDamaged + "trace.h5", channels).message, "nothing is wrong");
-    for (const char* name : {"crashes_reading_1.h5", "crashes_reading_2.h5", "crashes_reading_3.h5"}) {
+    for (const char* name :
+         {"crashes_reading_1.h5", "crashes_reading_2.h5", "crashes_reading_3.h5"}) {
         const diag::Failure found = failure(kDamaged + name, channels);
         EXPECT_EQ(found.code, Code::malformed_trace_array) << name << ": " << found.message;
     }
-    for (const char* name : {"crashes_listing_1.h5", "crashes_listing_2.h5", "crashes_listing_3.h5"}) {
+    for (const char* name :
+         {"crashes_listing_1.h5", "crashes_listing_2.h5", "crashes_listing_3.h5"}) {
         const auto found = list_hdf5(kDamaged + name, "*/*");
         ASSERT_FALSE(found) << name;
         EXPECT_EQ(found.failure().code, Code::malformed_trace_array) << found.failure().message;
@@ -195,9 +215,11 @@ TEST_F(Hdf5Reader, IsNotTrusted) {
     EXPECT_EQ(message("exit 3"), kDied + "ended too soon, with exit status 3");
     EXPECT_EQ(message(kShapes + kRow + "kill -XCPU $$"),
               "array 'g': " + kDied + "was stopped by signal 24 (CPU time limit exceeded)");
-    EXPECT_EQ(message(kShapes + kRow + kRow), "array 'g': " + kDied + "ended too soon, with exit status 0");
+    EXPECT_EQ(message(kShapes + kRow + kRow),
+              "array 'g': " + kDied + "ended too soon, with exit status 0");
     EXPECT_EQ(message(kShapes + kRow + R"(printf 'E\000\000\000\000')"), "array 'g': " + kNonsense);
-    EXPECT_EQ(message(kShapes + kRow + R"(printf 'R\007\000\000\0001234567')"), "array 'g': " + kNonsense);
+    EXPECT_EQ(message(kShapes + kRow + R"(printf 'R\007\000\000\0001234567')"),
+              "array 'g': " + kNonsense);
     EXPECT_EQ(message(R"(printf 'S\377\377\377\377')"), kNonsense);
     EXPECT_EQ(message(R"(printf 'S\012\000\000\000number 2x\n')"), kNonsense);
     EXPECT_EQ(message(R"(printf 'S\007\000\000\000absent\n')"), kNonsense);

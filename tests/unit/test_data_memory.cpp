@@ -44,7 +44,8 @@ std::pair<std::uint64_t, std::uint64_t> read_all(Trace& trace) {
 /// A .csv file that nobody stores: a header, then `rows` rows of 100 bytes.
 class EndlessCsv final : public ByteSource {
 public:
-    explicit EndlessCsv(std::uint64_t rows) : rows_(rows), row_(std::string(96, '1') + ",25\n"), rest_(kHeader) {}
+    explicit EndlessCsv(std::uint64_t rows)
+        : rows_(rows), row_(std::string(96, '1') + ",25\n"), rest_(kHeader) {}
     diag::Result<std::size_t> read(char* to, std::size_t n) override {
         std::size_t done = 0;
         while (done < n) {
@@ -81,7 +82,8 @@ TEST(Memory, LongCsv) {
 /// A deflated archive with one array `z` of 32 columns of float32, 48 MiB when unpacked.
 std::string long_archive(bool fortran) {
     constexpr std::uint64_t kRows = 393'216;
-    return tests::zip_of({{"z.npy", tests::npy("<f4", "(393216, 32)", std::string(kRows * 32 * 4, '\0'), fortran)}});
+    return tests::zip_of(
+        {{"z.npy", tests::npy("<f4", "(393216, 32)", std::string(kRows * 32 * 4, '\0'), fortran)}});
 }
 
 TEST(Memory, LongNpz) {

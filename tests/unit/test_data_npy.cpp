@@ -36,19 +36,21 @@ TEST_P(SoundNpy, ReadsAsNumpyWroteIt) {
     EXPECT_EQ(array->shape_text(), "(3, 4)");
     EXPECT_EQ(array->element, GetParam().element);
     ASSERT_EQ(array->values.size(), 12U);
-    for (int k = 0; k < 12; ++k) EXPECT_EQ(array->values[k], (k + GetParam().offset) * GetParam().scale) << k;
+    for (int k = 0; k < 12; ++k)
+        EXPECT_EQ(array->values[k], (k + GetParam().offset) * GetParam().scale) << k;
 }
 
 INSTANTIATE_TEST_SUITE_P(
     Npy, SoundNpy,
-    ::testing::Values(Sound{"f2_c", Element::f16, -2, 0.5}, Sound{"f2_fortran", Element::f16, -2, 0.5},
-                      Sound{"f4_c", Element::f32, -2, 0.5}, Sound{"f4_fortran", Element::f32, -2, 0.5},
-                      Sound{"f8_c", Element::f64, -2, 0.5}, Sound{"f8_fortran", Element::f64, -2, 0.5},
-                      Sound{"i1", Element::i8, -2, 1}, Sound{"i2", Element::i16, -2, 1},
-                      Sound{"i4", Element::i32, -2, 1}, Sound{"i8", Element::i64, -2, 1},
-                      Sound{"u1", Element::u8, 0, 1}, Sound{"u2", Element::u16, 0, 1}, Sound{"u4", Element::u32, 0, 1},
-                      Sound{"u8", Element::u64, 0, 1}, Sound{"version2", Element::f32, -2, 0.5},
-                      Sound{"version3", Element::f32, -2, 0.5}),
+    ::testing::Values(
+        Sound{"f2_c", Element::f16, -2, 0.5}, Sound{"f2_fortran", Element::f16, -2, 0.5},
+        Sound{"f4_c", Element::f32, -2, 0.5}, Sound{"f4_fortran", Element::f32, -2, 0.5},
+        Sound{"f8_c", Element::f64, -2, 0.5}, Sound{"f8_fortran", Element::f64, -2, 0.5},
+        Sound{"i1", Element::i8, -2, 1}, Sound{"i2", Element::i16, -2, 1},
+        Sound{"i4", Element::i32, -2, 1}, Sound{"i8", Element::i64, -2, 1},
+        Sound{"u1", Element::u8, 0, 1}, Sound{"u2", Element::u16, 0, 1},
+        Sound{"u4", Element::u32, 0, 1}, Sound{"u8", Element::u64, 0, 1},
+        Sound{"version2", Element::f32, -2, 0.5}, Sound{"version3", Element::f32, -2, 0.5}),
     [](const auto& one) { return one.param.file; });
 
 TEST(Npy, BoolReadsAsZeroAndOne) {
@@ -94,8 +96,10 @@ float half_by_bits(std::uint32_t half) {
     const std::uint32_t exponent = (half >> 10U) & 0x1fU;
     const std::uint32_t mantissa = half & 0x3ffU;
     if (exponent == 0x1f) return std::bit_cast<float>(sign | 0x7f800000U | (mantissa << 13U));
-    if (exponent != 0) return std::bit_cast<float>(sign | ((exponent + 112U) << 23U) | (mantissa << 13U));
-    const float magnitude = std::bit_cast<float>(0x3f000000U | mantissa) - 0.5F;  // 0.5 has an ulp of 2^-24
+    if (exponent != 0)
+        return std::bit_cast<float>(sign | ((exponent + 112U) << 23U) | (mantissa << 13U));
+    const float magnitude =
+        std::bit_cast<float>(0x3f000000U | mantissa) - 0.5F;  // 0.5 has an ulp of 2^-24
     return sign != 0 ? -magnitude : magnitude;
 }
 
@@ -106,12 +110,14 @@ TEST(Npy, EveryFloat16IsExact) {
         if (std::isnan(theirs))
             EXPECT_TRUE(std::isnan(ours)) << bits;
         else
-            ASSERT_EQ(std::bit_cast<std::uint64_t>(ours), std::bit_cast<std::uint64_t>(theirs)) << bits;
+            ASSERT_EQ(std::bit_cast<std::uint64_t>(ours), std::bit_cast<std::uint64_t>(theirs))
+                << bits;
     }
 }
 
 TEST(Npy, IntegersAtTheEndsOfTheirTypes) {
-    const auto low = parse_npy(npy("<i8", "(2,)", std::string(7, '\0') + "\x80" + std::string(8, '\xff')));
+    const auto low =
+        parse_npy(npy("<i8", "(2,)", std::string(7, '\0') + "\x80" + std::string(8, '\xff')));
     ASSERT_TRUE(low) << low.failure().message;
     EXPECT_EQ(low->values, (std::vector<double>{-9223372036854775808.0, -1}));
     const auto high = parse_npy(npy("<u4", "(1,)", "\xff\xff\xff\xff"));
@@ -124,8 +130,9 @@ TEST(Npy, IntegersAtTheEndsOfTheirTypes) {
 
 TEST(Npy, HeaderMayBeWrittenOtherwise) {
     const std::string data = floats({1, 2});
-    for (const char* dictionary : {"{'shape':(2L,),'fortran_order':False,'descr':\"<f4\"}",
-                                   "{ 'descr' : '<f4' , 'fortran_order' : True,\n'shape' : (2,)}"}) {
+    for (const char* dictionary :
+         {"{'shape':(2L,),'fortran_order':False,'descr':\"<f4\"}",
+          "{ 'descr' : '<f4' , 'fortran_order' : True,\n'shape' : (2,)}"}) {
         const auto array = parse_npy(npy_raw(dictionary, data));
         ASSERT_TRUE(array) << array.failure().message;
         EXPECT_EQ(array->values, (std::vector<double>{1, 2}));
@@ -139,7 +146,8 @@ struct Broken {
     std::string message;
 };
 
-const std::string kExpectedElements = ", expected little-endian float16, float32, float64, integers or bool";
+const std::string kExpectedElements =
+    ", expected little-endian float16, float32, float64, integers or bool";
 
 std::vector<Broken> broken() {
     const std::string two = floats({1, 2});
@@ -158,55 +166,67 @@ std::vector<Broken> broken() {
         {"empty", "", Code::malformed_array, "ends within the magic word: 0 bytes of 8"},
         {"other file", "step,z[0],z[1]\n", Code::malformed_array,
          "is no .npy array: begins with 'step,z', expected '\\x93NUMPY'"},
-        {"version", version, Code::malformed_array, "has .npy version 4.0, expected 1.0, 2.0 or 3.0"},
-        {"minor version", minor, Code::malformed_array, "has .npy version 1.1, expected 1.0, 2.0 or 3.0"},
+        {"version", version, Code::malformed_array,
+         "has .npy version 4.0, expected 1.0, 2.0 or 3.0"},
+        {"minor version", minor, Code::malformed_array,
+         "has .npy version 1.1, expected 1.0, 2.0 or 3.0"},
         {"header length", long_header, Code::malformed_array,
          "has a header of 4294967295 bytes, at most 65536 are read"},
-        {"not a dictionary", header("[1, 2]"), Code::malformed_array, "header has '[', expected '{'"},
+        {"not a dictionary", header("[1, 2]"), Code::malformed_array,
+         "header has '[', expected '{'"},
         {"no dictionary", header(""), Code::malformed_array, "header has its end, expected '{'"},
         {"open dictionary", header("{'descr': '<f4', "), Code::malformed_array,
          "header has its end, expected a text in quotes"},
-        {"open text", header("{'descr"), Code::malformed_array, "header has a text without its closing quote"},
+        {"open text", header("{'descr"), Code::malformed_array,
+         "header has a text without its closing quote"},
         {"key", header("{'dtype': '<f4'}"), Code::malformed_array,
          "header has the key 'dtype', expected 'descr', 'fortran_order' and 'shape'"},
         {"key twice", header("{'descr': '<f4', 'descr': '<f4'}"), Code::malformed_array,
          "header has the key 'descr' twice"},
         {"key missing", header("{'descr': '<f4', 'shape': (2,)}"), Code::malformed_array,
          "header has no key 'fortran_order'"},
-        {"no colon", header("{'descr' '<f4'}"), Code::malformed_array, "header has ''', expected ':'"},
-        {"no comma", header("{'descr': '<f4' 'shape': (2,)}"), Code::malformed_array, "header has ''', expected ','"},
-        {"after the end", header("{'descr': '<f4', 'fortran_order': False, 'shape': (2,)} 1"), Code::malformed_array,
-         "header goes on after its '}': '1"},
-        {"order", header("{'fortran_order': 0}"), Code::malformed_array, "header's 'fortran_order' is '0}"},
+        {"no colon", header("{'descr' '<f4'}"), Code::malformed_array,
+         "header has ''', expected ':'"},
+        {"no comma", header("{'descr': '<f4' 'shape': (2,)}"), Code::malformed_array,
+         "header has ''', expected ','"},
+        {"after the end", header("{'descr': '<f4', 'fortran_order': False, 'shape': (2,)} 1"),
+         Code::malformed_array, "header goes on after its '}': '1"},
+        {"order", header("{'fortran_order': 0}"), Code::malformed_array,
+         "header's 'fortran_order' is '0}"},
         {"dimension", shape("(-2,)"), Code::malformed_array, "header's 'shape' holds '-2,), }"},
         {"no tuple", shape("2"), Code::malformed_array, "header has '2', expected '('"},
         {"no tuple of one", shape("(2)"), Code::malformed_array, "header has ')', expected ','"},
         {"rank", shape(ones + ")"), Code::malformed_array, "has more than 32 dimensions"},
         {"big endian", elements(">f4"), Code::unsupported_elements,
          "has big-endian elements, '>f4'" + kExpectedElements},
-        {"native order", elements("=f4"), Code::unsupported_elements, "has elements of type '=f4'" + kExpectedElements},
+        {"native order", elements("=f4"), Code::unsupported_elements,
+         "has elements of type '=f4'" + kExpectedElements},
         {"records", header("{'descr': [('x', '<f4')], "), Code::unsupported_elements,
          "has structured elements (records)" + kExpectedElements},
         {"objects", elements("|O"), Code::unsupported_elements,
          "has elements of type '|O' (Python objects)" + kExpectedElements},
         {"complex", elements("<c8"), Code::unsupported_elements,
          "has elements of type '<c8' (complex numbers)" + kExpectedElements},
-        {"text", elements("<U4"), Code::unsupported_elements, "has elements of type '<U4' (text)" + kExpectedElements},
+        {"text", elements("<U4"), Code::unsupported_elements,
+         "has elements of type '<U4' (text)" + kExpectedElements},
         {"time", elements("<M8[s]"), Code::unsupported_elements,
          "has elements of type '<M8[s]' (times)" + kExpectedElements},
         {"raw", elements("|V8"), Code::unsupported_elements,
          "has elements of type '|V8' (raw bytes)" + kExpectedElements},
         {"long double", elements("<f16"), Code::unsupported_elements,
          "has elements of type '<f16'" + kExpectedElements},
-        {"no type", elements(""), Code::unsupported_elements, "has elements of type ''" + kExpectedElements},
+        {"no type", elements(""), Code::unsupported_elements,
+         "has elements of type ''" + kExpectedElements},
         {"one dimension too large", shape("(9223372036854775808,)"), Code::array_too_large,
          "has a dimension above 2^63 - 1"},
         {"dimension of many digits", shape("(99999999999999999999999,)"), Code::array_too_large,
          "has a dimension above 2^63 - 1"},
         {"product overflows", shape("(4294967296, 4294967296)"), Code::array_too_large,
          "shape (4294967296, 4294967296) has more elements than can be counted"},
-        {"product wraps to 2", shape("(9223372036854775807, 2, 9223372036854775807)"), Code::array_too_large,
-         "shape (9223372036854775807, 2, 9223372036854775807) has more elements than can be counted"},
+        {"product wraps to 2", shape("(9223372036854775807, 2, 9223372036854775807)"),
+         Code::array_too_large,
+         "shape (9223372036854775807, 2, 9223372036854775807) has more elements than can be "
+         "counted"},
         {"bytes overflow", shape("(4611686018427387904,)"), Code::array_too_large,
          "shape (4611686018427387904,) has more elements than can be counted"},
         {"huge", shape("(1000000000, 32)"), Code::wrong_array_size,
@@ -235,12 +255,14 @@ TEST(Npy, EveryFaultHasItsMessage) {
 
 TEST(Npy, CutAnywhere) {
     for (const int major : {1, 2, 3}) {
-        const std::string whole = npy_raw(npy_dictionary("<f4", false, "(2, 2)"), floats({1, 2, 3, 4}), major);
+        const std::string whole =
+            npy_raw(npy_dictionary("<f4", false, "(2, 2)"), floats({1, 2, 3, 4}), major);
         ASSERT_TRUE(parse_npy(whole));
         for (std::size_t n = 0; n < whole.size(); ++n) {
             const auto array = parse_npy(whole.substr(0, n));
             ASSERT_FALSE(array) << n;
-            EXPECT_EQ(array.failure().code, n + 16 < whole.size() ? Code::malformed_array : Code::wrong_array_size)
+            EXPECT_EQ(array.failure().code,
+                      n + 16 < whole.size() ? Code::malformed_array : Code::wrong_array_size)
                 << n;
         }
         const auto longer = parse_npy(whole + "x");
@@ -261,12 +283,14 @@ TEST(Npy, NumpysOtherTypesAreRefused) {
 TEST(Npy, MoreElementsThanAreRead) {
     const std::uint64_t n = kMaxArrayElements + 1;
     const tests::TemporaryPath file("large.npy", npy("|i1", fmt::format("({},)", n), ""));
-    ASSERT_EQ(::truncate(file.path().c_str(), static_cast<off_t>(tests::file_bytes(file.path()).size() + n)),
+    ASSERT_EQ(::truncate(file.path().c_str(),
+                         static_cast<off_t>(tests::file_bytes(file.path()).size() + n)),
               0);  // sparse
     const auto array = read_npy(file.path());
     ASSERT_FALSE(array);
     EXPECT_EQ(array.failure().code, Code::array_too_large);
-    EXPECT_EQ(array.failure().message, "shape (134217729,) has 134217729 elements, at most 134217728 are read");
+    EXPECT_EQ(array.failure().message,
+              "shape (134217729,) has 134217729 elements, at most 134217728 are read");
 }
 
 TEST(Npy, FilesThatCannotBeRead) {
@@ -293,7 +317,8 @@ TEST(ReadArray, EndingDecides) {
     const auto key = read_array(kFolder + "f4_c.npy", "goal");
     ASSERT_FALSE(key);
     EXPECT_EQ(key.failure().code, Code::key_without_archive);
-    EXPECT_EQ(key.failure().message, "an .npy file holds one array without a name, so the key 'goal' has no meaning");
+    EXPECT_EQ(key.failure().message,
+              "an .npy file holds one array without a name, so the key 'goal' has no meaning");
 }
 
 }  // namespace

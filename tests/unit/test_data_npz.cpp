@@ -22,7 +22,8 @@ TEST(Npz, StoredAndDeflatedGiveTheSame) {
             const auto array = read_npz(kFolder + file, key);
             ASSERT_TRUE(array) << array.failure().message;
             EXPECT_EQ(array->shape_text(), "(3, 4)");
-            for (int k = 0; k < 12; ++k) EXPECT_EQ(array->values[k], (k - 2) * 0.5) << file << " " << key << " " << k;
+            for (int k = 0; k < 12; ++k)
+                EXPECT_EQ(array->values[k], (k - 2) * 0.5) << file << " " << key << " " << k;
         }
     }
 }
@@ -32,7 +33,8 @@ TEST(Npz, TheOnlyArrayNeedsNoKey) {
     const auto which = read_npz(kFolder + "stored.npz", "");
     ASSERT_FALSE(which);
     EXPECT_EQ(which.failure().code, Code::no_such_array);
-    EXPECT_EQ(which.failure().message, "holds 3 arrays, 'goal', 'half' and 'turned'; expected the key of one of them");
+    EXPECT_EQ(which.failure().message,
+              "holds 3 arrays, 'goal', 'half' and 'turned'; expected the key of one of them");
 }
 
 const std::string kTwo = floats({1, 2});
@@ -53,8 +55,10 @@ struct Broken {
 std::vector<Broken> broken() {
     const std::string array = npy("<f4", "(2,)", kTwo);
     const std::string stored = archive(false);
-    const std::string two_z = patched(zip_of({{"z1.npy", array}, {"z2.npy", array}}), "z2.npy", "z1.npy");
-    // The central directory's copy of the header names the method 10 bytes in, the local one 8 bytes in.
+    const std::string two_z =
+        patched(zip_of({{"z1.npy", array}, {"z2.npy", array}}), "z2.npy", "z1.npy");
+    // The central directory's copy of the header names the method 10 bytes in, the local one 8
+    // bytes in.
     std::string method = stored;
     method[8] = 12;
     method[stored.find("PK\x01\x02") + 10] = 12;
@@ -65,27 +69,35 @@ std::vector<Broken> broken() {
     return {
         {"empty", "", "z", Code::malformed_archive, "is no .npz file: not a zip archive"},
         {"no zip", array, "z", Code::malformed_archive, "is no .npz file: not a zip archive"},
-        {"no arrays", zip_of({{"readme.txt", "x"}}), "z", Code::no_such_array, "holds no arrays, expected 'z'"},
-        {"no arrays, no key", zip_of({{"readme.txt", "x"}}), "", Code::no_such_array, "holds no arrays"},
-        {"missing key", zip_of({{"goal_a.npy", array}, {"goal_b.npy", array}}), "gaol_a", Code::no_such_array,
+        {"no arrays", zip_of({{"readme.txt", "x"}}), "z", Code::no_such_array,
+         "holds no arrays, expected 'z'"},
+        {"no arrays, no key", zip_of({{"readme.txt", "x"}}), "", Code::no_such_array,
+         "holds no arrays"},
+        {"missing key", zip_of({{"goal_a.npy", array}, {"goal_b.npy", array}}), "gaol_a",
+         Code::no_such_array,
          "has no array 'gaol_a'; it holds 'goal_a' and 'goal_b'; did you mean 'goal_a'?"},
         {"missing key of many", zip_of(many), "other", Code::no_such_array,
-         "has no array 'other'; it holds 'a0', 'a1', 'a2', 'a3', 'a4', 'a5', 'a6', 'a7', 'a8', 'a9' and 2 more"},
+         "has no array 'other'; it holds 'a0', 'a1', 'a2', 'a3', 'a4', 'a5', 'a6', 'a7', 'a8', "
+         "'a9' and 2 more"},
         {"key twice", two_z, "z1", Code::no_such_array, "holds two arrays named 'z1'"},
         {"encrypted", zip_of({{"z.npy", array, true, true}}), "z", Code::malformed_archive,
          "array 'z': is encrypted, expected plain members"},
         {"method", method, "z", Code::malformed_archive,
          "array 'z': is packed by zip method 12, expected 0 (stored) or 8 (deflated)"},
-        {"checksum", wrong_data, "z", Code::malformed_archive, "array 'z': archive is damaged: CRC error"},
-        {"header promises more than the entry has", zip_of({{"z.npy", npy("<f4", "(250000000,)", kTwo)}}), "z",
+        {"checksum", wrong_data, "z", Code::malformed_archive,
+         "array 'z': archive is damaged: CRC error"},
+        {"header promises more than the entry has",
+         zip_of({{"z.npy", npy("<f4", "(250000000,)", kTwo)}}), "z", Code::wrong_array_size,
+         "array 'z': is cut short: float32 of shape (250000000,) takes 1000000000 bytes, 8 are "
+         "there"},
+        {"entry has more than the header promises",
+         zip_of({{"z.npy", npy("<f4", "(1,)", std::string(1 << 24, '\0'))}}), "z",
          Code::wrong_array_size,
-         "array 'z': is cut short: float32 of shape (250000000,) takes 1000000000 bytes, 8 are there"},
-        {"entry has more than the header promises", zip_of({{"z.npy", npy("<f4", "(1,)", std::string(1 << 24, '\0'))}}),
-         "z", Code::wrong_array_size,
          "array 'z': has bytes left over: float32 of shape (1,) takes 4 bytes, 16777216 are there"},
         {"not an array", zip_of({{"z.npy", "hello, hello"}}), "z", Code::malformed_array,
          "array 'z': is no .npy array: begins with 'hello,', expected '\\x93NUMPY'"},
-        {"directory says the member is larger", patched(stored, size, tests::little_endian(array.size() + 4, 4)), "z",
+        {"directory says the member is larger",
+         patched(stored, size, tests::little_endian(array.size() + 4, 4)), "z",
          Code::malformed_archive, "archive is damaged: its directory makes no sense"},
     };
 }
@@ -102,11 +114,13 @@ TEST(Npz, EveryFaultHasItsMessage) {
 /// `bytes` with the little-endian number of 4 bytes at `at` raised by `by`.
 std::string raised(std::string bytes, std::size_t at, std::size_t by) {
     std::uint64_t value = 0;
-    for (std::size_t i = 4; i-- > 0;) value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
+    for (std::size_t i = 4; i-- > 0;)
+        value = value << 8U | static_cast<unsigned char>(bytes[at + i]);
     return bytes.replace(at, 4, tests::little_endian(value + by, 4));
 }
 
-/// The archive with `more` put in at `at`, at its beginning or before its directory; what it says of places is right.
+/// The archive with `more` put in at `at`, at its beginning or before its directory; what it says
+/// of places is right.
 std::string moved(const std::string& archive, std::size_t at, const std::string& more) {
     const std::size_t directory = archive.find("PK\x01\x02");
     std::string bytes = raised(archive, archive.size() - 6, more.size());
@@ -115,7 +129,8 @@ std::string moved(const std::string& archive, std::size_t at, const std::string&
 }
 
 std::string with_comment(std::string archive, const std::string& comment) {
-    return archive.replace(archive.size() - 2, 2, tests::little_endian(comment.size(), 2)) + comment;
+    return archive.replace(archive.size() - 2, 2, tests::little_endian(comment.size(), 2)) +
+           comment;
 }
 
 TEST(Npz, OneArchiveAndNothingElse) {
@@ -155,10 +170,13 @@ TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
     const auto array = parse_npz(outer, "z");
     ASSERT_TRUE(array) << array.failure().message;
     EXPECT_EQ(array->values.size(), inner.size());
-    // What it says of places may be right in the outer archive, and its comment be all that comes behind it.
+    // What it says of places may be right in the outer archive, and its comment be all that comes
+    // behind it.
     const std::size_t at = outer.find(inner);
-    std::string polyglot = raised(raised(inner, inner.size() - 6, at), inner.find("PK\x01\x02") + 42, at);
-    polyglot.replace(inner.size() - 2, 2, tests::little_endian(outer.size() - at - inner.size(), 2));
+    std::string polyglot =
+        raised(raised(inner, inner.size() - 6, at), inner.find("PK\x01\x02") + 42, at);
+    polyglot.replace(inner.size() - 2, 2,
+                     tests::little_endian(outer.size() - at - inner.size(), 2));
     const auto either = parse_npz(around(polyglot), "z");
     ASSERT_TRUE(either) << either.failure().message;
     EXPECT_EQ(either->values.size(), inner.size());
@@ -167,15 +185,17 @@ TEST(Npz, AnArchiveInAMemberIsNotTakenForTheArchive) {
 TEST(Npz, OtherCompressionMethodsOfPythonAreRefused) {
     const auto array = read_npz(kFolder + "bzip2.npz", "goal");
     ASSERT_FALSE(array);
-    EXPECT_EQ(array.failure().message, "array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");
+    EXPECT_EQ(array.failure().message,
+              "array 'goal': is packed by zip method 12, expected 0 (stored) or 8 (deflated)");
 }
 
 TEST(Npz, ABombThatAgreesWithItselfStopsWhereItsBytesDo) {
     // Header and directory promise 400 MB alike, 8 bytes of data are there.
     const std::string lie = npy("<f4", "(100000000,)", kTwo);
     const std::string header_only = lie.substr(0, lie.size() - kTwo.size());
-    const std::string bytes = patched(zip_of({{"z.npy", lie, false}}), tests::little_endian(lie.size(), 4),
-                                      tests::little_endian(header_only.size() + 400000000, 4));
+    const std::string bytes =
+        patched(zip_of({{"z.npy", lie, false}}), tests::little_endian(lie.size(), 4),
+                tests::little_endian(header_only.size() + 400000000, 4));
     const auto array = parse_npz(bytes, "z");
     ASSERT_FALSE(array);
     EXPECT_EQ(array.failure().code, Code::malformed_archive) << array.failure().message;

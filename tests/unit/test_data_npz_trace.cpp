@@ -18,10 +18,10 @@ using tests::zip_of;
 const std::string kFolder = ETLC_SOURCE_DIR "/tests/unit/data/";
 
 TEST(NpzTrace, StepsOfEveryKind) {
-    const std::vector<Channel> channels{{"z", Kind::vector, 3},       {"z_turned", Kind::vector, 3},
-                                        {"z_half", Kind::vector, 3},  {"gripper", Kind::scalar, 1},
-                                        {"column", Kind::scalar, 1},  {"held", Kind::boolean, 1},
-                                        {"gripper", Kind::vector, 1}, {"held_int", Kind::boolean, 1}};
+    const std::vector<Channel> channels{
+        {"z", Kind::vector, 3},       {"z_turned", Kind::vector, 3}, {"z_half", Kind::vector, 3},
+        {"gripper", Kind::scalar, 1}, {"column", Kind::scalar, 1},   {"held", Kind::boolean, 1},
+        {"gripper", Kind::vector, 1}, {"held_int", Kind::boolean, 1}};
     for (const char* file : {"trace_stored.npz", "trace_deflated.npz"}) {
         auto trace = open_trace(kFolder + file, channels);
         ASSERT_TRUE(trace) << trace.failure().message;
@@ -34,8 +34,10 @@ TEST(NpzTrace, StepsOfEveryKind) {
             EXPECT_EQ(sample.present, std::vector<bool>(channels.size(), true));
             for (const int z : {0, 1, 2})
                 EXPECT_EQ(sample.values[z], (std::vector<double>{t + 0.0, t + 0.25, t + 0.5})) << z;
-            for (const int g : {3, 4, 6}) EXPECT_EQ(sample.values[g], std::vector<double>{t / 8.0}) << g;
-            for (const int b : {5, 7}) EXPECT_EQ(sample.values[b], std::vector<double>{t % 2 + 0.0}) << b;
+            for (const int g : {3, 4, 6})
+                EXPECT_EQ(sample.values[g], std::vector<double>{t / 8.0}) << g;
+            for (const int b : {5, 7})
+                EXPECT_EQ(sample.values[b], std::vector<double>{t % 2 + 0.0}) << b;
         }
         const auto more = (*trace)->next(sample);
         ASSERT_TRUE(more);
@@ -44,9 +46,9 @@ TEST(NpzTrace, StepsOfEveryKind) {
 }
 
 TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
-    auto trace = open_trace(
-        kFolder + "trace_deflated.npz",
-        {{"truth.at_a", Kind::boolean, 1, true}, {"gripper", Kind::scalar, 1}, {"held", Kind::boolean, 1, true}});
+    auto trace = open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true},
+                                                             {"gripper", Kind::scalar, 1},
+                                                             {"held", Kind::boolean, 1, true}});
     ASSERT_TRUE(trace) << trace.failure().message;
     EXPECT_FALSE((*trace)->has(0));
     EXPECT_TRUE((*trace)->has(1));
@@ -59,7 +61,8 @@ TEST(NpzTrace, AnOptionalArrayMayBeAbsent) {
         EXPECT_TRUE(std::isnan(sample.values[0][0]));
         EXPECT_EQ(sample.values[2][0], t % 2);
     }
-    const auto nothing = open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
+    const auto nothing =
+        open_trace(kFolder + "trace_deflated.npz", {{"truth.at_a", Kind::boolean, 1, true}});
     ASSERT_FALSE(nothing);  // how many steps it has, nobody knows
     EXPECT_EQ(nothing.failure().code, Code::trace_shape);
 }
@@ -94,7 +97,8 @@ std::vector<Broken> broken() {
         return std::vector<tests::Member>{{"z.npy", npy("<f4", shape, floats({1, 2, 3, 4}))}};
     };
     const std::string two = floats({1, 2});
-    const std::string elements = ", expected little-endian float16, float32, float64, integers or bool";
+    const std::string elements =
+        ", expected little-endian float16, float32, float64, integers or bool";
     return {
         {"absent",
          {{"other.npy", npy("<f4", "(2,)", two)}},
@@ -116,7 +120,8 @@ std::vector<Broken> broken() {
          "array 'z': has shape (1, 4), expected (steps, 2)"},
         {"three dimensions", z("(2, 2, 1)"), kVector, Code::trace_shape,
          "array 'z': has shape (2, 2, 1), expected (steps, 2)"},
-        {"bool as a number", g("|b1", "(2,)", std::string("\0\1", 2)), kScalar, Code::trace_elements,
+        {"bool as a number", g("|b1", "(2,)", std::string("\0\1", 2)), kScalar,
+         Code::trace_elements,
          "array 'g': has bool elements, expected numbers: the input is no bool"},
         {"big endian", g(">f4", "(2,)", two), kScalar, Code::trace_elements,
          "array 'g': has big-endian elements, '>f4'" + elements},
@@ -158,7 +163,8 @@ std::vector<Broken> broken() {
 }
 
 /// The first failure, on opening or on any step.
-std::optional<diag::Failure> first_failure(const ArchivePlace& place, const std::vector<Channel>& channels) {
+std::optional<diag::Failure> first_failure(const ArchivePlace& place,
+                                           const std::vector<Channel>& channels) {
     auto trace = open_npz_trace(place, channels);
     if (!trace) return trace.failure();
     Sample sample;
@@ -171,7 +177,8 @@ std::optional<diag::Failure> first_failure(const ArchivePlace& place, const std:
 
 TEST(NpzTrace, EveryFaultHasItsMessage) {
     for (const Broken& one : broken()) {
-        const std::string bytes = zip_of(one.members.empty() ? std::vector<tests::Member>{{"x", "x"}} : one.members);
+        const std::string bytes =
+            zip_of(one.members.empty() ? std::vector<tests::Member>{{"x", "x"}} : one.members);
         const auto failure = first_failure({"run.npz", bytes, true}, one.channels);
         ASSERT_TRUE(failure) << one.what;
         EXPECT_EQ(failure->code, one.code) << one.what;
@@ -188,7 +195,8 @@ TEST(NpzTrace, NotAnArchive) {
 
 TEST(NpzTrace, DamageIsFoundAtTheEndOfTheArray) {
     for (const bool fortran : {false, true}) {
-        const std::string whole = zip_of({{"z.npy", npy("<f4", "(2, 2)", floats({1, 2, 3, 4}), fortran), false}});
+        const std::string whole =
+            zip_of({{"z.npy", npy("<f4", "(2, 2)", floats({1, 2, 3, 4}), fortran), false}});
         const std::string bytes = tests::patched(whole, floats({3, 4}), floats({3, 5}));
         const auto failure = first_failure({"run.npz", bytes, true}, kVector);
         ASSERT_TRUE(failure) << fortran;
@@ -202,7 +210,9 @@ TEST(NpzTrace, FortranOrderInBlocks) {
     constexpr std::uint64_t kRows = 700;
     constexpr std::uint32_t kColumns = 3000;
     std::string data(kRows * kColumns * 2, '\0');
-    const auto element = [](std::uint64_t t, std::uint64_t d) { return (t * 7919 + d * 31) % 65536; };
+    const auto element = [](std::uint64_t t, std::uint64_t d) {
+        return (t * 7919 + d * 31) % 65536;
+    };
     for (std::uint64_t d = 0; d < kColumns; ++d) {
         for (std::uint64_t t = 0; t < kRows; ++t) {
             const std::uint64_t at = 2 * (d * kRows + t);
@@ -225,12 +235,14 @@ TEST(NpzTrace, FortranOrderInBlocks) {
 TEST(NpzTrace, WithoutATemporaryFolderFortranOrderSaysSo) {
     const std::string before = std::getenv("TMPDIR") != nullptr ? std::getenv("TMPDIR") : "";
     ::setenv("TMPDIR", "/no/such/folder", 1);
-    const auto failure = first_failure({kFolder + "trace_stored.npz", {}, false}, {{"z_turned", Kind::vector, 3}});
+    const auto failure =
+        first_failure({kFolder + "trace_stored.npz", {}, false}, {{"z_turned", Kind::vector, 3}});
     before.empty() ? ::unsetenv("TMPDIR") : ::setenv("TMPDIR", before.c_str(), 1);
     ASSERT_TRUE(failure);
     EXPECT_EQ(failure->code, Code::unreadable_trace);
     EXPECT_EQ(failure->message,
-              "array 'z_turned': a Fortran-ordered array needs a temporary file: No such file or directory; save it in "
+              "array 'z_turned': a Fortran-ordered array needs a temporary file: No such file or "
+              "directory; save it in "
               "C order, "
               "or set TMPDIR to a folder with room for it");
 }

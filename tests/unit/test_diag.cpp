@@ -82,10 +82,14 @@ TEST(Text, SpansOfManyLinesShowTheFirst) {
 }
 
 TEST(Text, PlacesAtTheEndOfALineAndOfTheFile) {
-    EXPECT_EQ(text_of("ab\ncd", {2, 2}), "a.etl:1:3: error: wrong [E0104]\n    1 | ab\n      |   ^\n1 error\n");
-    EXPECT_EQ(text_of("ab\ncd", {5, 5}), "a.etl:2:3: error: wrong [E0104]\n    2 | cd\n      |   ^\n1 error\n");
-    EXPECT_EQ(text_of("", {0, 0}), "a.etl:1:1: error: wrong [E0104]\n    1 | \n      | ^\n1 error\n");
-    EXPECT_EQ(text_of("ab\r\n", {2, 4}), "a.etl:1:3: error: wrong [E0104]\n    1 | ab\n      |   ^\n1 error\n");
+    EXPECT_EQ(text_of("ab\ncd", {2, 2}),
+              "a.etl:1:3: error: wrong [E0104]\n    1 | ab\n      |   ^\n1 error\n");
+    EXPECT_EQ(text_of("ab\ncd", {5, 5}),
+              "a.etl:2:3: error: wrong [E0104]\n    2 | cd\n      |   ^\n1 error\n");
+    EXPECT_EQ(text_of("", {0, 0}),
+              "a.etl:1:1: error: wrong [E0104]\n    1 | \n      | ^\n1 error\n");
+    EXPECT_EQ(text_of("ab\r\n", {2, 4}),
+              "a.etl:1:3: error: wrong [E0104]\n    1 | ab\n      |   ^\n1 error\n");
 }
 
 TEST(Text, WideAndCombiningCharactersTakeTheirColumns) {
@@ -101,7 +105,8 @@ TEST(Text, WideAndCombiningCharactersTakeTheirColumns) {
 
 TEST(Text, BytesThatAreNotTextAreReplaced) {
     EXPECT_EQ(text_of("a\xFF\x1B[31m b", {8, 9}),
-              "a.etl:1:9: error: wrong [E0104]\n    1 | a\xEF\xBF\xBD\xEF\xBF\xBD[31m b\n      |         ^\n1 error\n");
+              "a.etl:1:9: error: wrong [E0104]\n    1 | a\xEF\xBF\xBD\xEF\xBF\xBD[31m b\n      |   "
+              "      ^\n1 error\n");
 }
 
 TEST(Text, LongLinesAreCutAroundTheSpan) {
@@ -120,7 +125,9 @@ TEST(Text, NotesWithAndWithoutPlaces) {
     const std::string spec = "input a : f32;\ninput a : f32;\n";
     const File file("a.etl", spec);
     Sink sink;
-    sink.report(Code::syntax_error, {21, 22}, "twice").note(Span{6, 7}, "first here").note("choose another name");
+    sink.report(Code::syntax_error, {21, 22}, "twice")
+        .note(Span{6, 7}, "first here")
+        .note("choose another name");
     EXPECT_EQ(diag::render_text(file, sink),
               "a.etl:2:7: error: twice [E0104]\n"
               "    2 | input a : f32;\n"
@@ -167,7 +174,8 @@ TEST(Text, ColoursOnlyWhenAsked) {
     Sink sink;
     sink.report(Code::syntax_error, {0, 1}, "x");
     EXPECT_EQ(diag::render_text(file, sink).find('\x1b'), std::string::npos);
-    EXPECT_NE(diag::render_text(file, sink, diag::Colour::ansi).find("\x1b[1;31merror:"), std::string::npos);
+    EXPECT_NE(diag::render_text(file, sink, diag::Colour::ansi).find("\x1b[1;31merror:"),
+              std::string::npos);
 }
 
 TEST(Text, ManyFindingsAreCountedNotAllShown) {
@@ -181,8 +189,9 @@ TEST(Text, ManyFindingsAreCountedNotAllShown) {
 /// Any warning of the table; the tests below want one, whichever.
 Code some_warning() {
     const auto& codes = diag::all_codes();
-    const auto found = std::find_if(codes.begin(), codes.end(),
-                                    [](const auto& row) { return row.severity == diag::Severity::warning; });
+    const auto found = std::find_if(codes.begin(), codes.end(), [](const auto& row) {
+        return row.severity == diag::Severity::warning;
+    });
     return static_cast<Code>(found - codes.begin());
 }
 
@@ -209,7 +218,9 @@ TEST(Text, WarningsAndWerror) {
 TEST(Json, HoldsEveryFinding) {
     const File file("a.etl", "ab\ncd");
     Sink sink;
-    sink.report(Code::syntax_error, {1, 4}, "over two lines").note(Span{0, 1}, "here").note("just so");
+    sink.report(Code::syntax_error, {1, 4}, "over two lines")
+        .note(Span{0, 1}, "here")
+        .note("just so");
     sink.report({Code::syntax_error, "elsewhere", {}, "t.json", 3, 7, {}});
     const auto json = nlohmann::json::parse(diag::render_json(file, sink));
     ASSERT_EQ(json["diagnostics"].size(), 2U);
@@ -235,7 +246,9 @@ TEST(Json, HoldsEveryFinding) {
 }
 
 TEST(Json, IsAnEmptyListWhereNothingWasFound) {
-    EXPECT_EQ(nlohmann::json::parse(diag::render_json(File("a.etl", ""), Sink()))["diagnostics"].size(), 0U);
+    EXPECT_EQ(
+        nlohmann::json::parse(diag::render_json(File("a.etl", ""), Sink()))["diagnostics"].size(),
+        0U);
 }
 
 TEST(Json, SurvivesBytesThatAreNotText) {
@@ -252,8 +265,8 @@ TEST(Json, WarningsAsErrors) {
         EXPECT_FALSE(sink.refused());
         sink.report(some_warning(), {1, 2}, "y");
         EXPECT_FALSE(sink.has_errors());
-        return std::pair(sink.refused(),
-                         nlohmann::json::parse(diag::render_json(file, sink))["diagnostics"][0]["severity"]);
+        return std::pair(sink.refused(), nlohmann::json::parse(diag::render_json(
+                                             file, sink))["diagnostics"][0]["severity"]);
     };
     EXPECT_EQ(severity(Sink()), std::pair(false, nlohmann::json("warning")));
     EXPECT_EQ(severity(Sink(true)), std::pair(true, nlohmann::json("error")));

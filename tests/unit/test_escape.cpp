@@ -8,7 +8,8 @@ namespace {
 using namespace etlc::source;
 
 TEST(Escape, PlainWordsStay) {
-    for (const char* text : {"", "a b", "Z\xC3\xBCrich \xE2\x82\xAC \xF0\x9F\x98\x80", "a\\b/c'd\"e"}) {
+    for (const char* text :
+         {"", "a b", "Z\xC3\xBCrich \xE2\x82\xAC \xF0\x9F\x98\x80", "a\\b/c'd\"e"}) {
         EXPECT_EQ(visible(text), text);
         EXPECT_EQ(code_line(text), text);
     }

@@ -1,4 +1,5 @@
-// What is right: every declaration, precedence and associativity of every pair of operators, contextual words.
+// What is right: every declaration, precedence and associativity of every pair of operators,
+// contextual words.
 #include <gtest/gtest.h>
 
 #include "parsing.hpp"
@@ -17,7 +18,8 @@ TEST(Declarations, EachForm) {
         {"input z : f32[32];", "(input z :f32 (dimension 32))"},
         {"input z : f16[32];", "(input z :f16 (dimension 32))"},
         {"input z : i8[32];", "(input z :i8 (dimension 32))"},
-        {"input z : i8[32] scale 0.05 hold 3;", "(input z :i8 (dimension 32) (scale 0.05) (hold 3))"},
+        {"input z : i8[32] scale 0.05 hold 3;",
+         "(input z :i8 (dimension 32) (scale 0.05) (hold 3))"},
         {"input a, b : bool hold 1;", "(input a b :bool (hold 1))"},
         {"input g : f32 in [0, 1];", "(input g :f32 (range 0 1))"},
         {"input g : f32 in [-inf, inf] hold 2;", "(input g :f32 (range -inf inf) (hold 2))"},
@@ -32,12 +34,14 @@ TEST(Declarations, EachForm) {
         {"predicate p = x >= - 2;", "(predicate p >= x -2)"},
         {"predicate p = x < calibrated(f1);", "(predicate p < x (calibrated f1))"},
         {"predicate p = l2(z, t) <= calibrated(conformal, alpha = 0.10, mode = strict, x = -1);",
-         "(predicate p <= (distance l2 (input z) t) (calibrated conformal (alpha 0.10) (mode strict) (x -1)))"},
+         "(predicate p <= (distance l2 (input z) t) (calibrated conformal (alpha 0.10) (mode "
+         "strict) (x -1)))"},
         {"truth p = l2([px, py], t) < 0.25;", "(truth p (< (distance l2 (vector px py) t) 0.25))"},
         {"let f = !p;", "(let f (! p))"},
         {"monitor m = F p;", "(monitor m (F p))"},
         {"sliding monitor m = F[0, 2] p;", "(sliding m (F [0,2] p))"},
-        {"monitor m = F p calibrated(conformal, alpha = 0.1);", "(monitor m (F p) (calibrated conformal (alpha 0.1)))"},
+        {"monitor m = F p calibrated(conformal, alpha = 0.1);",
+         "(monitor m (F p) (calibrated conformal (alpha 0.1)))"},
     };
     for (const auto& [text, tree] : cases) EXPECT_EQ(tree_of_declaration(text), tree) << text;
 }
@@ -55,11 +59,13 @@ TEST(Declarations, StandInFileOrderWithTheirSpans) {
 }
 
 TEST(Declarations, SpansInsideDistances) {
-    const Parsed parsed("spec a; predicate p = kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1 <= -2;");
+    const Parsed parsed(
+        "spec a; predicate p = kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1 <= -2;");
     ASSERT_EQ(parsed.errors(), "");
     const auto& p = std::get<ast::Predicate>(parsed.spec.declarations[0]);
     const auto text = [&parsed](source::Span span) { return std::string(parsed.file.text(span)); };
-    EXPECT_EQ(text(p.expression->span), "kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1");
+    EXPECT_EQ(text(p.expression->span),
+              "kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t) - 1");
     const ast::Distance& d = *p.expression->arguments[0]->distance;
     EXPECT_EQ(text(d.span), "kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t)");
     EXPECT_EQ(text(d.aggregation->span), "kth(2)");
@@ -76,8 +82,12 @@ TEST(Declarations, SpansInsideDistances) {
 TEST(Declarations, BlanksCommentsAndLineEndsDoNotMatter) {
     const std::string tree = "spec a\n(let f (F [0,2] (&& p q)))\n";
     EXPECT_EQ(Parsed("spec a;let f=F[0,2](p&&q);").tree(), tree);
-    EXPECT_EQ(Parsed("\xEF\xBB\xBFspec a;\r\n\tlet f\r\n=F [ 0 , 2 ]\f( p // (\r\n && q ) ; // end").tree(), tree);
-    EXPECT_EQ(Parsed("/**/spec/* ; */a;/***/let f = /* two\nlines // */ F[0,2] (p and q);//").tree(), tree);
+    EXPECT_EQ(Parsed("\xEF\xBB\xBFspec a;\r\n\tlet f\r\n=F [ 0 , 2 ]\f( p // (\r\n && q ) ; // end")
+                  .tree(),
+              tree);
+    EXPECT_EQ(
+        Parsed("/**/spec/* ; */a;/***/let f = /* two\nlines // */ F[0,2] (p and q);//").tree(),
+        tree);
     EXPECT_EQ(Parsed("spec a; // 目标 ≤\nlet f = F[0,2] (p && q);").errors(), "");
 }
 
@@ -91,8 +101,9 @@ struct Binary {
 };
 
 const std::vector<Binary> kBinary{
-    {"<->", "iff", 1, Binary::left},    {"->", "implies", 2, Binary::right}, {"||", "or", 3, Binary::n_ary},
-    {"&&", "and", 4, Binary::n_ary},    {"U", "until", 5, Binary::right},    {"W", "weak_until", 5, Binary::right},
+    {"<->", "iff", 1, Binary::left},    {"->", "implies", 2, Binary::right},
+    {"||", "or", 3, Binary::n_ary},     {"&&", "and", 4, Binary::n_ary},
+    {"U", "until", 5, Binary::right},   {"W", "weak_until", 5, Binary::right},
     {"R", "release", 5, Binary::right}, {"S", "since", 5, Binary::right},
 };
 
@@ -107,9 +118,10 @@ std::string tree(const std::string& op, const std::string& a, const std::string&
 
 /// What `a op1 b op2 c` has to mean.
 std::string expected_tree(const Binary& first, const Binary& second) {
-    const bool to_the_left =
-        first.level != second.level ? first.level > second.level : first.associates != Binary::right;
-    if (first.symbol == second.symbol && first.associates == Binary::n_ary) return "(" + first.symbol + " a b c)";
+    const bool to_the_left = first.level != second.level ? first.level > second.level
+                                                         : first.associates != Binary::right;
+    if (first.symbol == second.symbol && first.associates == Binary::n_ary)
+        return "(" + first.symbol + " a b c)";
     if (to_the_left) return tree(second.symbol, tree(first.symbol, "a", "b"), "c");
     return tree(first.symbol, "a", tree(second.symbol, "b", "c"));
 }
@@ -129,8 +141,10 @@ TEST(Formulas, BracketsOverrideEveryPair) {
         for (const Binary& second : kBinary) {
             const std::string& one = first.symbol;
             const std::string& two = second.symbol;
-            EXPECT_EQ(tree_of_formula("(a " + one + " b) " + two + " c"), tree(two, tree(one, "a", "b"), "c"));
-            EXPECT_EQ(tree_of_formula("a " + one + " (b " + two + " c)"), tree(one, "a", tree(two, "b", "c")));
+            EXPECT_EQ(tree_of_formula("(a " + one + " b) " + two + " c"),
+                      tree(two, tree(one, "a", "b"), "c"));
+            EXPECT_EQ(tree_of_formula("a " + one + " (b " + two + " c)"),
+                      tree(one, "a", tree(two, "b", "c")));
         }
     }
 }
@@ -139,13 +153,18 @@ TEST(Formulas, PrefixOperatorsBindTighterThanEveryBinaryOne) {
     for (const auto& [symbol, word] : kPrefix) {
         const std::string prefixed = "(" + symbol + " a)";
         for (const Binary& op : kBinary) {
-            EXPECT_EQ(tree_of_formula(symbol + " a " + op.symbol + " b"), tree(op.symbol, prefixed, "b"));
-            EXPECT_EQ(tree_of_formula(word + " a " + op.word + " b"), tree(op.symbol, prefixed, "b"));
-            EXPECT_EQ(tree_of_formula("b " + op.symbol + " " + symbol + " a"), tree(op.symbol, "b", prefixed));
+            EXPECT_EQ(tree_of_formula(symbol + " a " + op.symbol + " b"),
+                      tree(op.symbol, prefixed, "b"));
+            EXPECT_EQ(tree_of_formula(word + " a " + op.word + " b"),
+                      tree(op.symbol, prefixed, "b"));
+            EXPECT_EQ(tree_of_formula("b " + op.symbol + " " + symbol + " a"),
+                      tree(op.symbol, "b", prefixed));
         }
         for (const auto& [inner, inner_word] : kPrefix) {
-            EXPECT_EQ(tree_of_formula(symbol + " " + inner + " a"), "(" + symbol + " (" + inner + " a))");
-            EXPECT_EQ(tree_of_formula(word + " " + inner_word + " a"), "(" + symbol + " (" + inner + " a))");
+            EXPECT_EQ(tree_of_formula(symbol + " " + inner + " a"),
+                      "(" + symbol + " (" + inner + " a))");
+            EXPECT_EQ(tree_of_formula(word + " " + inner_word + " a"),
+                      "(" + symbol + " (" + inner + " a))");
         }
         EXPECT_EQ(tree_of_formula(symbol + " x > 1"), "(" + symbol + " (> x 1))");
     }
@@ -153,14 +172,16 @@ TEST(Formulas, PrefixOperatorsBindTighterThanEveryBinaryOne) {
 
 TEST(Formulas, IntervalsWhereTheyAreAllowed) {
     for (const std::string op : {"F", "G", "O", "H"})
-        EXPECT_EQ(tree_of_formula(op + "[1, 2] " + op + "[0, inf] a"), "(" + op + " [1,2] (" + op + " [0,inf] a))");
+        EXPECT_EQ(tree_of_formula(op + "[1, 2] " + op + "[0, inf] a"),
+                  "(" + op + " [1,2] (" + op + " [0,inf] a))");
     for (const std::string op : {"U", "R", "S"})
         EXPECT_EQ(tree_of_formula("a " + op + "[1, 2] b " + op + "[0s, 3min] c"),
                   "(" + op + " [1,2] a (" + op + " [0s,3min] b c))");
     for (const std::string op : {"!", "X", "Y"})
         EXPECT_NE(tree_of_formula(op + "[1, 2] a").find("takes no interval"), std::string::npos);
     for (const std::string op : {"W", "&&", "||", "->", "<->"})
-        EXPECT_NE(tree_of_formula("a " + op + "[1, 2] b").find("takes no interval"), std::string::npos);
+        EXPECT_NE(tree_of_formula("a " + op + "[1, 2] b").find("takes no interval"),
+                  std::string::npos);
 }
 
 TEST(Formulas, Bounds) {
@@ -181,10 +202,12 @@ TEST(Formulas, Atoms) {
     EXPECT_EQ(tree_of_formula("(x + y) * 2 > 1"), "(> (* (+ x y) 2) 1)");
     EXPECT_EQ(tree_of_formula("(a && b)"), "(&& a b)");
     EXPECT_EQ(tree_of_formula("((x + y) * 2 > 1 && (b))"), "(&& (> (* (+ x y) 2) 1) b)");
-    EXPECT_EQ(tree_of_formula("abs(x - y) + 0.5 * max(x, y) <= 1.5"), "(<= (+ (abs (- x y)) (* 0.5 (max x y))) 1.5)");
+    EXPECT_EQ(tree_of_formula("abs(x - y) + 0.5 * max(x, y) <= 1.5"),
+              "(<= (+ (abs (- x y)) (* 0.5 (max x y))) 1.5)");
     EXPECT_EQ(tree_of_formula("min l2(z, t) - min l2(z, u) <= 0.02"),
               "(<= (- (distance min l2 (input z) t) (distance min l2 (input z) u)) 0.02)");
-    EXPECT_EQ(tree_of_formula("F a && G x < 1 || -x + 1 > 2"), "(|| (&& (F a) (G (< x 1))) (> (+ (negate x) 1) 2))");
+    EXPECT_EQ(tree_of_formula("F a && G x < 1 || -x + 1 > 2"),
+              "(|| (&& (F a) (G (< x 1))) (> (+ (negate x) 1) 2))");
 }
 
 TEST(Formulas, LongAndOrAreOneNode) {
@@ -195,15 +218,18 @@ TEST(Formulas, LongAndOrAreOneNode) {
 // ---- expressions
 
 TEST(Expressions, EveryPairOfOperators) {
-    const std::vector<std::pair<std::string, int>> operators{{"+", 1}, {"-", 1}, {"*", 2}, {"/", 2}};
+    const std::vector<std::pair<std::string, int>> operators{
+        {"+", 1}, {"-", 1}, {"*", 2}, {"/", 2}};
     for (const auto& [first, first_level] : operators) {
         for (const auto& [second, second_level] : operators) {
             const std::string text = "a " + first + " b " + second + " c";
-            const std::string expected = first_level >= second_level ? tree(second, tree(first, "a", "b"), "c")
-                                                                     : tree(first, "a", tree(second, "b", "c"));
+            const std::string expected = first_level >= second_level
+                                             ? tree(second, tree(first, "a", "b"), "c")
+                                             : tree(first, "a", tree(second, "b", "c"));
             EXPECT_EQ(tree_of_expression(text), expected) << text;
         }
-        EXPECT_EQ(tree_of_expression("-a " + first + " -b"), tree(first, "(negate a)", "(negate b)"));
+        EXPECT_EQ(tree_of_expression("-a " + first + " -b"),
+                  tree(first, "(negate a)", "(negate b)"));
     }
 }
 
@@ -218,7 +244,8 @@ TEST(Expressions, Functions) {
     EXPECT_EQ(tree_of_expression("abs(a)"), "(abs a)");
     EXPECT_EQ(tree_of_expression("sqrt(a * a + b)"), "(sqrt (+ (* a a) b))");
     EXPECT_EQ(tree_of_expression("min(a, b, -c)"), "(min a b (negate c))");
-    EXPECT_EQ(tree_of_expression("max(min l2(z, t), max(a, 1))"), "(max (distance min l2 (input z) t) (max a 1))");
+    EXPECT_EQ(tree_of_expression("max(min l2(z, t), max(a, 1))"),
+              "(max (distance min l2 (input z) t) (max a 1))");
 }
 
 TEST(Expressions, EveryDistance) {
@@ -228,7 +255,8 @@ TEST(Expressions, EveryDistance) {
         for (const std::string aggregation : {"min", "max", "mean"})
             EXPECT_EQ(tree_of_expression(aggregation + " " + plain),
                       "(distance " + aggregation + " " + metric + " (input z) t)");
-        EXPECT_EQ(tree_of_expression("kth(3) " + plain), "(distance kth 3 " + metric + " (input z) t)");
+        EXPECT_EQ(tree_of_expression("kth(3) " + plain),
+                  "(distance kth 3 " + metric + " (input z) t)");
     }
 }
 
@@ -249,15 +277,17 @@ TEST(Expressions, EveryKindOfWeights) {
 
 TEST(ContextualWords, AreNamesWhereTheyCannotBeKeywords) {
     for (const std::string word :
-         {"in",   "hold",   "scale",   "f32",  "f16",       "i8",          "bool",  "Hz", "us",   "ms",
-          "s",    "min",    "max",     "mean", "kth",       "l2",          "l2sq",  "l1", "linf", "abs",
-          "sqrt", "cosine", "angular", "f1",   "conformal", "mahalanobis", "alpha", "x"}) {
+         {"in",     "hold",    "scale", "f32",       "f16",         "i8",    "bool",
+          "Hz",     "us",      "ms",    "s",         "min",         "max",   "mean",
+          "kth",    "l2",      "l2sq",  "l1",        "linf",        "abs",   "sqrt",
+          "cosine", "angular", "f1",    "conformal", "mahalanobis", "alpha", "x"}) {
         EXPECT_EQ(tree_of_declaration("input " + word + " : f32 in [0, 1] hold 2;"),
                   "(input " + word + " :f32 (range 0 1) (hold 2))");
         EXPECT_EQ(tree_of_formula(word), word);
         EXPECT_EQ(tree_of_formula("F[0, 2] " + word), "(F [0,2] " + word + ")");
         EXPECT_EQ(tree_of_formula(word + " > 1"), "(> " + word + " 1)");
-        EXPECT_EQ(tree_of_formula("(" + word + " - " + word + ") > 1"), "(> (- " + word + " " + word + ") 1)");
+        EXPECT_EQ(tree_of_formula("(" + word + " - " + word + ") > 1"),
+                  "(> (- " + word + " " + word + ") 1)");
         EXPECT_EQ(tree_of_expression("min l2(" + word + ", " + word + ")"),
                   "(distance min l2 (input " + word + ") " + word + ")");
         EXPECT_EQ(tree_of_expression("mahalanobis(" + word + ")([" + word + "], t)"),

@@ -1,4 +1,5 @@
-// What is wrong: one message a broken declaration, in the user's words, and the rest of the file read all the same.
+// What is wrong: one message a broken declaration, in the user's words, and the rest of the file
+// read all the same.
 #include <gtest/gtest.h>
 
 #include "parsing.hpp"
@@ -25,9 +26,10 @@ TEST(Recovery, EveryBrokenDeclarationHasOneError) {
         "input x : f32;\n"
         "predicate p = x > > 1;\n"
         "monitor m = F x > 0;\n");
-    EXPECT_EQ(parsed.brief(),
-              "E0104 2:14 expected a formula after '&&', found ';'\n"
-              "E0104 4:19 expected a threshold (a number or calibrated(...)) after '>', found '>'\n");
+    EXPECT_EQ(
+        parsed.brief(),
+        "E0104 2:14 expected a formula after '&&', found ';'\n"
+        "E0104 4:19 expected a threshold (a number or calibrated(...)) after '>', found '>'\n");
     EXPECT_EQ(parsed.tree(), "spec a\n(input x :f32)\n(monitor m (F (> x 0)))\n");
     ASSERT_EQ(parsed.spec.unreadable.size(), 2U);
     EXPECT_EQ(parsed.spec.unreadable[0].text, "b");
@@ -36,7 +38,8 @@ TEST(Recovery, EveryBrokenDeclarationHasOneError) {
 }
 
 TEST(Recovery, AMissingSemicolonEndsAtTheNextDeclaration) {
-    const Parsed parsed("spec a\nlet f = b\nlet g = c;\nsliding monitor m = G[0, 2] f\nrate 20 Hz;");
+    const Parsed parsed(
+        "spec a\nlet f = b\nlet g = c;\nsliding monitor m = G[0, 2] f\nrate 20 Hz;");
     EXPECT_EQ(parsed.brief(),
               "E0104 1:7 expected ';' after 'a', found 'let'\n"
               "E0104 2:10 expected an operator or ';' after 'b', found 'let'\n"
@@ -45,15 +48,18 @@ TEST(Recovery, AMissingSemicolonEndsAtTheNextDeclaration) {
 }
 
 TEST(Recovery, TheEndOfTheFile) {
-    EXPECT_EQ(of_line("let f = a"), "E0104 2:10 expected an operator or ';' after 'a', found the end of the file\n");
+    EXPECT_EQ(of_line("let f = a"),
+              "E0104 2:10 expected an operator or ';' after 'a', found the end of the file\n");
     EXPECT_EQ(of_line("let"), "E0104 2:4 expected a name after 'let', found the end of the file\n");
-    EXPECT_EQ(of_line("let f = (a;"), "E0104 2:11 expected an operator or ')' after 'a', found ';'\n");
+    EXPECT_EQ(of_line("let f = (a;"),
+              "E0104 2:11 expected an operator or ')' after 'a', found ';'\n");
 }
 
 TEST(Recovery, NamesOfWhatCouldNotBeRead) {
     const Parsed parsed(
         "spec a;\n"
-        "input x, y, : f32;\ninput u v : f32;\npredicat p = x > 1;\nsliding monitor m = ;\ntarget t = ;\n"
+        "input x, y, : f32;\ninput u v : f32;\npredicat p = x > 1;\nsliding monitor m = ;\ntarget "
+        "t = ;\n"
         "truth q = ;\nrate 20;\nlet = 3;\n");
     std::string names;
     for (const ast::Name& name : parsed.spec.unreadable) names += name.text + " ";
@@ -61,7 +67,8 @@ TEST(Recovery, NamesOfWhatCouldNotBeRead) {
 }
 
 TEST(Recovery, ReservedWordsUsedAsNamesAreToldOnce) {
-    const Parsed parsed("spec a;\ninput F, x : f32;\nlet f = F > 1;\nlet g = x && ;\nlet h = x + F > 2;\n");
+    const Parsed parsed(
+        "spec a;\ninput F, x : f32;\nlet f = F > 1;\nlet g = x && ;\nlet h = x + F > 2;\n");
     EXPECT_EQ(parsed.brief(),
               "E0105 2:7 'F' is reserved and cannot be a name\n"
               "E0104 4:14 expected a formula after '&&', found ';'\n");
@@ -73,7 +80,8 @@ TEST(Head, TheSpecComesFirstAndOnce) {
     EXPECT_EQ(brief(""), "E0107 1:1 the file is empty\n");
     EXPECT_EQ(brief("// nothing\n"), "E0107 2:1 the file is empty\n");
     EXPECT_EQ(brief("let f = a;"), "E0107 1:1 expected 'spec NAME;', found 'let'\n");
-    EXPECT_EQ(brief("let f = a;\nspec b;"), "E0107 2:1 'spec' must be the first declaration of the file\n");
+    EXPECT_EQ(brief("let f = a;\nspec b;"),
+              "E0107 2:1 'spec' must be the first declaration of the file\n");
     EXPECT_EQ(brief("spec a;\nspec b;"), "E0107 2:1 a second 'spec'\n");
     EXPECT_EQ(brief("spec ;"), "E0104 1:6 expected a name after 'spec', found ';'\n");
     EXPECT_EQ(brief("specc a;"), "E0107 1:1 expected 'spec NAME;', found 'specc'\n");
@@ -95,42 +103,56 @@ TEST(Head, TheFirstSpecNamesTheFile) {
 
 TEST(Words, ReservedOnesCannotBeNames) {
     const std::vector<std::pair<std::string, std::string>> cases{
-        {"X", "it is the operator 'next'"},   {"since", "the operator 'since'"},  {"and", "the operator '&&'"},
-        {"target", "a word of the language"}, {"inf", "a word of the language"},  {"true", "a word of the language"},
-        {"U", "the operator 'until'"},        {"load", "a word of the language"},
+        {"X", "it is the operator 'next'"}, {"since", "the operator 'since'"},
+        {"and", "the operator '&&'"},       {"target", "a word of the language"},
+        {"inf", "a word of the language"},  {"true", "a word of the language"},
+        {"U", "the operator 'until'"},      {"load", "a word of the language"},
     };
     for (const auto& [word, note] : cases) {
-        EXPECT_EQ(of_line("let " + word + " = p;"), "E0105 2:5 '" + word + "' is reserved and cannot be a name\n");
+        EXPECT_EQ(of_line("let " + word + " = p;"),
+                  "E0105 2:5 '" + word + "' is reserved and cannot be a name\n");
         EXPECT_EQ(of_line("input q, " + word + " : f32;"),
                   "E0105 2:10 '" + word + "' is reserved and cannot be a name\n");
     }
-    EXPECT_NE(Parsed("spec a; let X = p;").errors().find("'X' is the operator 'next'; choose another name"),
+    EXPECT_NE(Parsed("spec a; let X = p;")
+                  .errors()
+                  .find("'X' is the operator 'next'; choose another name"),
               std::string::npos);
 }
 
 TEST(Words, UnknownKeywordsWithTheNearest) {
-    const auto expect = [](const std::string& line, const std::string& said, const std::string& note) {
+    const auto expect = [](const std::string& line, const std::string& said,
+                           const std::string& note) {
         const Parsed parsed("spec a;\n" + line);
         EXPECT_EQ(parsed.brief(), said);
         EXPECT_NE(parsed.errors().find("= note: " + note), std::string::npos) << parsed.errors();
     };
-    expect("predicat p = x > 1;", "E0106 2:1 expected a declaration, found 'predicat'\n", "did you mean 'predicate'?");
-    expect("p = x > 1;", "E0106 2:1 expected a declaration, found 'p'\n", "a declaration begins with spec,");
-    expect("input z : f31;", "E0106 2:11 expected a type (f32, f32[D], f16[D], i8[D] or bool) after ':', found 'f31'\n",
-           "did you mean 'f32'?");
+    expect("predicat p = x > 1;", "E0106 2:1 expected a declaration, found 'predicat'\n",
+           "did you mean 'predicate'?");
+    expect("p = x > 1;", "E0106 2:1 expected a declaration, found 'p'\n",
+           "a declaration begins with spec,");
+    expect(
+        "input z : f31;",
+        "E0106 2:11 expected a type (f32, f32[D], f16[D], i8[D] or bool) after ':', found 'f31'\n",
+        "did you mean 'f32'?");
     expect("rate 20 hz;", "E0106 2:9 expected 'Hz' after '20', found 'hz'\n", "did you mean 'Hz'?");
-    expect("period 20 mss;", "E0106 2:11 expected a unit of time (us, ms, s or min) after '20', found 'mss'\n",
+    expect("period 20 mss;",
+           "E0106 2:11 expected a unit of time (us, ms, s or min) after '20', found 'mss'\n",
            "did you mean 'ms'?");
-    expect("let f = F[0, 2 mins] a;", "E0106 2:16 expected a unit of time (us, ms, s or min) after '2', found 'mins'\n",
+    expect("let f = F[0, 2 mins] a;",
+           "E0106 2:16 expected a unit of time (us, ms, s or min) after '2', found 'mins'\n",
            "did you mean 'min'?");
     expect("let f = cosin(z, t) < 1;", "E0106 2:9 'cosin' is neither a distance nor a function\n",
            "did you mean 'cosine'?");
     expect("let f = min l3(z, t) < 1;", "E0106 2:13 expected a distance after 'min', found 'l3'\n",
            "did you mean 'l2'?");
-    expect("let f = mean(z) < 1;", "E0106 2:13 expected a distance after 'mean', found '('\n", "distances: l2, l2sq");
-    expect("let f = a until b unti c;", "E0104 2:19 expected an operator or ';' after 'b', found 'unti'\n",
+    expect("let f = mean(z) < 1;", "E0106 2:13 expected a distance after 'mean', found '('\n",
+           "distances: l2, l2sq");
+    expect("let f = a until b unti c;",
+           "E0104 2:19 expected an operator or ';' after 'b', found 'unti'\n",
            "did you mean 'until'?");
-    expect("input z : f32[3] hld 2;", "E0104 2:18 expected ';' after ']', found 'hld'\n", "did you mean 'hold'?");
+    expect("input z : f32[3] hld 2;", "E0104 2:18 expected ';' after ']', found 'hld'\n",
+           "did you mean 'hold'?");
 }
 
 // ---- what can stand where
@@ -152,8 +174,10 @@ TEST(Places, MessagesNameWhatWasExpected) {
         {"let f = F[-1, 2] a;", "2:11 expected a number or inf after '[', found '-'"},
         {"let f = F[5] a;", "2:12 expected ',' after '5', found ']'"},
         {"let f = l2(3, t) < 1;",
-         "2:12 expected the name of an input, or a vector [x, y] of scalar inputs after '(', found '3'"},
-        {"let f = l2([x, 3], t) < 1;", "2:16 expected the name of a scalar input after ',', found '3'"},
+         "2:12 expected the name of an input, or a vector [x, y] of scalar inputs after '(', found "
+         "'3'"},
+        {"let f = l2([x, 3], t) < 1;",
+         "2:16 expected the name of a scalar input after ',', found '3'"},
         {"let f = l2(z, 3) < 1;", "2:15 expected the name of a target after ',', found '3'"},
         {"let f = l2 z < 1;", "2:12 expected an operator or ';' after 'l2', found 'z'"},
         {"let f = a = b;", "2:11 expected an operator or ';' after 'a', found '='"},
@@ -163,18 +187,28 @@ TEST(Places, MessagesNameWhatWasExpected) {
         {"input z : f32[n];", "2:15 expected a number after '[', found 'n'"},
         {"input z : f32 in 0, 1;", "2:18 expected '[' after 'in', found '0'"},
         {"input z : f32 in [0, x];", "2:22 expected a number or inf after ',', found 'x'"},
-        {"target t = 3;", "2:12 expected load(\"FILE\") or a matrix [[...], ...] after '=', found '3'"},
-        {"target t = load(t_npy);", "2:17 expected a file name between double quotes after '(', found 't_npy'"},
-        {"target t = [];", "2:13 expected a number, or a row [...] of numbers after '[', found ']'"},
+        {"target t = 3;",
+         "2:12 expected load(\"FILE\") or a matrix [[...], ...] after '=', found '3'"},
+        {"target t = load(t_npy);",
+         "2:17 expected a file name between double quotes after '(', found 't_npy'"},
+        {"target t = [];",
+         "2:13 expected a number, or a row [...] of numbers after '[', found ']'"},
         {"target t = [[1, ]];", "2:17 expected a number after ',', found ']'"},
-        {"predicate p = l2(z, t);", "2:23 expected a comparison (<=, <, >= or >) after ')', found ';'"},
-        {"predicate p = a && b;", "2:17 expected a comparison (<=, <, >= or >) after 'a', found '&&'"},
-        {"predicate p = x <= y;", "2:20 expected a threshold (a number or calibrated(...)) after '<=', found 'y'"},
+        {"predicate p = l2(z, t);",
+         "2:23 expected a comparison (<=, <, >= or >) after ')', found ';'"},
+        {"predicate p = a && b;",
+         "2:17 expected a comparison (<=, <, >= or >) after 'a', found '&&'"},
+        {"predicate p = x <= y;",
+         "2:20 expected a threshold (a number or calibrated(...)) after '<=', found 'y'"},
         {"predicate p = x <= calibrated(3);",
-         "2:31 expected a method of calibration (f1, conformal or class_conditional) after '(', found '3'"},
-        {"predicate p = x <= calibrated(f1 alpha = 1);", "2:34 expected ')' or ',' after 'f1', found 'alpha'"},
-        {"predicate p = x <= calibrated(f1, alpha = );", "2:43 expected a number or a word after '=', found ')'"},
-        {"monitor m = a calibrated(f1) b;", "2:30 expected an operator or ';' after ')', found 'b'"},
+         "2:31 expected a method of calibration (f1, conformal or class_conditional) after '(', "
+         "found '3'"},
+        {"predicate p = x <= calibrated(f1 alpha = 1);",
+         "2:34 expected ')' or ',' after 'f1', found 'alpha'"},
+        {"predicate p = x <= calibrated(f1, alpha = );",
+         "2:43 expected a number or a word after '=', found ')'"},
+        {"monitor m = a calibrated(f1) b;",
+         "2:30 expected an operator or ';' after ')', found 'b'"},
         {"sliding m = a;", "2:9 expected 'monitor' after 'sliding', found 'm'"},
         {"rate Hz;", "2:6 expected a number after 'rate', found 'Hz'"},
         {";;;", "2:1 expected a declaration, found ';'"},
@@ -185,13 +219,16 @@ TEST(Places, MessagesNameWhatWasExpected) {
 TEST(Places, NeverAntlrsOwnWords) {
     // Every prefix of a spec that uses everything ends in an error that speaks the user's language.
     const std::string spec =
-        "spec a; rate 20 Hz; input z : i8[4] scale 0.1 hold 2; input x : f32 in [-1, inf]; target t = [[1, 2]]; "
-        "predicate p = kth(2) mahalanobis([1])([x], t) + abs(x) <= calibrated(f1, k = 2); truth p = x > 1; "
+        "spec a; rate 20 Hz; input z : i8[4] scale 0.1 hold 2; input x : f32 in [-1, inf]; target "
+        "t = [[1, 2]]; "
+        "predicate p = kth(2) mahalanobis([1])([x], t) + abs(x) <= calibrated(f1, k = 2); truth p "
+        "= x > 1; "
         "sliding monitor m = G (p -> F[0s, 2min] !p U x < 1) <-> true calibrated(f1);";
     for (std::size_t length = 1; length < spec.size(); ++length) {
         const Parsed parsed(spec.substr(0, length));
         const std::string said = parsed.errors();
-        for (const char* word : {"IDENTIFIER", "NUMBER", "SEMICOLON", "EOF", "mismatched", "viable", "extraneous"})
+        for (const char* word :
+             {"IDENTIFIER", "NUMBER", "SEMICOLON", "EOF", "mismatched", "viable", "extraneous"})
             EXPECT_EQ(said.find(word), std::string::npos) << said;
         EXPECT_LE(parsed.sink.errors(), 1U) << said;
     }
@@ -213,9 +250,11 @@ TEST(Kinds, FormulasAndExpressionsAreToldApart) {
         {"let f = true + 1 > 0;", "E0108 2:9 expected an expression, found the formula 'true'"},
         {"predicate p = (F a) > 0;", "E0108 2:16 expected an expression, found a formula"},
         {"let f = x < y;", "E0109 2:13 expected a number on the right of '<', found an expression"},
-        {"let f = x < 1 + 2;", "E0109 2:13 expected a number on the right of '<', found an expression"},
+        {"let f = x < 1 + 2;",
+         "E0109 2:13 expected a number on the right of '<', found an expression"},
         {"let f = 0 < x < 1;", "E0109 2:15 comparisons do not chain"},
-        {"let f = x < calibrated(f1);", "E0109 2:13 a calibrated threshold stands only in a predicate"},
+        {"let f = x < calibrated(f1);",
+         "E0109 2:13 a calibrated threshold stands only in a predicate"},
     };
     for (const auto& [line, said] : cases) EXPECT_EQ(of_line(line), said + "\n") << line;
 }
@@ -241,12 +280,14 @@ TEST(Characters, UnexpectedOnesWithHints) {
 
 TEST(Characters, MalformedNumbers) {
     for (const std::string number : {"1.", ".5", "1e", "1e+", "0x1F", "1.5f"})
-        EXPECT_EQ(of_line("let f = x > " + number + ";"), "E0112 2:13 '" + number + "' is not a number\n");
+        EXPECT_EQ(of_line("let f = x > " + number + ";"),
+                  "E0112 2:13 '" + number + "' is not a number\n");
 }
 
 TEST(Characters, UnterminatedStringsAndComments) {
     const Parsed parsed(
-        "spec a;\ntarget t = load(\"x.npy);\ntarget u = load(\"u.npy\");\nlet f = a; /* open\nlet g = b;");
+        "spec a;\ntarget t = load(\"x.npy);\ntarget u = load(\"u.npy\");\nlet f = a; /* open\nlet "
+        "g = b;");
     EXPECT_EQ(parsed.brief(),
               "E0103 2:17 this string has no closing '\"' on its line\n"
               "E0103 4:12 this comment has no closing '*/'\n");
@@ -258,19 +299,22 @@ TEST(Characters, TextThatIsNotUtf8) {
     EXPECT_EQ(of_line("// caf\xE9\nlet f = a && ;"),
               "E0101 2:7 the byte 0xE9 is not UTF-8; save the file as UTF-8\n"
               "E0104 3:14 expected a formula after '&&', found ';'\n");
-    EXPECT_EQ(of_line("let f = \xE9;\nlet g = a;"), "E0101 2:9 the byte 0xE9 is not UTF-8; save the file as UTF-8\n");
+    EXPECT_EQ(of_line("let f = \xE9;\nlet g = a;"),
+              "E0101 2:9 the byte 0xE9 is not UTF-8; save the file as UTF-8\n");
     const Parsed in_string("spec a;\ntarget t = load(\"\x97.npy\");\nlet f = a;");
     EXPECT_EQ(in_string.brief(), "E0101 2:18 the byte 0x97 is not UTF-8; save the file as UTF-8\n");
     EXPECT_EQ(in_string.tree(), "spec a\n(let f a)\n");
     EXPECT_EQ(in_string.spec.unreadable.at(0).text, "t");
-    for (const std::string bytes : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80", "\xF5\x80\x80\x80",
-                                    "\x80", "\xE2\x82", "\xF4\x90\x80\x80"})
+    for (const std::string bytes : {"\xC0\x80", "\xE0\x80\x80", "\xED\xA0\x80", "\xF0\x80\x80\x80",
+                                    "\xF5\x80\x80\x80", "\x80", "\xE2\x82", "\xF4\x90\x80\x80"})
         EXPECT_EQ(of_line("//" + bytes).substr(0, 9), "E0101 2:3");
-    EXPECT_EQ(brief(std::string("\xFF\xFE", 2) + "s"), "E0101 0:0 this file is UTF-16; save it as UTF-8\n");
+    EXPECT_EQ(brief(std::string("\xFF\xFE", 2) + "s"),
+              "E0101 0:0 this file is UTF-16; save it as UTF-8\n");
 }
 
 TEST(Characters, NulBytes) {
-    EXPECT_EQ(brief(std::string("spec a;\n// \0\nlet", 15)), "E0102 2:4 a NUL byte; is this a text file?\n");
+    EXPECT_EQ(brief(std::string("spec a;\n// \0\nlet", 15)),
+              "E0102 2:4 a NUL byte; is this a text file?\n");
 }
 
 }  // namespace

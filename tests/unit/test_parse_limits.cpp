@@ -1,4 +1,5 @@
-// Large and deep input: refused with one error where it exceeds a limit, read in linear time where it does not.
+// Large and deep input: refused with one error where it exceeds a limit, read in linear time where
+// it does not.
 #include <gtest/gtest.h>
 
 #include "parsing.hpp"

@@ -38,7 +38,8 @@ TEST(Print, CanonicalForm) {
         {"let f=-(-x)+-(a+b)+-abs((x))>1;", "let f = --x + -(a + b) + -abs(x) > 1;"},
         {"let f=min(max(a,(b)),sqrt(c+d))<2;", "let f = min(max(a, b), sqrt(c + d)) < 2;"},
         {"sliding monitor m=G[0,20]a;", "sliding monitor m = G[0, 20] a;"},
-        {"monitor m=F a calibrated(conformal,alpha=0.1);", "monitor m = F a calibrated(conformal, alpha = 0.1);"},
+        {"monitor m=F a calibrated(conformal,alpha=0.1);",
+         "monitor m = F a calibrated(conformal, alpha = 0.1);"},
     };
     for (const auto& [text, printed] : cases) EXPECT_EQ(canonical(text), printed + "\n");
 }
@@ -119,7 +120,8 @@ private:
     }
 
     std::string name() {
-        return pick({"a", "b", "goal_a", "s", "min", "max", "l2", "kth", "mean", "abs", "in", "f32", "Hz"});
+        return pick(
+            {"a", "b", "goal_a", "s", "min", "max", "l2", "kth", "mean", "abs", "in", "f32", "Hz"});
     }
 
     std::string number() { return pick({"0", "1", "2.5", "1e-3", "12.0E+4", "007"}); }
@@ -129,7 +131,8 @@ private:
         if (below(2) != 0) {
             ast::Aggregation aggregation;
             aggregation.kind = static_cast<ast::Aggregation::Kind>(below(4));
-            if (aggregation.kind == ast::Aggregation::Kind::kth) aggregation.n = ast::Number{"2", {}};
+            if (aggregation.kind == ast::Aggregation::Kind::kth)
+                aggregation.n = ast::Number{"2", {}};
             d->aggregation = aggregation;
         }
         d->metric.text = pick({"l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis"});
@@ -144,7 +147,8 @@ private:
     ast::Weights weights() {
         switch (below(4)) {
             case 0: return ast::Load{"w.npy", below(2) != 0 ? "key" : "", {}, {}, {}};
-            case 1: return ast::MatrixLiteral{{{{"1", {}}, {"-2", {}}}, {{"3", {}}, {"4", {}}}}, {}};
+            case 1:
+                return ast::MatrixLiteral{{{{"1", {}}, {"-2", {}}}, {{"3", {}}, {"4", {}}}}, {}};
             case 2: return ast::VectorLiteral{{{"1", {}}, {"-2", {}}}, {}};
             default: return ast::Name{name(), {}};
         }
@@ -154,7 +158,8 @@ private:
         if (below(2) == 0) return;
         const auto bound = [this] {
             const std::string unit = pick({"", "us", "ms", "s", "min", "inf"});
-            return unit == "inf" ? ast::Bound{{"inf", {}}, "", {}} : ast::Bound{{number(), {}}, unit, {}};
+            return unit == "inf" ? ast::Bound{{"inf", {}}, "", {}}
+                                 : ast::Bound{{number(), {}}, unit, {}};
         };
         f.interval = ast::Interval{bound(), bound(), {}};
     }
@@ -178,7 +183,8 @@ TEST(Print, RandomExpressionsReadBackAsTheyWere) {
     }
 }
 
-/// `text` without the bracket at `open` and its partner; empty where the bracket is not one of grouping.
+/// `text` without the bracket at `open` and its partner; empty where the bracket is not one of
+/// grouping.
 std::string without_brackets(const std::string& text, std::size_t open) {
     const bool call = open > 0 && (std::isalnum(static_cast<unsigned char>(text[open - 1])) != 0 ||
                                    text[open - 1] == ')' || text[open - 1] == '_');
@@ -186,7 +192,8 @@ std::string without_brackets(const std::string& text, std::size_t open) {
     int depth = 0;
     for (std::size_t i = open; i < text.size(); ++i) {
         depth += text[i] == '(' ? 1 : text[i] == ')' ? -1 : 0;
-        if (depth == 0) return text.substr(0, open) + text.substr(open + 1, i - open - 1) + text.substr(i + 1);
+        if (depth == 0)
+            return text.substr(0, open) + text.substr(open + 1, i - open - 1) + text.substr(i + 1);
     }
     return {};
 }
@@ -195,9 +202,11 @@ TEST(Print, NoBracketCouldBeLeftOut) {
     // But those of a comparison under a prefix operator, which are there for the reader.
     const auto compared = [](const std::string& text, std::size_t open) {
         const std::string inner = text.substr(open, text.find(')', open) - open);
-        const bool prefixed = open > 0 && (text[open - 1] == '!' || text[open - 1] == ' ' || text[open - 1] == ']');
-        return prefixed && (inner.find('<') != std::string::npos || inner.find('>') != std::string::npos ||
-                            inner.find_first_of("+-*/(", 1) != std::string::npos);
+        const bool prefixed =
+            open > 0 && (text[open - 1] == '!' || text[open - 1] == ' ' || text[open - 1] == ']');
+        return prefixed &&
+               (inner.find('<') != std::string::npos || inner.find('>') != std::string::npos ||
+                inner.find_first_of("+-*/(", 1) != std::string::npos);
     };
     int tried = 0;
     for (unsigned seed = 0; seed < 3000; ++seed) {
@@ -215,10 +224,14 @@ TEST(Print, NoBracketCouldBeLeftOut) {
 
 TEST(Print, WholeSpecsReadBackAsTheyWere) {
     const Parsed parsed(
-        "spec a; rate 20 Hz; period 3 ms; input z : f16[3] hold 2; input x, y : f32 in [0, 1]; input b : bool; "
-        "target t = load(\"t.npy\"); target u = [[1, 2]]; target v = [1]; predicate p = min l1(z, t) <= 1; "
-        "predicate q = x > calibrated(conformal, alpha = 0.10); truth q = H (x > 1); let f = p && q; "
-        "monitor m = F f; monitor n = G f calibrated(conformal, alpha = 0.1); sliding monitor k = F[0, 3] f;");
+        "spec a; rate 20 Hz; period 3 ms; input z : f16[3] hold 2; input x, y : f32 in [0, 1]; "
+        "input b : bool; "
+        "target t = load(\"t.npy\"); target u = [[1, 2]]; target v = [1]; predicate p = min l1(z, "
+        "t) <= 1; "
+        "predicate q = x > calibrated(conformal, alpha = 0.10); truth q = H (x > 1); let f = p && "
+        "q; "
+        "monitor m = F f; monitor n = G f calibrated(conformal, alpha = 0.1); sliding monitor k = "
+        "F[0, 3] f;");
     ASSERT_EQ(parsed.errors(), "");
     const Parsed again(ast::print(parsed.spec));
     EXPECT_EQ(again.errors(), "");

@@ -11,14 +11,14 @@ namespace {
 using namespace etlc;
 using namespace etlc::tests;
 
-// Example 2 of the paper: epsilon = 0.409, distances 0.327, 0.374, 0.403, 0.427. (It prints -0.019 where its own
-// numbers give -0.018.)
+// Example 2 of the paper: epsilon = 0.409, distances 0.327, 0.374, 0.403, 0.427. (It prints -0.019
+// where its own numbers give -0.018.)
 TEST(Reference, PaperExample) {
     Spec spec;
     const Index z = spec.input(InputType::f32, 1);
     const Index goal = spec.target(1, {0});
-    const Index near =
-        spec.predicate(spec.distance({z}, goal, Metric::l2), Comparison::less_equal, 0.409F, {-INFINITY, 0.409F});
+    const Index near = spec.predicate(spec.distance({z}, goal, Metric::l2), Comparison::less_equal,
+                                      0.409F, {-INFINITY, 0.409F});
     spec.monitor(spec.f(Kind::always, {near}));
     spec.monitor(near, true);
     const auto run = evaluate(spec.model, scalars({0.327, 0.374, 0.403, 0.427}));
@@ -36,12 +36,28 @@ TEST(Reference, PaperExample) {
 
 TEST(Reference, BooleanConnectives) {
     EXPECT_EQ(over({3}, [](Spec& s, Index p) { return s.f(Kind::negation, {p}); }), List{-3});
-    EXPECT_EQ(over({3}, {-2}, [](Spec& s, Index p, Index q) { return s.f(Kind::conjunction, {p, q}); }), List{-2});
-    EXPECT_EQ(over({3}, {-2}, [](Spec& s, Index p, Index q) { return s.f(Kind::disjunction, {p, q}); }), List{3});
+    EXPECT_EQ(over({3}, {-2},
+                   [](Spec& s, Index p, Index q) {
+                       return s.f(Kind::conjunction, {p, q});
+                   }),
+              List{-2});
+    EXPECT_EQ(over({3}, {-2},
+                   [](Spec& s, Index p, Index q) {
+                       return s.f(Kind::disjunction, {p, q});
+                   }),
+              List{3});
     // !p || q = max(-3, -2)
-    EXPECT_EQ(over({3}, {-2}, [](Spec& s, Index p, Index q) { return s.f(Kind::implication, {p, q}); }), List{-2});
+    EXPECT_EQ(over({3}, {-2},
+                   [](Spec& s, Index p, Index q) {
+                       return s.f(Kind::implication, {p, q});
+                   }),
+              List{-2});
     // (!p || q) && (!q || p) = min(max(-3, -2), max(2, 3))
-    EXPECT_EQ(over({3}, {-2}, [](Spec& s, Index p, Index q) { return s.f(Kind::equivalence, {p, q}); }), List{-2});
+    EXPECT_EQ(over({3}, {-2},
+                   [](Spec& s, Index p, Index q) {
+                       return s.f(Kind::equivalence, {p, q});
+                   }),
+              List{-2});
     EXPECT_EQ(over({3}, {-2},
                    [](Spec& s, Index p, Index q) {
                        return s.f(Kind::negation, {s.f(Kind::equivalence, {p, q})});
@@ -53,12 +69,17 @@ TEST(Reference, BooleanConnectives) {
 
 TEST(Reference, EventuallyAndAlways) {
     const List p{1, -2, 3, 0};
-    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::eventually, {f}); }), (List{1, 1, 3, 3}));
-    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::always, {f}); }), (List{1, -2, -2, -2}));
-    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::eventually, {f}, 1, 2); }), (List{-kInf, -2, 3, 3}));
-    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::always, {f}, 2, 3); }), (List{kInf, kInf, 3, 0}));
+    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::eventually, {f}); }),
+              (List{1, 1, 3, 3}));
+    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::always, {f}); }),
+              (List{1, -2, -2, -2}));
+    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::eventually, {f}, 1, 2); }),
+              (List{-kInf, -2, 3, 3}));
+    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::always, {f}, 2, 3); }),
+              (List{kInf, kInf, 3, 0}));
     // X is false at the end of the prefix and !X true there
-    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::next, {f}); }), (List{-kInf, -2, -2, -2}));
+    EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::next, {f}); }),
+              (List{-kInf, -2, -2, -2}));
     EXPECT_EQ(over(p, [](Spec& s, Index f) { return s.f(Kind::negation, {s.f(Kind::next, {f})}); }),
               (List{kInf, 2, 2, 2}));
     // F G p and G F p equal p at the last step
@@ -72,7 +93,8 @@ TEST(Reference, EventuallyAndAlways) {
 TEST(Reference, UntilReleaseWeakUntil) {
     const List p{4, 2, -1, 5};
     const List q{-3, 1, 3, 2};
-    const auto binary = [](Kind kind, std::uint32_t low = 0, std::uint32_t high = check::kUnbounded) {
+    const auto binary = [](Kind kind, std::uint32_t low = 0,
+                           std::uint32_t high = check::kUnbounded) {
         return [=](Spec& s, Index f, Index g) { return s.f(kind, {f, g}, low, high); };
     };
     // j=0: -3; j=1: min(1, 4); j=2: min(3, 4, 2); j=3: min(2, 4, 2, -1)
@@ -86,7 +108,8 @@ TEST(Reference, UntilReleaseWeakUntil) {
     // R is -rho(!f U !g)
     EXPECT_EQ(over(p, q,
                    [](Spec& s, Index f, Index g) {
-                       const Index until = s.f(Kind::until, {s.f(Kind::negation, {f}), s.f(Kind::negation, {g})}, 1, 3);
+                       const Index until = s.f(
+                           Kind::until, {s.f(Kind::negation, {f}), s.f(Kind::negation, {g})}, 1, 3);
                        return s.f(Kind::negation, {until});
                    }),
               over(p, q, binary(Kind::release, 1, 3)));
@@ -97,12 +120,13 @@ TEST(Reference, UntilReleaseWeakUntil) {
               (List{-4, -2, -2, -2}));
 }
 
-/// Sliding monitors without a future report step by step, which shows past operators at every position.
+/// Sliding monitors without a future report step by step, which shows past operators at every
+/// position.
 TEST(Reference, PastOperators) {
     const List p{1, -2, 3, 0};
     const List q{2, -1, -4, 1};
-    const auto at_each = [&](Kind kind, bool binary, std::uint32_t low = 0, std::uint32_t high = check::kUnbounded,
-                             bool negated = false) {
+    const auto at_each = [&](Kind kind, bool binary, std::uint32_t low = 0,
+                             std::uint32_t high = check::kUnbounded, bool negated = false) {
         Spec spec;
         const Index a = spec.sample();
         const Index b = spec.sample();
@@ -116,7 +140,8 @@ TEST(Reference, PastOperators) {
     EXPECT_EQ(at_each(Kind::once, false, 1, 2), (List{-kInf, 1, 1, 3}));
     EXPECT_EQ(at_each(Kind::historically, false, 2, 9), (List{kInf, kInf, 1, -2}));
     EXPECT_EQ(at_each(Kind::previous, false), (List{-kInf, 1, -2, 3}));
-    // k=1: max(min(2, -2), -1); k=2: max(min(2, -2, 3), min(-1, 3), -4); k=3: max(-2, min(-1, 3, 0), min(-4, 0), 1)
+    // k=1: max(min(2, -2), -1); k=2: max(min(2, -2, 3), min(-1, 3), -4); k=3: max(-2, min(-1, 3,
+    // 0), min(-4, 0), 1)
     EXPECT_EQ(at_each(Kind::since, true), (List{2, -1, -1, 1}));
     EXPECT_EQ(at_each(Kind::since, true, 1, 1), (List{-kInf, -2, -1, -4}));
     EXPECT_EQ(at_each(Kind::since, true, 1, 1, true), (List{kInf, 2, 1, 4}));
@@ -164,7 +189,8 @@ TEST(Reference, BoundsOverPastOperators) {
     eventually(spec.f(Kind::historically, {p}));  // and so does H
     always(spec.f(Kind::once, {p}, 0, 3));        // a bounded one forgets
     always(spec.f(Kind::previous, {p}));
-    spec.monitor(spec.f(Kind::eventually, {spec.f(Kind::once, {spec.f(Kind::constant_false, {})})}, 1));
+    spec.monitor(
+        spec.f(Kind::eventually, {spec.f(Kind::once, {spec.f(Kind::constant_false, {})})}, 1));
     const auto run = evaluate(spec.model, scalars({2, -3}));
     const auto bounds = [&](std::size_t step, std::size_t monitor) {
         const auto& v = run.verdicts[step][monitor];
@@ -189,7 +215,8 @@ TEST(Reference, MissingSamples) {
     trace[1][0] = kMissing;
     const auto run = evaluate(spec.model, trace);
     EXPECT_EQ(run.verdicts[0][0].status, Status::satisfied);
-    for (std::size_t step = 1; step < 4; ++step) {  // missing, out of range, not a number: all unknown
+    for (std::size_t step = 1; step < 4;
+         ++step) {  // missing, out of range, not a number: all unknown
         const auto& v = run.verdicts[step][0];
         EXPECT_EQ(v.status, Status::unknown);
         EXPECT_EQ(v.robustness, -8);
@@ -211,7 +238,8 @@ TEST(Reference, HoldStandsInForAtMostNSteps) {
     const Index p = spec.sample();
     spec.model.inputs[0].hold = 2;
     spec.monitor(p, true);
-    // Nothing to hold before the first sample; 9 is out of range; the third missing one in a row is missing.
+    // Nothing to hold before the first sample; 9 is out of range; the third missing one in a row is
+    // missing.
     reference::Trace trace = scalars({0, 5, 9, 0, 0, 4, 0});
     trace[0][0] = trace[3][0] = trace[4][0] = trace[6][0] = kMissing;
     const auto run = evaluate(spec.model, trace);
@@ -247,24 +275,29 @@ TEST(Reference, BooleanInput) {
 TEST(Reference, SlidingVerdictsAndFinish) {
     Spec spec;
     const Index p = spec.sample();
-    spec.monitor(spec.f(Kind::always, {p}, 0, 2), true);                                      // horizon 2
-    spec.monitor(spec.f(Kind::next, {spec.f(Kind::next, {spec.f(Kind::next, {p})})}), true);  // horizon 3
+    spec.monitor(spec.f(Kind::always, {p}, 0, 2), true);  // horizon 2
+    spec.monitor(spec.f(Kind::next, {spec.f(Kind::next, {spec.f(Kind::next, {p})})}),
+                 true);  // horizon 3
     spec.monitor(spec.f(Kind::eventually, {p}));
-    spec.monitor(spec.f(Kind::once, {spec.f(Kind::eventually, {p}, 0, 1)}, 0, 5), true);  // past adds nothing: 1
+    spec.monitor(spec.f(Kind::once, {spec.f(Kind::eventually, {p}, 0, 1)}, 0, 5),
+                 true);  // past adds nothing: 1
     const auto run = evaluate(spec.model, scalars({3, 1, 2, -1}));
     const auto column = [&](std::size_t monitor) {
         List result;
         for (const auto& step : run.verdicts)
-            result.push_back(step[monitor].status == Status::undecided ? kNan : step[monitor].robustness);
+            result.push_back(step[monitor].status == Status::undecided ? kNan
+                                                                       : step[monitor].robustness);
         for (const auto& call : run.finish)
-            result.push_back(call[monitor].status == Status::undecided ? kNan : call[monitor].robustness);
+            result.push_back(call[monitor].status == Status::undecided ? kNan
+                                                                       : call[monitor].robustness);
         return result;
     };
     const auto expect = [&](std::size_t monitor, const List& wanted) {
         const List got = column(monitor);
         ASSERT_EQ(got.size(), wanted.size());
         for (std::size_t n = 0; n < got.size(); ++n)
-            EXPECT_TRUE(got[n] == wanted[n] || (std::isnan(got[n]) && std::isnan(wanted[n]))) << monitor << ' ' << n;
+            EXPECT_TRUE(got[n] == wanted[n] || (std::isnan(got[n]) && std::isnan(wanted[n])))
+                << monitor << ' ' << n;
     };
     ASSERT_EQ(run.finish.size(), 3U);
     expect(0, {kNan, kNan, 1, -1, -1, -1, kNan});

@@ -8,7 +8,8 @@ using etlc::source::File;
 using etlc::source::Position;
 using etlc::source::Span;
 
-void expect_position(const File& file, std::uint32_t offset, std::uint32_t line, std::uint32_t column) {
+void expect_position(const File& file, std::uint32_t offset, std::uint32_t line,
+                     std::uint32_t column) {
     const Position at = file.position(offset);
     EXPECT_EQ(at.line, line) << "at offset " << offset;
     EXPECT_EQ(at.column, column) << "at offset " << offset;
@@ -53,7 +54,8 @@ TEST(Source, ColumnsCountCodePoints) {
 
 TEST(Source, ColumnsAreExactInLongLines) {
     std::string text = "first\n";
-    for (int i = 0; i < 5000; ++i) text += "\xC3\xA9";  // two bytes each, so blocks split characters
+    for (int i = 0; i < 5000; ++i)
+        text += "\xC3\xA9";  // two bytes each, so blocks split characters
     const File file("a.etl", text);
     for (std::uint32_t i = 0; i < 5000; ++i) expect_position(file, 6 + 2 * i, 2, i + 1);
 }

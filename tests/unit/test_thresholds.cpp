@@ -1,4 +1,5 @@
-// The thresholds file: it reads back to the same bits, and every fault has its key, what is there and what should be.
+// The thresholds file: it reads back to the same bits, and every fault has its key, what is there
+// and what should be.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -94,8 +95,8 @@ TEST(Thresholds, ReadsWhatIsThere) {
     EXPECT_EQ(file->monitors.at("reach").predicate, "F at_a");
     EXPECT_EQ(file->monitors.at("reach").alpha, "5e-2");
     EXPECT_EQ(file->monitors.at("reach").against, "missed_success");
-    EXPECT_EQ(all_episodes(*file),
-              (std::vector<std::string>{"0000000000000001", "ffffffffffffffff", "00000000000000aa"}));
+    EXPECT_EQ(all_episodes(*file), (std::vector<std::string>{"0000000000000001", "ffffffffffffffff",
+                                                             "00000000000000aa"}));
 }
 
 TEST(Thresholds, WritingWhatWasReadChangesNothing) {
@@ -114,10 +115,13 @@ TEST(Thresholds, SmallestFile) {
 }
 
 TEST(Thresholds, NumbersReadBackToTheSameBits) {
-    const float floats[] = {
-        0.1F, -0.0F, 0x1p-149F, -0x1.fffffep-127F, 0x1p-126F, std::numeric_limits<float>::max(), 16777217.0F, 1.0F / 3};
+    const float floats[] = {0.1F,        -0.0F,
+                            0x1p-149F,   -0x1.fffffep-127F,
+                            0x1p-126F,   std::numeric_limits<float>::max(),
+                            16777217.0F, 1.0F / 3};
     const std::vector<double> doubles{
-        0.1, -0.0, 5e-324, std::numeric_limits<double>::max(), 1.0 / 3, 9007199254740993.0, -INFINITY};
+        0.1,      -0.0, 5e-324, std::numeric_limits<double>::max(), 1.0 / 3, 9007199254740993.0,
+        -INFINITY};
     for (const float epsilon : floats) {
         Entry entry;
         entry.method = "conformal";
@@ -133,14 +137,17 @@ TEST(Thresholds, NumbersReadBackToTheSameBits) {
         const auto read = parse(write(file), "x");
         ASSERT_TRUE(read) << read.failure().message;
         const Entry& again = read->predicates.at("p");
-        EXPECT_EQ(std::bit_cast<std::uint32_t>(again.epsilon), std::bit_cast<std::uint32_t>(epsilon));
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(again.epsilon),
+                  std::bit_cast<std::uint32_t>(epsilon));
         EXPECT_EQ(again.alpha, entry.alpha);
         EXPECT_EQ(again.n, entry.n);
         EXPECT_EQ(again.predicate, entry.predicate);
         EXPECT_EQ(again.truth, entry.truth);
         ASSERT_EQ(again.scores.size(), doubles.size());
         for (std::size_t i = 0; i < doubles.size(); ++i)
-            EXPECT_EQ(std::bit_cast<std::uint64_t>(again.scores[i]), std::bit_cast<std::uint64_t>(doubles[i])) << i;
+            EXPECT_EQ(std::bit_cast<std::uint64_t>(again.scores[i]),
+                      std::bit_cast<std::uint64_t>(doubles[i]))
+                << i;
     }
 }
 
@@ -180,8 +187,8 @@ std::string with(const std::string& from, const std::string& to) {
 
 std::vector<Broken> syntax() {
     std::string deep(100'000, '[');
-    const auto broken = [](const std::string& what, const std::string& json, const std::string& message,
-                           std::uint32_t line, std::uint32_t column) {
+    const auto broken = [](const std::string& what, const std::string& json,
+                           const std::string& message, std::uint32_t line, std::uint32_t column) {
         return Broken{what, json, Code::malformed_thresholds, message, line, column};
     };
     return {
@@ -190,8 +197,8 @@ std::vector<Broken> syntax() {
         broken("a word", "{\n  \"format\": one}", "is no JSON: unexpected 'o'", 2, 13),
         broken("after the end", "{} {}", "is no JSON: unexpected '{'", 1, 4),
         broken("NaN", with("0.30999997", "NaN"), "is no JSON: unexpected 'N'", 8, 18),
-        broken("number overflow", with("0.30999997", "1e999"), "is no JSON: unexpected a number that no double holds",
-               8, 22),
+        broken("number overflow", with("0.30999997", "1e999"),
+               "is no JSON: unexpected a number that no double holds", 8, 22),
         broken("comma", "{\"a\": 1,}", "is no JSON: unexpected '}'", 1, 9),
         broken("UTF-8", "{\"\xff\": 1}", "is no JSON: unexpected '\\xff'", 1, 3),
         broken("column counts characters", "{\"\xc3\xbc\": x}", "is no JSON: unexpected 'x'", 1, 7),
@@ -201,7 +208,8 @@ std::vector<Broken> syntax() {
 }
 
 std::vector<Broken> content() {
-    const auto broken = [](const std::string& from, const std::string& to, const std::string& message) {
+    const auto broken = [](const std::string& from, const std::string& to,
+                           const std::string& message) {
         return Broken{from + " -> " + to, with(from, to), Code::invalid_thresholds, message, 0, 0};
     };
     const std::string at_a = "'predicates.at_a.";
@@ -210,7 +218,8 @@ std::vector<Broken> content() {
         {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected 1"},
         {"format 2", with("\"format\": 1", "\"format\": 2"), Code::unknown_thresholds_format,
          "'format' is '2', expected 1, the one this version reads"},
-        {"format 2 with other keys", R"({"format": 2, "entries": []})", Code::unknown_thresholds_format,
+        {"format 2 with other keys", R"({"format": 2, "entries": []})",
+         Code::unknown_thresholds_format,
          "'format' is '2', expected 1, the one this version reads"},
         broken("\"format\": 1", "\"format\": \"1\"", "'format' is the text '1', expected 1"),
         broken("\"spec\": \"dubins\"", "\"spec\": null", "'spec' is null, expected a text"),
@@ -219,19 +228,25 @@ std::vector<Broken> content() {
         broken("  \"spec\": \"dubins\",\n", "", "key 'spec' is missing, expected a text"),
         broken("\"predicates\": {", "\"predicates\": true, \"episodes\": {",
                "key 'episodes' stands twice in one object"),
-        broken("\"held\": {", "\"held\": 1, \"other\": {", "'predicates.held' is '1', expected an object"),
+        broken("\"held\": {", "\"held\": 1, \"other\": {",
+               "'predicates.held' is '1', expected an object"),
         broken("\"method\": \"conformal\"", "\"method\": \"conform\"",
-               at_a + "method' is the text 'conform', expected 'f1', 'conformal', 'class_conditional' or 'adaptive'"),
-        broken("\"method\": \"conformal\",", "", "key " + at_a + "method' is missing, expected a text"),
-        broken("\"alpha\": 0.10,", "", "key " + at_a + "alpha' is missing, expected a number between 0 and 1"),
-        broken("0.10", "\"0.10\"", at_a + "alpha' is the text '0.10', expected a number between 0 and 1"),
+               at_a + "method' is the text 'conform', expected 'f1', 'conformal', "
+                      "'class_conditional' or 'adaptive'"),
+        broken("\"method\": \"conformal\",", "",
+               "key " + at_a + "method' is missing, expected a text"),
+        broken("\"alpha\": 0.10,", "",
+               "key " + at_a + "alpha' is missing, expected a number between 0 and 1"),
+        broken("0.10", "\"0.10\"",
+               at_a + "alpha' is the text '0.10', expected a number between 0 and 1"),
         broken("0.10", "0.0", at_a + "alpha' is '0.0', expected a number between 0 and 1"),
         broken("0.10", "1", at_a + "alpha' is '1', expected a number between 0 and 1"),
         broken("0.10", "-0.1", at_a + "alpha' is '-0.1', expected a number between 0 and 1"),
         broken("\"method\": \"conformal\"", "\"method\": \"f1\"",
                at_a + "alpha' is '0.10', expected no such key for f1"),
         broken("0.30999997", "null", at_a + "epsilon' is null, expected a finite float32"),
-        broken("0.30999997", "\"inf\"", at_a + "epsilon' is the text 'inf', expected a finite float32"),
+        broken("0.30999997", "\"inf\"",
+               at_a + "epsilon' is the text 'inf', expected a finite float32"),
         broken("0.30999997", "3.5e38", at_a + "epsilon' is '3.5e38', expected a finite float32"),
         broken("0.30999997", "-1e300", at_a + "epsilon' is '-1e300', expected a finite float32"),
         broken("0.30999997", "1e-60", at_a + "epsilon' is '1e-60', expected a finite float32"),
@@ -242,24 +257,33 @@ std::vector<Broken> content() {
         broken("\"k\": 2", "\"k\": 0", at_a + "k' is '0', expected a rank from 1"),
         broken("\"k\": 2", "\"k\": 4", at_a + "k' is '4', expected at most n, which is 3"),
         broken("\"k\": 0", "\"k\": 1", "'predicates.held.k' is '1', expected 0 for f1"),
-        broken("[0.1, 0.2, \"inf\"]", "0.1", at_a + "scores' is '0.1', expected an array of numbers"),
-        broken("[0.1, 0.2, \"inf\"]", "[0.1, true]", at_a + "scores[1]' is true, expected a number, 'inf' or '-inf'"),
-        broken("\"inf\"", "\"nan\"", at_a + "scores[2]' is the text 'nan', expected a number, 'inf' or '-inf'"),
+        broken("[0.1, 0.2, \"inf\"]", "0.1",
+               at_a + "scores' is '0.1', expected an array of numbers"),
+        broken("[0.1, 0.2, \"inf\"]", "[0.1, true]",
+               at_a + "scores[1]' is true, expected a number, 'inf' or '-inf'"),
+        broken("\"inf\"", "\"nan\"",
+               at_a + "scores[2]' is the text 'nan', expected a number, 'inf' or '-inf'"),
         broken("\"predicate\"", "\"formula\"", "unknown key 'predicates.at_a.formula'"),
         broken("\"formula\"", "\"predicate\"", "unknown key 'monitors.reach.predicate'"),
         broken("\"missed_success\"", "\"error\"",
-               "'monitors.reach.against' is the text 'error', expected 'missed_alarm' or 'missed_success'"),
+               "'monitors.reach.against' is the text 'error', expected 'missed_alarm' or "
+               "'missed_success'"),
         broken("\"00000000000000aa\"", "1",
                "'monitors.reach.episodes[0]' is '1', expected a content hash of 16 hex digits"),
-        broken("\"truth\": \"array\"", "\"truth\": []", "'predicates.held.truth' is an array, expected a text"),
+        broken("\"truth\": \"array\"", "\"truth\": []",
+               "'predicates.held.truth' is an array, expected a text"),
         broken("\"targets\": {}", "\"targets\": \"b08b72ea4df23cb1\"",
                "'predicates.held.targets' is the text 'b08b72ea4df23cb1', expected an object"),
         broken("b08b72ea4df23cb1", "B08B72EA4DF23CB1",
-               at_a + "targets.goal_a' is the text 'B08B72EA4DF23CB1', expected a content hash of 16 hex digits"),
-        broken("\"0000000000000001\"", "1", "'episodes[0]' is '1', expected a content hash of 16 hex digits"),
+               at_a + "targets.goal_a' is the text 'B08B72EA4DF23CB1', expected a content hash of "
+                      "16 hex digits"),
+        broken("\"0000000000000001\"", "1",
+               "'episodes[0]' is '1', expected a content hash of 16 hex digits"),
         broken("\"ffffffffffffffff\"", "\"fffffffffffffffff\"",
-               "'episodes[1]' is the text 'fffffffffffffffff', expected a content hash of 16 hex digits"),
-        broken("\"monitors\": {", "\"monitors\": [], \"episodes\": {", "key 'episodes' stands twice in one object"),
+               "'episodes[1]' is the text 'fffffffffffffffff', expected a content hash of 16 hex "
+               "digits"),
+        broken("\"monitors\": {", "\"monitors\": [], \"episodes\": {",
+               "key 'episodes' stands twice in one object"),
     };
 }
 
@@ -278,7 +302,8 @@ TEST(Thresholds, EveryFaultHasItsMessage) {
 
 TEST(Thresholds, CutAnywhere) {
     // The line feed at the end is not missed.
-    for (std::size_t n = 0; n + 1 < kWhole.size(); ++n) EXPECT_FALSE(parse(kWhole.substr(0, n), "x")) << n;
+    for (std::size_t n = 0; n + 1 < kWhole.size(); ++n)
+        EXPECT_FALSE(parse(kWhole.substr(0, n), "x")) << n;
 }
 
 TEST(Thresholds, MoreValuesThanAreRead) {

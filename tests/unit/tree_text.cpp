@@ -43,7 +43,8 @@ std::string word(const Load& load) {
 std::string word(const Calibrated& calibrated) {
     std::vector<std::string> items{calibrated.method.text};
     for (const Calibrated::Argument& a : calibrated.arguments)
-        items.push_back(list(a.key.text, {std::visit([](const auto& v) { return v.text; }, a.value)}));
+        items.push_back(
+            list(a.key.text, {std::visit([](const auto& v) { return v.text; }, a.value)}));
     return list("calibrated", items);
 }
 
@@ -70,7 +71,8 @@ std::string word(const Distance& distance) {
     }
     items.push_back(distance.metric.text);
     if (distance.weights)
-        items.push_back(std::visit([](const auto& w) { return list("weights", {word(w)}); }, *distance.weights));
+        items.push_back(std::visit([](const auto& w) { return list("weights", {word(w)}); },
+                                   *distance.weights));
     std::vector<std::string> point;
     for (const Name& n : distance.point) point.push_back(n.text);
     items.push_back(list(distance.point_is_vector ? "vector" : "input", point));
@@ -138,11 +140,13 @@ std::string word(const Input& d) {
 }
 
 std::string word(const Target& d) {
-    return list("target", {d.name.text, std::visit([](const auto& v) { return word(v); }, d.value)});
+    return list("target",
+                {d.name.text, std::visit([](const auto& v) { return word(v); }, d.value)});
 }
 
 std::string word(const Predicate& d) {
-    return list("predicate", {d.name.text, word(d.comparison), of(*d.expression), word(d.threshold)});
+    return list("predicate",
+                {d.name.text, word(d.comparison), of(*d.expression), word(d.threshold)});
 }
 
 std::string word(const Truth& d) {
@@ -171,7 +175,8 @@ std::string of(const Expr& e) {
 
 std::string of(const Formula& f) {
     if (f.kind == Formula::Kind::name) return f.name;
-    if (f.kind == Formula::Kind::comparison) return list(word(f.comparison), {of(*f.left), f.right.text});
+    if (f.kind == Formula::Kind::comparison)
+        return list(word(f.comparison), {of(*f.left), f.right.text});
     if (f.operands.empty()) return head(f.kind);
     std::vector<std::string> items;
     if (f.interval) {

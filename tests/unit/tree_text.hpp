@@ -1,6 +1,6 @@
 // Syntax trees as fully bracketed text, spans left out.
-// Takes: ast:: structs. Gives: S-expressions, so that equal texts mean equal trees. Keeps true: shares nothing with
-// ast::print, which it is used to test.
+// Takes: ast:: structs. Gives: S-expressions, so that equal texts mean equal trees. Keeps true:
+// shares nothing with ast::print, which it is used to test.
 #pragma once
 
 #include <string>

@@ -1,6 +1,6 @@
-// Some of the formulas as Copilot has them (copilot/Monitors.hs), where Copilot was there when this was built.
-// Takes: a formula's title. Gives: its monitor, which Copilot keeps in global variables. Keeps true: robustness alone,
-// of this step, in floats.
+// Some of the formulas as Copilot has them (copilot/Monitors.hs), where Copilot was there when this
+// was built. Takes: a formula's title. Gives: its monitor, which Copilot keeps in global variables.
+// Keeps true: robustness alone, of this step, in floats.
 #pragma once
 
 #include <cstddef>

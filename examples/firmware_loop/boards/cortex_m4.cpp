@@ -1,7 +1,7 @@
-// A Cortex-M4F without an operating system (QEMU's mps2-an386): vectors, start, and semihosting for text.
-// ARM "Semihosting for AArch32 and AArch64", 2.0; ARMv7-M Architecture Reference Manual, B1.5 and B3.3. On an interrupt
-// the processor saves the registers that a function may change, those of the floating-point unit included (B1.5.7): a
-// handler is a plain function.
+// A Cortex-M4F without an operating system (QEMU's mps2-an386): vectors, start, and semihosting for
+// text. ARM "Semihosting for AArch32 and AArch64", 2.0; ARMv7-M Architecture Reference Manual, B1.5
+// and B3.3. On an interrupt the processor saves the registers that a function may change, those of
+// the floating-point unit included (B1.5.7): a handler is a plain function.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -85,7 +85,8 @@ void board_write(const char* text) noexcept {
 }
 
 void board_exit(int status) noexcept {
-    const uint32_t block[2] = {0x20026, static_cast<uint32_t>(status)};  // ADP_Stopped_ApplicationExit
+    const uint32_t block[2] = {0x20026,
+                               static_cast<uint32_t>(status)};  // ADP_Stopped_ApplicationExit
     for (;;) semihost(0x20, block);
 }
 

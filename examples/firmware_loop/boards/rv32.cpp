@@ -1,6 +1,7 @@
 // An RV32IMAFC without an operating system (QEMU's virt machine): start, and semihosting for text.
-// RISC-V Semihosting Specification 0.4; RISC-V Privileged Architecture, 3.1.6 to 3.1.9 and 3.2.1. The compiler saves
-// what an interrupt handler changes, floating-point registers included: that is what its attribute is for.
+// RISC-V Semihosting Specification 0.4; RISC-V Privileged Architecture, 3.1.6 to 3.1.9 and 3.2.1.
+// The compiler saves what an interrupt handler changes, floating-point registers included: that is
+// what its attribute is for.
 #include <stdint.h>
 
 #include "board.hpp"
@@ -52,8 +53,9 @@ Intervals intervals;
 void interrupt_after(uint32_t ticks) noexcept {
     auto* time = reinterpret_cast<volatile uint64_t*>(0x0200bff8);
     auto* compare = reinterpret_cast<volatile uint32_t*>(0x02004000);
-    const uint64_t then = *time + ticks;  // two reads: the low half wraps after seven minutes, which no run lasts
-    compare[1] = 0xffffffff;              // none between the two assignments
+    const uint64_t then =
+        *time + ticks;  // two reads: the low half wraps after seven minutes, which no run lasts
+    compare[1] = 0xffffffff;  // none between the two assignments
     compare[0] = static_cast<uint32_t>(then);
     compare[1] = static_cast<uint32_t>(then >> 32);
 }
@@ -98,7 +100,10 @@ void board_start_interrupts(void (*handler)()) noexcept {
     on_tick = handler;
     __asm__ volatile("csrw mtvec, %0" : : "r"(tick));
     interrupt_after(intervals.next());
-    __asm__ volatile("csrs mie, %0\n csrs mstatus, %1" : : "r"(kTimerInterrupts), "r"(kInterrupts) : "memory");
+    __asm__ volatile("csrs mie, %0\n csrs mstatus, %1"
+                     :
+                     : "r"(kTimerInterrupts), "r"(kInterrupts)
+                     : "memory");
 }
 BoardInterruptsOff::BoardInterruptsOff() noexcept {
     __asm__ volatile("csrc mstatus, %0" : : "r"(kInterrupts) : "memory");

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: MIT
-// Floats whose bits decide: what is NaN, infinite or missing, whatever -ffast-math lets a compiler assume.
-// Takes: floats from memory or fresh from arithmetic. Gives: exact answers from bits, one rounding per operation, sqrt.
-// Keeps true: no decision rests on a floating-point comparison that -ffinite-math-only may fold away. Functions that
-// may see a NaN or an infinity are inlined always or take references: clang marks float parameters of others "never
-// NaN" there. Builtins are called by name so that -ffreestanding, which makes memcpy a plain function, still gets
-// single moves.
+// Floats whose bits decide: what is NaN, infinite or missing, whatever -ffast-math lets a compiler
+// assume. Takes: floats from memory or fresh from arithmetic. Gives: exact answers from bits, one
+// rounding per operation, sqrt. Keeps true: no decision rests on a floating-point comparison that
+// -ffinite-math-only may fold away. Functions that may see a NaN or an infinity are inlined always
+// or take references: clang marks float parameters of others "never NaN" there. Builtins are called
+// by name so that -ffreestanding, which makes memcpy a plain function, still gets single moves.
 #pragma once
 
 #include <float.h>
@@ -13,7 +13,8 @@
 
 #include "etlmon/build.hpp"
 
-#if !defined(__GNUC__)  // where there are no builtins; in C++, math.h takes longer to read than the rest of a monitor
+#if !defined(__GNUC__)  // where there are no builtins; in C++, math.h takes longer to read than the
+                        // rest of a monitor
 #include <math.h>
 #include <string.h>
 #endif
@@ -26,7 +27,8 @@
 #define ETLMON_COLD
 #endif
 
-// What each step calls: where speed counts, part of the caller; where size counts, there once for all callers.
+// What each step calls: where speed counts, part of the caller; where size counts, there once for
+// all callers.
 #if defined(__OPTIMIZE_SIZE__)
 #define ETLMON_STEP inline
 #else
@@ -59,7 +61,8 @@ constexpr uint32_t kSignBit = 0x80000000u;
 constexpr uint32_t kInfinityBits = 0x7f800000u;
 constexpr uint32_t kMissingBits = 0x7fc00000u;
 
-// Without optimisation GCC warns of reads in loops over whole vectors that a short row never enters.
+// Without optimisation GCC warns of reads in loops over whole vectors that a short row never
+// enters.
 #if defined(__GNUC__) && !defined(__clang__) && __GNUC__ >= 11
 #pragma GCC diagnostic push
 #pragma GCC diagnostic ignored "-Wstringop-overread"
@@ -75,8 +78,9 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
 #pragma GCC diagnostic pop
 #endif
 
-/// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler is kept from seeing
-/// where the bits come from: it must not conclude from the arithmetic what they cannot be.
+/// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler
+/// is kept from seeing where the bits come from: it must not conclude from the arithmetic what they
+/// cannot be.
 ETLMON_INLINE uint32_t observe(const float& x) noexcept {
 #if defined(ETLMON_HAS_BIT_CAST)  // unlike copy_bytes it tells the compiler that x is aligned
   uint32_t bits = __builtin_bit_cast(uint32_t, x);
@@ -90,8 +94,8 @@ ETLMON_INLINE uint32_t observe(const float& x) noexcept {
   return bits;
 }
 
-/// The same of a sum that a loop made. On RISC-V g++ would else keep it in an integer register from the start, and move
-/// it to and fro with every addition.
+/// The same of a sum that a loop made. On RISC-V g++ would else keep it in an integer register from
+/// the start, and move it to and fro with every addition.
 ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
 #if defined(__GNUC__) && defined(__riscv_flen)
   uint32_t bits = 0;
@@ -108,8 +112,9 @@ ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
   return x;
 }
 
-/// An integer that orders floats by value, given their bits; -0 and +0 are one, NaN lies beyond the infinities.
-/// Where speed counts without a branch, since the signs of robustness are what no processor predicts.
+/// An integer that orders floats by value, given their bits; -0 and +0 are one, NaN lies beyond the
+/// infinities. Where speed counts without a branch, since the signs of robustness are what no
+/// processor predicts.
 ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 #if defined(__OPTIMIZE_SIZE__)
   return static_cast<int32_t>(bits >= kSignBit ? kSignBit - bits : bits);
@@ -119,7 +124,8 @@ ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 #endif
 }
 
-/// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed finite.
+/// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed
+/// finite.
 ETLMON_INLINE float rounded(float x) noexcept {
 #if defined(__GNUC__) && defined(__SSE__)
   __asm__("" : "+x"(x));
@@ -138,8 +144,8 @@ ETLMON_INLINE float rounded(float x) noexcept {
   return x;
 }
 
-/// Two floats as two that nothing is known of, not even whether they are the same: under -ffast-math x - x is 0 and
-/// x / x is 1, whatever x is.
+/// Two floats as two that nothing is known of, not even whether they are the same: under
+/// -ffast-math x - x is 0 and x / x is 1, whatever x is.
 ETLMON_INLINE void part(float& x, float& y) noexcept {
 #if defined(__GNUC__) && defined(__SSE__)
   __asm__("" : "+x"(x), "+x"(y));
@@ -164,8 +170,9 @@ ETLMON_INLINE void part(float& x, float& y) noexcept {
 #endif
 #endif
 
-/// sqrt of a float that is not negative, rounded once. By the instruction on x86, where a compiler would add a call of
-/// the library's for the sake of errno, and with -ffast-math an approximation; clang does under any name but this.
+/// sqrt of a float that is not negative, rounded once. By the instruction on x86, where a compiler
+/// would add a call of the library's for the sake of errno, and with -ffast-math an approximation;
+/// clang does under any name but this.
 ETLMON_INLINE float square_root(float x) noexcept {
 #if defined(__clang__) && defined(__SSE__) && defined(__FAST_MATH__)
 #if defined(__AVX__)

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Windows over truth values.
-// Takes: one truth value a step, or the two sides of a since. Gives: what Window gives for any value type.
-// Keeps true: the same results as the general window (tested against it), in two counters whatever N: of a yes and no
-// only the age of the last one that matters is remembered.
+// Takes: one truth value a step, or the two sides of a since. Gives: what Window gives for any
+// value type. Keeps true: the same results as the general window (tested against it), in two
+// counters whatever N: of a yes and no only the age of the last one that matters is remembered.
 #pragma once
 
 #include "etlmon/delay.hpp"
@@ -131,7 +131,8 @@ class Delay<Truth, N> {
     uint32_t& pairs = pairs_[cursor_ / 16];
     const uint32_t shift = cursor_ % 16 * 2;
     const uint32_t past = pairs >> shift;
-    pairs = (pairs & ~(3u << shift)) | (value.low ? 1u << shift : 0u) | (value.high ? 2u << shift : 0u);
+    pairs =
+        (pairs & ~(3u << shift)) | (value.low ? 1u << shift : 0u) | (value.high ? 2u << shift : 0u);
     cursor_ = cursor_ + 1 == N ? 0 : cursor_ + 1;
     return {(past & 1u) != 0, (past & 2u) != 0};
   }

@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
 // What a translation unit's flags make of inline code, as a name.
-// Takes: the compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the runtime and of every
-// generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. A program keeps one copy of an inline function of a name,
-// the first that it is linked from. Without this a unit could die of the instructions that another one was built for,
-// or answer with the bits of its -ffast-math. Keeps true: functions of one name may stand for each other, in bits and
-// in instructions; what the flags leave no macro for is in docs/runtime.md, "Flags, and who shares code".
+// Takes: the compiler's macros. Gives: ETLMON_BUILD, the inline namespace that holds all of the
+// runtime and of every generated class: v0_2_gcc12_x86v3, v0_2_clang14_x86v1_O0. A program keeps
+// one copy of an inline function of a name, the first that it is linked from. Without this a unit
+// could die of the instructions that another one was built for, or answer with the bits of its
+// -ffast-math. Keeps true: functions of one name may stand for each other, in bits and in
+// instructions; what the flags leave no macro for is in docs/runtime.md, "Flags, and who shares
+// code".
 #pragma once
 
 #include "etlmon/version.hpp"
@@ -13,14 +15,16 @@
 #error "etlmon needs C++17: compile with -std=c++17 or later"
 #endif
 
-// 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them in one digit.
+// 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them
+// in one digit.
 #define ETLMON_IS(macro) ETLMON_IS_VALUE(macro)
 #define ETLMON_IS_VALUE(value) ETLMON_IS_PAIR(ETLMON_IS_##value)
 #define ETLMON_IS_1 0, 1
 #define ETLMON_IS_1000000 0, 1
 #define ETLMON_IS_PAIR(pair) ETLMON_IS_SECOND(pair, 0, 0)
 #define ETLMON_IS_SECOND(first, second, ...) second
-#define ETLMON_DIGIT(a, b, c, d) ETLMON_DIGIT_OF(ETLMON_IS(a), ETLMON_IS(b), ETLMON_IS(c), ETLMON_IS(d))
+#define ETLMON_DIGIT(a, b, c, d) \
+  ETLMON_DIGIT_OF(ETLMON_IS(a), ETLMON_IS(b), ETLMON_IS(c), ETLMON_IS(d))
 #define ETLMON_DIGIT_OF(a, b, c, d) ETLMON_DIGIT_FROM(a, b, c, d)
 #define ETLMON_DIGIT_FROM(a, b, c, d) ETLMON_DIGIT_##a##b##c##d
 #define ETLMON_DIGIT_0000 0
@@ -55,7 +59,8 @@
               ETLMON_DIGIT(__AVX512BITALG__, __AVX512VPOPCNTDQ__, __AVX512FP16__, __AVX512BF16__), \
               ETLMON_DIGIT(__AVX512ER__, __AVX10_1__, __AVX10_2__, __APX_F__),                     \
               ETLMON_DIGIT(__AVXVNNI__, __AVXVNNIINT8__, __AVXVNNIINT16__, __AVXIFMA__),           \
-              ETLMON_DIGIT(__GFNI__, __SSE4A__, __FMA4__, __XOP__), ETLMON_DIGIT(__TBM__, 0, 0, 0))
+              ETLMON_DIGIT(__GFNI__, __SSE4A__, __FMA4__, __XOP__),                                \
+              ETLMON_DIGIT(__TBM__, 0, 0, 0))
 #define ETLMON_BUILD_BITS ETLMON_JOIN(0x, ETLMON_BUILD_DIGITS, , , , )
 #if ETLMON_BUILD_BITS == 0x00003000000
 #define ETLMON_BUILD_MACHINE _x86v1
@@ -79,15 +84,19 @@
 #else
 #define ETLMON_BUILD_VECTORS ETLMON_DIGIT(__ARM_FEATURE_SVE, __ARM_FEATURE_SVE2, 0, __ARM_NEON)
 #endif
-#define ETLMON_BUILD_DIGITS                                                                                            \
-  ETLMON_JOIN(                                                                                                         \
-      ETLMON_BUILD_VECTORS, ETLMON_DIGIT(__ARM_FEATURE_FMA, __ARM_FEATURE_DSP, __ARM_FEATURE_IDIV, __ARM_FEATURE_CLZ), \
-      ETLMON_DIGIT(__thumb__, __thumb2__, __ARM_FEATURE_UNALIGNED, __ARM_FP16_FORMAT_IEEE),                            \
-      ETLMON_DIGIT(__ARM_FEATURE_FP16_SCALAR_ARITHMETIC, __ARM_FEATURE_FP16_VECTOR_ARITHMETIC, __ARM_FEATURE_FP16_FML, \
-                   __ARM_FEATURE_BF16_VECTOR_ARITHMETIC),                                                              \
-      ETLMON_DIGIT(__ARM_FEATURE_DOTPROD, __ARM_FEATURE_MATMUL_INT8, __ARM_FEATURE_COMPLEX, __ARM_FEATURE_JCVT),       \
-      ETLMON_DIGIT(__ARM_FEATURE_ATOMICS, __ARM_FEATURE_QRDMX, __ARM_FEATURE_FRINT, __ARM_FEATURE_MOPS))
-#define ETLMON_BUILD_MACHINE ETLMON_JOIN(_arm, __ARM_ARCH, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
+#define ETLMON_BUILD_DIGITS                                                                      \
+  ETLMON_JOIN(                                                                                   \
+      ETLMON_BUILD_VECTORS,                                                                      \
+      ETLMON_DIGIT(__ARM_FEATURE_FMA, __ARM_FEATURE_DSP, __ARM_FEATURE_IDIV, __ARM_FEATURE_CLZ), \
+      ETLMON_DIGIT(__thumb__, __thumb2__, __ARM_FEATURE_UNALIGNED, __ARM_FP16_FORMAT_IEEE),      \
+      ETLMON_DIGIT(__ARM_FEATURE_FP16_SCALAR_ARITHMETIC, __ARM_FEATURE_FP16_VECTOR_ARITHMETIC,   \
+                   __ARM_FEATURE_FP16_FML, __ARM_FEATURE_BF16_VECTOR_ARITHMETIC),                \
+      ETLMON_DIGIT(__ARM_FEATURE_DOTPROD, __ARM_FEATURE_MATMUL_INT8, __ARM_FEATURE_COMPLEX,      \
+                   __ARM_FEATURE_JCVT),                                                          \
+      ETLMON_DIGIT(__ARM_FEATURE_ATOMICS, __ARM_FEATURE_QRDMX, __ARM_FEATURE_FRINT,              \
+                   __ARM_FEATURE_MOPS))
+#define ETLMON_BUILD_MACHINE \
+  ETLMON_JOIN(_arm, __ARM_ARCH, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
 #elif defined(__riscv)
 #if defined(__riscv_flen)
 #define ETLMON_BUILD_FLOATS __riscv_flen
@@ -99,7 +108,8 @@
               ETLMON_DIGIT(__riscv_fdiv, __riscv_fsqrt, __riscv_vector, __riscv_zba),     \
               ETLMON_DIGIT(__riscv_zbb, __riscv_zbs, __riscv_zbc, __riscv_zicond),        \
               ETLMON_DIGIT(__riscv_zfh, __riscv_zfa, __riscv_zcb, __riscv_zcmp), , )
-#define ETLMON_BUILD_MACHINE ETLMON_JOIN(_riscv, __riscv_xlen, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
+#define ETLMON_BUILD_MACHINE \
+  ETLMON_JOIN(_riscv, __riscv_xlen, _fp, ETLMON_BUILD_FLOATS, _, ETLMON_BUILD_DIGITS)
 #else
 #define ETLMON_BUILD_MACHINE
 #endif
@@ -121,8 +131,9 @@
 #endif
 
 // ---- What may be assumed of floats; which versions of a kernel there are.
-#define ETLMON_BUILD_ASSUMED                                                                                \
-  ETLMON_JOIN(ETLMON_DIGIT(__FAST_MATH__, __FINITE_MATH_ONLY__, __ASSOCIATIVE_MATH__, __RECIPROCAL_MATH__), \
+#define ETLMON_BUILD_ASSUMED                                                          \
+  ETLMON_JOIN(ETLMON_DIGIT(__FAST_MATH__, __FINITE_MATH_ONLY__, __ASSOCIATIVE_MATH__, \
+                           __RECIPROCAL_MATH__),                                      \
               ETLMON_DIGIT(__NO_SIGNED_ZEROS__, 0, 0, 0), , , , )
 #if ETLMON_JOIN(0x, ETLMON_BUILD_ASSUMED, , , , )
 #define ETLMON_BUILD_MATH ETLMON_JOIN(_fast, ETLMON_BUILD_ASSUMED, , , , )
@@ -137,6 +148,7 @@
 #define ETLMON_BUILD_KERNELS
 #endif
 
-#define ETLMON_BUILD                                                                                    \
-  ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ), ETLMON_BUILD_COMPILER, \
-              ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, ETLMON_BUILD_KERNELS)
+#define ETLMON_BUILD                                                                              \
+  ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ),                  \
+              ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, \
+              ETLMON_BUILD_KERNELS)

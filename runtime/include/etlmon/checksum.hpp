@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
-// XXH64, the 64-bit hash of the xxHash family by Yann Collet, from its public specification (doc/xxhash_spec.md,
-// 0.1.1), for bytes that come in whole stripes of 32. Takes: bytes at any alignment. Gives: 64 bits. Keeps true: the
-// same on every machine; it tells data apart that differ by accident and is no defence against data made to collide.
+// XXH64, the 64-bit hash of the xxHash family by Yann Collet, from its public specification
+// (doc/xxhash_spec.md, 0.1.1), for bytes that come in whole stripes of 32. Takes: bytes at any
+// alignment. Gives: 64 bits. Keeps true: the same on every machine; it tells data apart that differ
+// by accident and is no defence against data made to collide.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -43,7 +44,10 @@ ETLMON_INLINE uint64_t little_endian(const uint8_t* bytes) noexcept {
 class XxhLanes {
  public:
   constexpr explicit XxhLanes(uint64_t seed) noexcept
-      : a_(seed + kXxhPrime1 + kXxhPrime2), b_(seed + kXxhPrime2), c_(seed), d_(seed - kXxhPrime1) {}
+      : a_(seed + kXxhPrime1 + kXxhPrime2),
+        b_(seed + kXxhPrime2),
+        c_(seed),
+        d_(seed - kXxhPrime1) {}
   /// A multiple of 32 bytes.
   void add(const uint8_t* bytes, size_t size) noexcept {
     for (; size >= 32; size -= 32, bytes += 32) {

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // A stream, a fixed number of steps later.
 // Takes: one value a step. Gives: the value of N steps ago; the fill for the first N steps.
-// Keeps true: one read and one write a step, whatever N; state is N values and a cursor, the same on every target.
+// Keeps true: one read and one write a step, whatever N; state is N values and a cursor, the same
+// on every target.
 #pragma once
 
 #include <stdint.h>
@@ -11,11 +12,12 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// One step of a delay by n >= 1 over caller-owned storage of n values, all set to the fill at first; cursor starts at
-/// 0.
+/// One step of a delay by n >= 1 over caller-owned storage of n values, all set to the fill at
+/// first; cursor starts at 0.
 template <class V>
 ETLMON_STEP V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noexcept {
-  const uint32_t at = cursor;  // read once: for all that a compiler knows, the storage might hold the cursor
+  const uint32_t at =
+      cursor;  // read once: for all that a compiler knows, the storage might hold the cursor
   cursor = at + 1 == n ? 0 : at + 1;
   const V past = storage[at];
   storage[at] = value;
@@ -26,7 +28,8 @@ ETLMON_STEP V delay_push(V* storage, uint32_t& cursor, uint32_t n, V value) noex
 template <class V, uint32_t N>
 class Delay {
   static_assert(N >= 1, "a delay by nothing is the value itself");
-  static_assert(alignof(V) <= alignof(uint32_t), "the cursor comes first, so that no padding follows it");
+  static_assert(alignof(V) <= alignof(uint32_t),
+                "the cursor comes first, so that no padding follows it");
 
  public:
   /// Forgets all; the next N pushes give `fill`.

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Measuring only what a verdict still depends on.
-// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a step, and "and",
-// "or" and "not" of such values, which ask their operands from left to right and stop at the first that decides. Keeps
-// true: a value is found out at most once; what comes out is the min, max or negation of all operands, asked or not:
-// kNo decides a min and kYes a max whatever the others are.
+// Takes: a way to find a value out. Gives: values that are found out when somebody first asks in a
+// step, and "and", "or" and "not" of such values, which ask their operands from left to right and
+// stop at the first that decides. Keeps true: a value is found out at most once; what comes out is
+// the min, max or negation of all operands, asked or not: kNo decides a min and kYes a max whatever
+// the others are.
 #pragma once
 
 #include "etlmon/truth.hpp"
@@ -111,11 +112,13 @@ struct Where<true> {
 }  // namespace detail
 
 /// `a`, then `b` unless a decides; the same for more.
-template <class A, class B, typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
+template <class A, class B,
+          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
 ETLMON_INLINE detail::Both<A, B> min_of(A&& a, B&& b) noexcept {
   return {a, b};
 }
-template <class A, class B, typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
+template <class A, class B,
+          typename detail::Where<detail::IsLazy<A>::value || detail::IsLazy<B>::value>::Type = 0>
 ETLMON_INLINE detail::Either<A, B> max_of(A&& a, B&& b) noexcept {
   return {a, b};
 }

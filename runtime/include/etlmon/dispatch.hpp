@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // Which version of the kernel runs: the best that the CPU and the operating system have.
-// Takes: nothing; asks the CPU once. Gives: best(...), a call of that version's run(...). Keeps true: on hosted x86-64
-// one constant-initialised pointer per kernel, which changes once, to a value that is the same whichever thread writes
-// it; elsewhere, and under ETLMON_NO_DISPATCH, a plain call.
+// Takes: nothing; asks the CPU once. Gives: best(...), a call of that version's run(...). Keeps
+// true: on hosted x86-64 one constant-initialised pointer per kernel, which changes once, to a
+// value that is the same whichever thread writes it; elsewhere, and under ETLMON_NO_DISPATCH, a
+// plain call.
 #pragma once
 
 #include "etlmon/versions.hpp"
@@ -22,9 +23,9 @@ inline CpuId cpu_id(uint32_t leaf) noexcept {
   return id;
 }
 
-/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA, F16C) or 4 (AVX-512 F, VL, BW, DQ), where
-/// the operating system keeps the registers. (Intel 64 and IA-32 Architectures Software Developer's Manual, volume 1,
-/// sections 14.3 and 15.2.)
+/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2, FMA, F16C) or 4 (AVX-512
+/// F, VL, BW, DQ), where the operating system keeps the registers. (Intel 64 and IA-32
+/// Architectures Software Developer's Manual, volume 1, sections 14.3 and 15.2.)
 ETLMON_COLD inline uint32_t x86_64_level() noexcept {
   constexpr uint32_t kFma = 1u << 12, kOsxsave = 1u << 27, kAvx = 1u << 28, kF16c = 1u << 29;
   constexpr uint32_t kAvx2 = 1u << 5, kAvx512 = 1u << 16 | 1u << 17 | 1u << 30 | 1u << 31;
@@ -38,9 +39,9 @@ ETLMON_COLD inline uint32_t x86_64_level() noexcept {
   return (has & kAvx512) == kAvx512 && (kept & kZmm) == kZmm ? 4 : 3;
 }
 
-/// How many rows of a set beyond the first-level cache a CPU of level 4 best reads at once. Four share the loads of z,
-/// which on an Intel Xeon is 1.25 times as fast from the second-level cache; an AMD EPYC (Zen 5) reads one stream at
-/// the speed of that cache, and eight at 0.7 of it.
+/// How many rows of a set beyond the first-level cache a CPU of level 4 best reads at once. Four
+/// share the loads of z, which on an Intel Xeon is 1.25 times as fast from the second-level cache;
+/// an AMD EPYC (Zen 5) reads one stream at the speed of that cache, and eight at 0.7 of it.
 inline uint32_t best_streams() noexcept {
   constexpr uint32_t kAuth = 0x68747541;  // of "AuthenticAMD"
   return cpu_id(0).b == kAuth ? 1 : 4;
@@ -51,8 +52,8 @@ inline bool multiplies_bytes() noexcept { return (cpu_id(7).c & 1u << 11) != 0; 
 
 #endif
 
-/// A function of which there is a version per instruction set. Versions::choice() gives the best one; the CPU is asked
-/// for it at the first call, where there is a choice.
+/// A function of which there is a version per instruction set. Versions::choice() gives the best
+/// one; the CPU is asked for it at the first call, where there is a choice.
 template <class Versions, class Function>
 struct Dispatch;
 template <class Versions, class Result, class... Arguments>
@@ -70,7 +71,9 @@ struct Dispatch<Versions, Result(Arguments...)> {
     return __atomic_load_n(&chosen, __ATOMIC_RELAXED)(arguments...);
   }
 #else
-  ETLMON_INLINE static Result call(Arguments... arguments) noexcept { return Versions::choice()(arguments...); }
+  ETLMON_INLINE static Result call(Arguments... arguments) noexcept {
+    return Versions::choice()(arguments...);
+  }
 #endif
 };
 
@@ -81,7 +84,8 @@ struct KernelVersions {
     const uint32_t level = x86_64_level();
     if constexpr (!Size::is_small(Metric::kDirection)) {
       if constexpr (Size::has_streams(!Same<G, const float*>::value)) {
-        if (level >= 4 && best_streams() == 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>;
+        if (level >= 4 && best_streams() == 4)
+          return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>;
       }
       if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 1>;
     }

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: MIT
-// The distances: how their sums are kept and what a sum over all elements means. What one element adds stands in
-// terms.inc, which is compiled once per instruction set.
-// Gives: per distance a struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
-// a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error bounds:
-// error_bounds.hpp. Each struct has
-//   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered as the distance is
-//   Point       what is computed once from z           finish(value)  the distance
-//   k...        what it reads, where it is sound, how great it can be: its range is [0, kHighest]
+// The distances: how their sums are kept and what a sum over all elements means. What one element
+// adds stands in terms.inc, which is compiled once per instruction set. Gives: per distance a
+// struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
+// a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error
+// bounds: error_bounds.hpp. Each struct has
+//   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered
+//   as the distance is Point       what is computed once from z           finish(value)  the
+//   distance k...        what it reads, where it is sound, how great it can be: its range is [0,
+//   kHighest]
 #pragma once
 
 #include "etlmon/pack.hpp"
@@ -16,11 +17,13 @@ inline namespace ETLMON_BUILD {
 
 namespace detail {
 
-/// Sums of squares below this may have lost terms to underflow (to flush to zero under -ffast-math); they are computed
-/// again in scaled form. 2^-80: what a term of D <= 2^20 can lose is below one rounding of the sum.
+/// Sums of squares below this may have lost terms to underflow (to flush to zero under
+/// -ffast-math); they are computed again in scaled form. 2^-80: what a term of D <= 2^20 can lose
+/// is below one rounding of the sum.
 constexpr uint32_t kLeastSquare = 0x17800000u;
-constexpr uint32_t kGreatestSquare = 0x71800000u;  ///< 2^100: the reciprocal of the root is a normal float
-constexpr uint32_t kGreatest = 0x7f7fffffu;        ///< FLT_MAX
+constexpr uint32_t kGreatestSquare =
+    0x71800000u;  ///< 2^100: the reciprocal of the root is a normal float
+constexpr uint32_t kGreatest = 0x7f7fffffu;  ///< FLT_MAX
 
 struct NoPoint {};
 
@@ -41,10 +44,12 @@ struct Additive {
   using Point = NoPoint;
   static constexpr bool kWeighted = false;   ///< reads one weight per element
   static constexpr bool kQuadratic = false;  ///< reads D x D weights
-  static constexpr bool kDirection = false;  ///< of z only the direction counts: z is scaled to length 1
-  static constexpr bool kTold = false;       ///< of the length of z, in the place of weights
-  static constexpr bool kRescales = false;   ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
-  static constexpr bool kSum = true;         ///< a row's value is its sum
+  static constexpr bool kDirection =
+      false;                            ///< of z only the direction counts: z is scaled to length 1
+  static constexpr bool kTold = false;  ///< of the length of z, in the place of weights
+  static constexpr bool kRescales =
+      false;  ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
+  static constexpr bool kSum = true;  ///< a row's value is its sum
   static constexpr float kHighest = kInfinite;
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
   ETLMON_INLINE static float finish(float value) noexcept { return value; }
@@ -59,7 +64,8 @@ struct UnitPoint {
 struct SquaredLength : Additive {};  ///< sum z^2
 struct Product : Additive {};        ///< sum x g
 
-/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 / down.
+/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 /
+/// down.
 struct PowerOfTwo {
   float down, up;
 };
@@ -90,13 +96,14 @@ struct MahalanobisDiagonal : L2 {
   static constexpr bool kWeighted = true;
 };
 
-/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is run.inc's quadratic_form.
+/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is run.inc's
+/// quadratic_form.
 struct Mahalanobis : L2 {
   static constexpr bool kQuadratic = true;
 };
 
-/// 1 - cos(z, g) for a target of length 1, as |u - g|^2 / 2 with u = z / |z|: exact to rounding for nearly parallel
-/// vectors, where 1 - u.g would cancel.
+/// 1 - cos(z, g) for a target of length 1, as |u - g|^2 / 2 with u = z / |z|: exact to rounding for
+/// nearly parallel vectors, where 1 - u.g would cancel.
 struct Cosine : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
@@ -108,8 +115,9 @@ struct Cosine : detail::Additive {
   }
 };
 
-/// The angle between z and a target of length 1, in radians, as 2 atan(|u - g| / |u + g|), u = z / |z| (Kahan, "How
-/// futile are mindless assessments of roundoff", 2006, section 12): no cancellation near 0 nor near pi.
+/// The angle between z and a target of length 1, in radians, as 2 atan(|u - g| / |u + g|), u = z /
+/// |z| (Kahan, "How futile are mindless assessments of roundoff", 2006, section 12): no
+/// cancellation near 0 nor near pi.
 struct Angular : detail::Additive {
   using Point = detail::UnitPoint;
   static constexpr bool kDirection = true;
@@ -129,8 +137,9 @@ struct Angular : detail::Additive {
 };
 
 namespace detail {
-/// A mean of distances, or an end of an interval around one, that rounding may have carried beyond the greatest
-/// distance. A monitor's bounds are made from the range that the distance has; nothing may leave it.
+/// A mean of distances, or an end of an interval around one, that rounding may have carried beyond
+/// the greatest distance. A monitor's bounds are made from the range that the distance has; nothing
+/// may leave it.
 template <class Metric>
 ETLMON_INLINE float capped(float distance) noexcept {
   if constexpr (Metric::kHighest <= FLT_MAX) {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A distance known within bounds: what measuring a narrow copy of the targets says about the targets themselves.
-// Takes: the distance from z to rows in float16 or int8, and how far the narrowing moved a row. Gives: an interval in
-// which the distance to the float32 rows lies, in real arithmetic and as any build computes it; whether a comparison
-// can be told from it. Keeps true: an interval is never too small, whatever -ffast-math does, and never leaves the
-// distance's range, of which a monitor's bounds are made; where it leaves a comparison open, or the distance is not
+// A distance known within bounds: what measuring a narrow copy of the targets says about the
+// targets themselves. Takes: the distance from z to rows in float16 or int8, and how far the
+// narrowing moved a row. Gives: an interval in which the distance to the float32 rows lies, in real
+// arithmetic and as any build computes it; whether a comparison can be told from it. Keeps true: an
+// interval is never too small, whatever -ffast-math does, and never leaves the distance's range, of
+// which a monitor's bounds are made; where it leaves a comparison open, or the distance is not
 // finite, doubtful() says so, and the float32 rows have to be measured.
 #pragma once
 
@@ -13,7 +14,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// Numbers that a comparison may turn on: all of [low, high]. A threshold is one of a single number.
+/// Numbers that a comparison may turn on: all of [low, high]. A threshold is one of a single
+/// number.
 struct Cut {
   float low, high;
   constexpr Cut(float at) noexcept : low(at), high(at) {}
@@ -26,8 +28,8 @@ struct Enclosed {
   float low = kMissing;
   float high = kMissing;
 
-  /// Whether some comparison with a number of the cuts might come out otherwise for the float32 rows. A least normal
-  /// number is kept clear of them, so that no difference is flushed to zero.
+  /// Whether some comparison with a number of the cuts might come out otherwise for the float32
+  /// rows. A least normal number is kept clear of them, so that no difference is flushed to zero.
   template <size_t N>
   ETLMON_INLINE bool doubtful(const Cut (&cuts)[N]) const noexcept {
     if (!is_finite(measured.delta) || !is_finite(high)) return true;
@@ -49,8 +51,8 @@ ETLMON_INLINE Enclosed exactly(const Measured& measured) noexcept {
 
 namespace detail {
 
-/// |computed - exact| <= linear d + root sqrt(d) + constant, for the exact distance d: error_bounds.hpp in float32,
-/// with denormals flushed and two roundings of the interval's ends.
+/// |computed - exact| <= linear d + root sqrt(d) + constant, for the exact distance d:
+/// error_bounds.hpp in float32, with denormals flushed and two roundings of the interval's ends.
 struct RoundingError {
   float linear, root, constant;
   ETLMON_INLINE float at(float distance, float its_root) const noexcept {
@@ -78,20 +80,22 @@ constexpr RoundingError rounding_error(uint32_t dimension) noexcept {
   return {(0.25f * d + 7.0f) * FLT_EPSILON, 0.0f, lost};  // l2 and mahalanobis, diagonal
 }
 
-/// How far a distance d changes where a row moves by `moved`: in the norm of the distance itself, for l2sq, cosine and
-/// angular in the Euclidean one. Triangle inequality; of squares, |a^2 - b^2| = |a - b| (a + b); cosine is half the
-/// square of a chord. Angular is f = 2 atan(a / b) with a = |u - g|, b = |u + g|, |u| = 1: neither a nor b changes
-/// faster than g moves, so |df| = 2 |b da - a db| / (a^2 + b^2) <= 2 sqrt(2) / sqrt(a^2 + b^2) |dg|, and
-/// a^2 + b^2 = 2 + 2 |g|^2 >= 2 + 2 (1 - moved)^2 all the way from a g of length 1: at most 2 / sqrt(1 + (3/4)^2) = 1.6
-/// times as much as g moves up to 1/4; beyond, nothing is claimed.
+/// How far a distance d changes where a row moves by `moved`: in the norm of the distance itself,
+/// for l2sq, cosine and angular in the Euclidean one. Triangle inequality; of squares, |a^2 - b^2|
+/// = |a - b| (a + b); cosine is half the square of a chord. Angular is f = 2 atan(a / b) with a =
+/// |u - g|, b = |u + g|, |u| = 1: neither a nor b changes faster than g moves, so |df| = 2 |b da -
+/// a db| / (a^2 + b^2) <= 2 sqrt(2) / sqrt(a^2 + b^2) |dg|, and a^2 + b^2 = 2 + 2 |g|^2 >= 2 + 2 (1
+/// - moved)^2 all the way from a g of length 1: at most 2 / sqrt(1 + (3/4)^2) = 1.6 times as much
+/// as g moves up to 1/4; beyond, nothing is claimed.
 ///
-/// Rounding leaves u with a length off by s <= (D / 4 + 5) FLT_EPSILON. An angle changes by 2 s |g| / (1 + |g|^2) at
-/// most, no more than for |g| = 1. |u - g|^2 / 2 changes by s (d + (1 - |g|^2) / 2): what cosine's bound lacks for rows
-/// of other lengths is length_error().
+/// Rounding leaves u with a length off by s <= (D / 4 + 5) FLT_EPSILON. An angle changes by 2 s |g|
+/// / (1 + |g|^2) at most, no more than for |g| = 1. |u - g|^2 / 2 changes by s (d + (1 - |g|^2) /
+/// 2): what cosine's bound lacks for rows of other lengths is length_error().
 template <class Metric>
 ETLMON_INLINE float length_error(float moved, uint32_t dimension) noexcept {
   if (!is<Metric, Cosine>()) return 0.0f;
-  return moved * (1.0f + 0.5f * moved) * (0.25f * static_cast<float>(dimension) + 5.0f) * FLT_EPSILON;
+  return moved * (1.0f + 0.5f * moved) * (0.25f * static_cast<float>(dimension) + 5.0f) *
+         FLT_EPSILON;
 }
 template <class Metric>
 ETLMON_INLINE float change(float moved, float its_root) noexcept {
@@ -103,19 +107,23 @@ ETLMON_INLINE float change(float moved, float its_root) noexcept {
 
 }  // namespace detail
 
-/// What `narrow`, measured on rows of which none moved by more than `moved`, says about the rows. `dimension` of the
-/// rows; `averaged`: how many rows a mean is over, 0 for other aggregations (all are monotonic in every row's distance,
-/// and the bounds are concave in it, so what holds of rows holds of the aggregate).
+/// What `narrow`, measured on rows of which none moved by more than `moved`, says about the rows.
+/// `dimension` of the rows; `averaged`: how many rows a mean is over, 0 for other aggregations (all
+/// are monotonic in every row's distance, and the bounds are concave in it, so what holds of rows
+/// holds of the aggregate).
 template <class Metric>
 ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dimension,
                                uint32_t averaged = 0) noexcept {
-  static_assert(!Metric::kQuadratic, "what rounding does to a full quadratic form depends on the point");
-  constexpr float kSlack = 1.0001f;  // of the arithmetic below, each operation of which is off by 4 roundings at most
+  static_assert(!Metric::kQuadratic,
+                "what rounding does to a full quadratic form depends on the point");
+  constexpr float kSlack =
+      1.0001f;  // of the arithmetic below, each operation of which is off by 4 roundings at most
   Enclosed result;
   result.measured = narrow;
   // Nothing below may overflow: -ffast-math lets a compiler take what does for anything at all.
   constexpr float kGreatestDelta = 1.3e36f, kGreatestMove = 1.1e18f;
-  if (!is_finite(narrow.delta) || narrow.delta > kGreatestDelta || moved > kGreatestMove) return result;
+  if (!is_finite(narrow.delta) || narrow.delta > kGreatestDelta || moved > kGreatestMove)
+    return result;
   detail::RoundingError error = detail::rounding_error<Metric>(dimension);
   error.constant += detail::length_error<Metric>(moved, dimension);
   if (averaged > 0) {
@@ -124,7 +132,8 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
   }
   if (!(error.linear < 0.5f)) return result;
   const float rest = 1.0f / (1.0f - error.linear);
-  // The exact distance to the narrow rows is at most `distance`, the solution of d - error(d) = delta.
+  // The exact distance to the narrow rows is at most `distance`, the solution of d - error(d) =
+  // delta.
   float root = 0.0f, distance = (narrow.delta + error.constant) * rest;
   if (detail::is<Metric, Cosine>() || detail::is<Metric, L2Sq>()) {
     root = (detail::square_root(narrow.delta + error.constant) + error.root) * rest;
@@ -133,8 +142,8 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
   const float changed = detail::change<Metric>(moved, root);
   float root_there = 0.0f;
   if (detail::is<Metric, Cosine>()) root_there = detail::square_root(distance + changed);
-  const float off =
-      detail::rounded((changed + error.at(distance, root) + error.at(distance + changed, root_there)) * kSlack);
+  const float off = detail::rounded(
+      (changed + error.at(distance, root) + error.at(distance + changed, root_there)) * kSlack);
   result.low = detail::rounded(narrow.delta - off);
   if (!(key_of(result.low) > 0)) result.low = 0.0f;
   result.high = detail::capped<Metric>(detail::rounded(narrow.delta + off));

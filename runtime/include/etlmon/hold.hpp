@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // `hold N`: the last present sample of an input stands in for missing ones.
-// Takes: this step's sample, or nothing. Gives: the sample to use, or nothing. Keeps true: at most N missing samples in
-// a row are replaced; before the first present one there is nothing to hold.
+// Takes: this step's sample, or nothing. Gives: the sample to use, or nothing. Keeps true: at most
+// N missing samples in a row are replaced; before the first present one there is nothing to hold.
 #pragma once
 
 #include <stdint.h>

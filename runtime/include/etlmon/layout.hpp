@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// In which order the elements of a row are added, and where a target set is better kept column by column.
-// Takes: K rows of D elements. Gives: order(K, D), in_columns(K, D), the set in columns, made by the compiler.
-// Keeps true: both depend on K and D alone, so the kernel with constant sizes and the one with sizes known at run time
-// compute the same sums; all rows of a set are added in the same order, so equal rows have equal distances.
+// In which order the elements of a row are added, and where a target set is better kept column by
+// column. Takes: K rows of D elements. Gives: order(K, D), in_columns(K, D), the set in columns,
+// made by the compiler. Keeps true: both depend on K and D alone, so the kernel with constant sizes
+// and the one with sizes known at run time compute the same sums; all rows of a set are added in
+// the same order, so equal rows have equal distances.
 #pragma once
 
 #include "etlmon/pack.hpp"
@@ -17,16 +18,18 @@ constexpr uint32_t kRowsTogether = 4;  ///< rows that are read at once where the
 enum class Order : uint8_t {
   sequential,  ///< element after element, into one sum
   lanes,       ///< element i into sum i mod 16
-  two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an addition's latency
-  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, which some CPUs best read in
-               ///< one stream
+  two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an
+               ///< addition's latency
+  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, which
+               ///< some CPUs best read in one stream
 };
 
 /// Rows of a column, with vectors: K, and copies of the last row up to whole vectors.
 constexpr uint32_t column_length(uint32_t K) noexcept { return (K + kLanes - 1) / kLanes * kLanes; }
 
-/// Many short rows: with a row in each lane no sum over lanes is needed. Without vectors, four rows or more: four are
-/// read in one stream. The limit keeps what the compiler has to evaluate within its default limits.
+/// Many short rows: with a row in each lane no sum over lanes is needed. Without vectors, four rows
+/// or more: four are read in one stream. The limit keeps what the compiler has to evaluate within
+/// its default limits.
 constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
   constexpr uint32_t kMost = 16384;
   if (!kHasPacks) return K >= kRowsTogether && K <= kMost / D;
@@ -41,8 +44,9 @@ constexpr Order order(uint32_t K, uint32_t D) noexcept {
   return K == 2 ? Order::two_chunks : Order::lanes;
 }
 
-/// Where the first element of row k is in columns of K rows, and how far the next is from it. With vectors the whole
-/// set is one block of columns; without, every four rows are, and what is left over stays in rows.
+/// Where the first element of row k is in columns of K rows, and how far the next is from it. With
+/// vectors the whole set is one block of columns; without, every four rows are, and what is left
+/// over stays in rows.
 struct Place {
   size_t first, stride;
 };
@@ -82,7 +86,8 @@ struct ColumnsOf {
   static constexpr auto kColumns = columns_of<K, D>(Rows);
 };
 
-/// Sizes known to the compiler, and sizes known at run time. stride(): floats from a row to the next.
+/// Sizes known to the compiler, and sizes known at run time. stride(): floats from a row to the
+/// next.
 template <uint32_t K, uint32_t D>
 struct Fixed {
   static constexpr uint32_t rows() noexcept { return K; }
@@ -91,20 +96,23 @@ struct Fixed {
   static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
   /// Rows shorter than a vector, never added up in lanes.
   static constexpr bool is_short() noexcept { return D < kLanes; }
-  /// Too few elements for vectors of 64 bytes to gain anything; of directions: their distances begin with |z|.
+  /// Too few elements for vectors of 64 bytes to gain anything; of directions: their distances
+  /// begin with |z|.
   static constexpr bool is_small(bool of_directions) noexcept {
     return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
   }
-  /// Whether it depends on the CPU how many of its rows are best read at once. Rows that are widened: not beyond the
-  /// second-level cache, where one stream is mostly the faster.
+  /// Whether it depends on the CPU how many of its rows are best read at once. Rows that are
+  /// widened: not beyond the second-level cache, where one stream is mostly the faster.
   static constexpr bool has_streams(bool widened) noexcept {
     constexpr uint32_t kCached = 1u << 20;  // 2 MiB of float16
     return order(K, D) == Order::four_chunks && K >= 4 && (!widened || K <= kCached / D);
   }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
-  static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept { return R == most ? K >= R : (K & R) != 0; }
-  /// Of a row in blocks of C vectors of kLanes: whether there are such blocks, how many vectors follow at most, and
-  /// whether less than one is left.
+  static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept {
+    return R == most ? K >= R : (K & R) != 0;
+  }
+  /// Of a row in blocks of C vectors of kLanes: whether there are such blocks, how many vectors
+  /// follow at most, and whether less than one is left.
   static constexpr bool has_blocks(uint32_t C) noexcept { return D >= C * kLanes; }
   static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return D / kLanes % C; }
   static constexpr bool has_rest() noexcept { return D % kLanes != 0; }

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // A weighted state machine over (max, min), as constant tables and one loop.
-// Takes: the guards' values at this step. Gives: the reading of the formula. Keeps true: next[t] is the max over the
-// transitions into t of min(now[source], guard), so that the max over the states that owe nothing is rho on the prefix;
-// the work is the same at every step: one min and one max a transition.
+// Takes: the guards' values at this step. Gives: the reading of the formula. Keeps true: next[t] is
+// the max over the transitions into t of min(now[source], guard), so that the max over the states
+// that owe nothing is rho on the prefix; the work is the same at every step: one min and one max a
+// transition.
 #pragma once
 
 #include <stdint.h>
@@ -19,15 +20,16 @@ struct Transition {
 
 /// What a state is worth where the prefix ends: indices into this step's lists of keys.
 struct Owed {
-  uint16_t weak;    ///< lowest unseen value of what it owes weakly; kStrongly: it owes something that must still come
+  uint16_t weak;  ///< lowest unseen value of what it owes weakly; kStrongly: it owes something that
+                  ///< must still come
   uint16_t strong;  ///< highest unseen value of what it owes strongly; 0 is kTop: nothing
 };
 constexpr uint16_t kStrongly = 0xffff;
 
 /// The transitions into state t end at ends[t]; those of t follow those of t - 1.
 template <class V>
-void machine_advance(const V* now, V* next, uint32_t states, const Transition* transitions, const uint32_t* ends,
-                     const V* guards) noexcept {
+void machine_advance(const V* now, V* next, uint32_t states, const Transition* transitions,
+                     const uint32_t* ends, const V* guards) noexcept {
   uint32_t at = 0;
   for (uint32_t target = 0; target < states; ++target) {
     V best = Lattice<V>::bottom();
@@ -37,10 +39,11 @@ void machine_advance(const V* now, V* next, uint32_t states, const Transition* t
   }
 }
 
-/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest unseen value. upper:
-/// any state, what it owes strongly is worth its highest unseen value.
+/// rho: the best state that owes nothing strongly. lower: what it owes weakly is worth its lowest
+/// unseen value. upper: any state, what it owes strongly is worth its highest unseen value.
 template <class V, class End>
-auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* weak, const End* strong) noexcept {
+auto machine_read(const V* now, uint32_t states, const Owed* owed, const End* weak,
+                  const End* strong) noexcept {
   using Result = decltype(reading_of(*now));
   Result reading = Lattice<Result>::bottom();
   for (uint32_t q = 0; q < states; ++q) {
@@ -61,7 +64,8 @@ class Machine {
  public:
   void reset() noexcept {
     turn_ = 0;
-    for (uint32_t q = 0; q < States; ++q) registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+    for (uint32_t q = 0; q < States; ++q)
+      registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
   }
 
   void advance(const Transition* transitions, const uint32_t* ends, const V* guards) noexcept {

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
-// A file of targets, mapped into memory: for programs on a POSIX host; generated code does not include this.
-// Takes: a path. Gives: the Targets in it, for the monitor's constructor, or why there are none. Keeps true: the file
-// is mapped as long as this object lives and unmapped with it; size and checksum are right, or targets() are not ready;
-// nothing is thrown. A file that is shortened while it is mapped kills who reads it (SIGBUS): replace it by renaming
-// another one to its name, as etlc does.
+// A file of targets, mapped into memory: for programs on a POSIX host; generated code does not
+// include this. Takes: a path. Gives: the Targets in it, for the monitor's constructor, or why
+// there are none. Keeps true: the file is mapped as long as this object lives and unmapped with it;
+// size and checksum are right, or targets() are not ready; nothing is thrown. A file that is
+// shortened while it is mapped kills who reads it (SIGBUS): replace it by renaming another one to
+// its name, as etlc does.
 #pragma once
 
 #include <errno.h>
@@ -48,7 +49,8 @@ class MappedTargets {
 
   bool ready() const noexcept { return targets_.ready(); }
   const Targets& targets() const noexcept { return targets_; }
-  /// What keeps them from being ready; `absent` where the file could not be read: error() then says why.
+  /// What keeps them from being ready; `absent` where the file could not be read: error() then says
+  /// why.
   TargetsState state() const noexcept { return state_; }
   int error() const noexcept { return error_; }  ///< an errno, or 0
   const char* message() const noexcept { return error_ != 0 ? ::strerror(error_) : words(state_); }

@@ -1,14 +1,17 @@
 // SPDX-License-Identifier: MIT
-// What a window aggregates: the temporal operators as associative combinations of neighbouring segments of a stream.
-// Takes: elements of two segments, the older first. Gives: the element of their union, and that of the empty segment.
-// Keeps true: combine is associative and identity neutral. Segments may overlap (kMayOverlap): for a <= b <= c + 1 and
-// c <= d, combine(element of [a, c], element of [b, d]) is that of [a, d]; what the overlap counts twice is absorbed.
-// kNewestLast says which of (older, middle), newest and older, (middle, newest) costs less; the result is the same.
+// What a window aggregates: the temporal operators as associative combinations of neighbouring
+// segments of a stream. Takes: elements of two segments, the older first. Gives: the element of
+// their union, and that of the empty segment. Keeps true: combine is associative and identity
+// neutral. Segments may overlap (kMayOverlap): for a <= b <= c + 1 and c <= d, combine(element of
+// [a, c], element of [b, d]) is that of [a, d]; what the overlap counts twice is absorbed.
+// kNewestLast says which of (older, middle), newest and older, (middle, newest) costs less; the
+// result is the same.
 //
-// The pending half of G(p -> F[0,w] q) on a prefix, the min over the last w positions k of max(!p(k), q over [k, now]),
-// is Trigger over w elements {max(!p, q), q}, whose guard q settles all older positions at once. It needs no window
-// where the positions before are settled each by its own window: the unbounded z = max(min(z, !p), q) then differs
-// only in the terms of settled positions, and these are not below what they were settled at.
+// The pending half of G(p -> F[0,w] q) on a prefix, the min over the last w positions k of
+// max(!p(k), q over [k, now]), is Trigger over w elements {max(!p, q), q}, whose guard q settles
+// all older positions at once. It needs no window where the positions before are settled each by
+// its own window: the unbounded z = max(min(z, !p), q) then differs only in the terms of settled
+// positions, and these are not below what they were settled at.
 #pragma once
 
 #include "etlmon/value.hpp"
@@ -23,7 +26,9 @@ struct Greatest {
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::bottom(); }
-  static constexpr Element combine(Element older, Element newer) noexcept { return max_of(older, newer); }
+  static constexpr Element combine(Element older, Element newer) noexcept {
+    return max_of(older, newer);
+  }
 };
 
 /// Least value of the segment: H over the last N, G over the next N.
@@ -33,14 +38,18 @@ struct Least {
   static constexpr bool kMayOverlap = true;
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return Lattice<V>::top(); }
-  static constexpr Element combine(Element older, Element newer) noexcept { return min_of(older, newer); }
+  static constexpr Element combine(Element older, Element newer) noexcept {
+    return min_of(older, newer);
+  }
 };
 
-/// A binary operator over a segment of positions. One position: value is the right operand g, guard the left operand f.
+/// A binary operator over a segment of positions. One position: value is the right operand g, guard
+/// the left operand f.
 template <class V>
 struct Span {
   V value;  ///< the operator's value at the end of the segment that the operator looks from
-  V guard;  ///< what the segment lets through from beyond its other end: min of f (since, until), max of f (duals)
+  V guard;  ///< what the segment lets through from beyond its other end: min of f (since, until),
+            ///< max of f (duals)
 };
 
 /// f S g seen from the newest position: max over j of min(g(j), min of f over (j, newest]).
@@ -51,7 +60,8 @@ struct Since {
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {max_of(min_of(older.value, newer.guard), newer.value), min_of(older.guard, newer.guard)};
+    return {max_of(min_of(older.value, newer.guard), newer.value),
+            min_of(older.guard, newer.guard)};
   }
 };
 
@@ -63,7 +73,8 @@ struct Trigger {
   static constexpr bool kNewestLast = true;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {min_of(max_of(older.value, newer.guard), newer.value), max_of(older.guard, newer.guard)};
+    return {min_of(max_of(older.value, newer.guard), newer.value),
+            max_of(older.guard, newer.guard)};
   }
 };
 
@@ -75,7 +86,8 @@ struct Until {
   static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::bottom(), Lattice<V>::top()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {max_of(older.value, min_of(older.guard, newer.value)), min_of(older.guard, newer.guard)};
+    return {max_of(older.value, min_of(older.guard, newer.value)),
+            min_of(older.guard, newer.guard)};
   }
 };
 
@@ -87,7 +99,8 @@ struct Release {
   static constexpr bool kNewestLast = false;
   static constexpr Element identity() noexcept { return {Lattice<V>::top(), Lattice<V>::bottom()}; }
   static constexpr Element combine(Element older, Element newer) noexcept {
-    return {min_of(older.value, max_of(older.guard, newer.value)), max_of(older.guard, newer.guard)};
+    return {min_of(older.value, max_of(older.guard, newer.value)),
+            max_of(older.guard, newer.guard)};
   }
 };
 
@@ -101,7 +114,9 @@ constexpr Span<Value> pair_of(Span<Key> low, Span<Key> high) noexcept {
   return {{low.value, high.value}, {low.guard, high.guard}};
 }
 constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
-constexpr bool same_ends(Span<Value> s) noexcept { return same_ends(s.value) && same_ends(s.guard); }
+constexpr bool same_ends(Span<Value> s) noexcept {
+  return same_ends(s.value) && same_ends(s.guard);
+}
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

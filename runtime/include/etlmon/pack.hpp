@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What the machine that the program is built for has: 16-byte vectors of floats, or scalars only.
-// Takes: the compiler's macros. Gives: ETLMON_HAS_PACKS; Pack, four floats that are added, multiplied and compared
-// together; magnitude, larger and rounded for scalars. Keeps true: written with the vector extension because g++ before
-// 12 vectorises no loop at -O2; the same operations in the same order on every compiler.
+// Takes: the compiler's macros. Gives: ETLMON_HAS_PACKS; Pack, four floats that are added,
+// multiplied and compared together; magnitude, larger and rounded for scalars. Keeps true: written
+// with the vector extension because g++ before 12 vectorises no loop at -O2; the same operations in
+// the same order on every compiler.
 #pragma once
 
 #include "etlmon/bits.hpp"

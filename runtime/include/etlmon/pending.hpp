@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Formulas at the last positions of a prefix, whose windows still reach past its end.
-// Takes: readings of the operands at n positions, oldest first, the last one being the present. Gives: readings of the
-// formula there, by the definitions of robustness and of the bounds, every window cut at the present.
-// Keeps true: position p tells exactly what rho and the bounds of the operator are there on this prefix; the work is at
-// most n times the window. R: Reading or BasicReading<Truth>.
+// Takes: readings of the operands at n positions, oldest first, the last one being the present.
+// Gives: readings of the formula there, by the definitions of robustness and of the bounds, every
+// window cut at the present. Keeps true: position p tells exactly what rho and the bounds of the
+// operator are there on this prefix; the work is at most n times the window. R: Reading or
+// BasicReading<Truth>.
 #pragma once
 
 #include <stdint.h>
@@ -47,8 +48,8 @@ struct As {
 };
 }  // namespace detail
 
-/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end something better may
-/// come.
+/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end
+/// something better may come.
 struct Seeking {
   template <class V>
   static constexpr V gain(V a, V b) noexcept {
@@ -115,11 +116,11 @@ void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
 }
 
-/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F and G.
-/// unseen: the highest, or lowest, unseen value of g.
+/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
+/// and G. unseen: the highest, or lowest, unseen value of g.
 template <class Sense, class R, class End>
-void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n, uint32_t low, uint32_t high,
-                     End unseen) noexcept {
+void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n,
+                     uint32_t low, uint32_t high, End unseen) noexcept {
   for (uint32_t p = 0; p < n; ++p) {
     R best = Sense::template nothing<R>();
     R held = Sense::template all<R>();
@@ -134,12 +135,15 @@ void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, 
   }
 }
 
-/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them, the last at `step`.
-/// best and held: the operator and its left side up to the last settled position; both are moved on by one.
+/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,
+/// the last at `step`. best and held: the operator and its left side up to the last settled
+/// position; both are moved on by one.
 template <class Sense, class V, class End>
-BasicReading<V> pending_from_start(V& best, V& held, const typename detail::As<BasicReading<V>>::Type* f,
-                                   const BasicReading<V>* g, uint32_t n, uint32_t step, uint32_t horizon, uint32_t low,
-                                   uint32_t high, End unseen) noexcept {
+BasicReading<V> pending_from_start(V& best, V& held,
+                                   const typename detail::As<BasicReading<V>>::Type* f,
+                                   const BasicReading<V>* g, uint32_t n, uint32_t step,
+                                   uint32_t horizon, uint32_t low, uint32_t high,
+                                   End unseen) noexcept {
   const auto open = [&](uint32_t position) { return low <= position && position <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;
@@ -155,18 +159,20 @@ BasicReading<V> pending_from_start(V& best, V& held, const typename detail::As<B
     if (f != nullptr) left = Sense::keep(left, f[p]);
   }
   auto& end = Sense::open_end(result);
-  if (high == kWithoutEnd || step < high) end = Sense::gain(end, Sense::keep(Sense::open_end(left), unseen));
+  if (high == kWithoutEnd || step < high)
+    end = Sense::gain(end, Sense::keep(Sense::open_end(left), unseen));
   return result;
 }
 
-/// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first one settled where
-/// `settles`; scratch: 2 * states readings; settled_guards: width + states values. Its registers are moved on by the
-/// settled row.
+/// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first
+/// one settled where `settles`; scratch: 2 * states readings; settled_guards: width + states
+/// values. Its registers are moved on by the settled row.
 template <class V, class End>
-BasicReading<V> pending_machine(V* registers, uint32_t states, const BasicReading<V>* guards, uint32_t width,
-                                uint32_t n, bool settles, const Transition* transitions, const uint32_t* ends,
-                                const Owed* owed, const End* weak, const End* strong, BasicReading<V>* scratch,
-                                V* settled_guards) noexcept {
+BasicReading<V> pending_machine(V* registers, uint32_t states, const BasicReading<V>* guards,
+                                uint32_t width, uint32_t n, bool settles,
+                                const Transition* transitions, const uint32_t* ends,
+                                const Owed* owed, const End* weak, const End* strong,
+                                BasicReading<V>* scratch, V* settled_guards) noexcept {
   BasicReading<V>* now = scratch;
   BasicReading<V>* next = scratch + states;
   if (settles) {
@@ -192,15 +198,17 @@ class PendingMachine {
 
  public:
   void reset() noexcept {
-    for (uint32_t q = 0; q < States; ++q) registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+    for (uint32_t q = 0; q < States; ++q)
+      registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
   }
 
-  BasicReading<V> read(const BasicReading<V> (*guards)[Width], uint32_t n, bool settles, const Transition* transitions,
-                       const uint32_t* ends, const Owed* owed, const End* weak, const End* strong) noexcept {
+  BasicReading<V> read(const BasicReading<V> (*guards)[Width], uint32_t n, bool settles,
+                       const Transition* transitions, const uint32_t* ends, const Owed* owed,
+                       const End* weak, const End* strong) noexcept {
     BasicReading<V> scratch[2 * States];
     V values[Width + States];
-    return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends, owed, weak, strong,
-                           scratch, values);
+    return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends,
+                           owed, weak, strong, scratch, values);
   }
 
  private:

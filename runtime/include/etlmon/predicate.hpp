@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // From what was measured to robustness: the comparison of a predicate.
-// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; the range of the robustness.
-// Gives: epsilon - delta or delta - epsilon as a value; the whole range where delta is unknown.
-// Keeps true: one float32 subtraction; a NaN is found by its bits and never becomes a verdict.
+// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; the range of the
+// robustness. Gives: epsilon - delta or delta - epsilon as a value; the whole range where delta is
+// unknown. Keeps true: one float32 subtraction; a NaN is found by its bits and never becomes a
+// verdict.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -13,8 +14,8 @@ namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 namespace detail {
-/// The compiler sees that x is zero. A threshold of zero is common where the input is a robustness itself, and leaves
-/// nothing to subtract.
+/// The compiler sees that x is zero. A threshold of zero is common where the input is a robustness
+/// itself, and leaves nothing to subtract.
 ETLMON_INLINE bool surely_zero(const float& x) noexcept {
 #if defined(__GNUC__)
   uint32_t bits = 0;
@@ -30,14 +31,16 @@ ETLMON_INLINE bool surely_zero(const float& x) noexcept {
 /// delta <= epsilon and delta < epsilon (Definition "Embedding Predicate").
 ETLMON_INLINE Value at_most(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
-  const Key robustness = detail::surely_zero(epsilon) ? -key_of(delta) : key_of(detail::rounded(epsilon - delta));
+  const Key robustness =
+      detail::surely_zero(epsilon) ? -key_of(delta) : key_of(detail::rounded(epsilon - delta));
   return {robustness, robustness};
 }
 
 /// delta >= epsilon and delta > epsilon.
 ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value range) noexcept {
   if (is_nan(delta)) return range;
-  const Key robustness = detail::surely_zero(epsilon) ? key_of(delta) : key_of(detail::rounded(delta - epsilon));
+  const Key robustness =
+      detail::surely_zero(epsilon) ? key_of(delta) : key_of(detail::rounded(delta - epsilon));
   return {robustness, robustness};
 }
 

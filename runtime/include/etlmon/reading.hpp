@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // What a prefix says about a formula at position 0, and how such answers combine.
-// Takes: the values that a monitor keeps. Gives: its verdict. Keeps true: min and max act on robustness and bounds
-// alike, since the bounds of && and || are the min and max of the operands' bounds.
+// Takes: the values that a monitor keeps. Gives: its verdict. Keeps true: min and max act on
+// robustness and bounds alike, since the bounds of && and || are the min and max of the operands'
+// bounds.
 #pragma once
 
 #include "etlmon/value.hpp"

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny, or exactly zero.
-// Takes: what kernel.hpp takes. Gives: distances computed from differences scaled by a power of two, one row at a time.
-// Keeps true: a distance that float32 can represent does not overflow on the way, a tiny one does not vanish on the
-// way, and a vector of zeros has no direction. Kept out of line, one function for every K and D.
+// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny,
+// or exactly zero. Takes: what kernel.hpp takes. Gives: distances computed from differences scaled
+// by a power of two, one row at a time. Keeps true: a distance that float32 can represent does not
+// overflow on the way, a tiny one does not vanish on the way, and a vector of zeros has no
+// direction. Kept out of line, one function for every K and D.
 #pragma once
 
 #include "etlmon/versions.hpp"
@@ -31,15 +32,18 @@ ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
 template <bool Short>
 class RescaledL2 {
  public:
-  RescaledL2(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
+  RescaledL2(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
 
   template <class G>
   uint32_t row(G g) const noexcept {
-    const uint32_t greatest = observe(baseline::one_row<Linf>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
+    const uint32_t greatest =
+        observe(baseline::one_row<Linf>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
     if (greatest == 0 || greatest >= kInfinityBits) return greatest;
     const PowerOfTwo power = power_of_two(greatest);
-    const float square = baseline::one_row<ScaledL2Sq>(power, z_, g, z_, RowSize<Short>{{1, dimension_}});
+    const float square =
+        baseline::one_row<ScaledL2Sq>(power, z_, g, z_, RowSize<Short>{{1, dimension_}});
     return observe(rounded(rounded(square_root(square)) * power.up));
   }
 
@@ -48,8 +52,9 @@ class RescaledL2 {
   uint32_t dimension_;
 };
 
-/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z - g), every
-/// |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element bounds every term.
+/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z -
+/// g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element
+/// bounds every term.
 template <class Metric>
 class RescaledRoot {
  public:
@@ -59,8 +64,10 @@ class RescaledRoot {
 
   template <class G>
   uint32_t row(G g) const noexcept {
-    constexpr uint32_t kQuarterOfMost = 0x7e800000u;  // 2^126: differences of larger elements may overflow
-    const uint32_t size_z = greatest_magnitude(z_, dimension_), size_g = greatest_magnitude(g, dimension_);
+    constexpr uint32_t kQuarterOfMost =
+        0x7e800000u;  // 2^126: differences of larger elements may overflow
+    const uint32_t size_z = greatest_magnitude(z_, dimension_),
+                   size_g = greatest_magnitude(g, dimension_);
     const float half = size_z >= kQuarterOfMost || size_g >= kQuarterOfMost ? 0.5f : 1.0f;
 
     uint32_t greatest = 0;
@@ -106,12 +113,13 @@ class RescaledRoot {
   uint32_t dimension_;
 };
 
-/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled first, then to
-/// length 1.
+/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled
+/// first, then to length 1.
 template <class Metric>
 class RescaledDirection {
  public:
-  RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {
+  RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {
     const uint32_t greatest = greatest_magnitude(z, dimension);
     if (greatest == 0) return;
     down_ = power_of_two(greatest).down;
@@ -120,7 +128,8 @@ class RescaledDirection {
       const float x = rounded(z[i] * down_);
       square += x * x;
     }
-    known_ = (observe(square) & kInfinityBits) != 0;  // zero also where the denormals of z were flushed to zero
+    known_ = (observe(square) & kInfinityBits) !=
+             0;  // zero also where the denormals of z were flushed to zero
     point_.scale = known_ ? 1.0f / square_root(square) : 0.0f;
   }
   bool known() const noexcept { return known_; }
@@ -129,7 +138,8 @@ class RescaledDirection {
   uint32_t row(G g) const noexcept {
     typename Metric::template Partial<float> sums{};
     for (uint32_t i = 0; i < dimension_; ++i) {
-      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)), element(g, i), 0.0f);
+      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)),
+                           element(g, i), 0.0f);
     }
     return observe(Metric::finish(Metric::row(sums)));
   }
@@ -146,7 +156,8 @@ class RescaledDirection {
 template <class Metric, bool Short>
 class Unscaled {
  public:
-  Unscaled(const float* z, const float*, uint32_t dimension) noexcept : z_(z), dimension_(dimension) {}
+  Unscaled(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {}
   static constexpr bool known() noexcept { return true; }
   template <class G>
   uint32_t row(G g) const noexcept {
@@ -167,12 +178,14 @@ struct Choose<false, A, B> {
   using Type = B;
 };
 template <class Metric, bool Short>
-using RescaledSquare =
-    typename Choose<Metric::kWeighted || Metric::kQuadratic, RescaledRoot<Metric>, RescaledL2<Short>>::Type;
+using RescaledSquare = typename Choose<Metric::kWeighted || Metric::kQuadratic,
+                                       RescaledRoot<Metric>, RescaledL2<Short>>::Type;
 template <class Metric, bool Short>
-using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric, Short>, Unscaled<Metric, Short>>::Type;
+using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric, Short>,
+                                      Unscaled<Metric, Short>>::Type;
 template <class Metric, bool Short>
-using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>, RescaledOrNot<Metric, Short>>::Type;
+using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>,
+                                 RescaledOrNot<Metric, Short>>::Type;
 
 template <class Metric, bool Short, class Aggregation, bool InColumns, class G>
 MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
@@ -185,7 +198,8 @@ MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, cons
     const uint32_t bits = distance.row(set.row(row, buffer));
     nearest.add(bits, row);
     if constexpr (Aggregation::kOfDistances) {
-      aggregation.add(rounded(from_bits(bits) / static_cast<float>(set.rows)));  // so that the sum cannot overflow
+      aggregation.add(rounded(from_bits(bits) /
+                              static_cast<float>(set.rows)));  // so that the sum cannot overflow
     } else {
       aggregation.add(bits);
     }

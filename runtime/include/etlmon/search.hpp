@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: MIT
-// min over a large target set without measuring all of it at every step: Search<K, D>, a member of the monitor.
-// Takes: z and rows that begin at multiples of 64 bytes. Gives: what measure_stored gives, bit for bit, nearest row and
-// ties included. How: the row that was nearest before comes first. Blocks of 64 rows are remembered with their least
-// value as seen from an anchor; those that cannot have come near enough since (reach.hpp) are left out. When that has
-// cost as much as measuring all rows once, all are measured and z becomes the anchor. Rows whose first quarter is too
-// far already are not read to their end. Keeps true: a step measures no more than all rows and two more.
+// min over a large target set without measuring all of it at every step: Search<K, D>, a member of
+// the monitor. Takes: z and rows that begin at multiples of 64 bytes. Gives: what measure_stored
+// gives, bit for bit, nearest row and ties included. How: the row that was nearest before comes
+// first. Blocks of 64 rows are remembered with their least value as seen from an anchor; those that
+// cannot have come near enough since (reach.hpp) are left out. When that has cost as much as
+// measuring all rows once, all are measured and z becomes the anchor. Rows whose first quarter is
+// too far already are not read to their end. Keeps true: a step measures no more than all rows and
+// two more.
 #pragma once
 
 #include "etlmon/targets.hpp"

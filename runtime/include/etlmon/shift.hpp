@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Robustness shifted by what the calibration of a whole monitor found.
-// Takes: keys, and a finite shift. Gives: the key of rho - shift. Keeps true: one float32 subtraction, which is
-// monotonic, so bounds stay bounds; true and false, which are infinite, stay what they are.
+// Takes: keys, and a finite shift. Gives: the key of rho - shift. Keeps true: one float32
+// subtraction, which is monotonic, so bounds stay bounds; true and false, which are infinite, stay
+// what they are.
 #pragma once
 
 #include "etlmon/reading.hpp"
@@ -20,7 +21,8 @@ ETLMON_INLINE Value shifted(Value value, const float& shift) noexcept {
 }
 
 ETLMON_INLINE Reading shifted(Reading reading, const float& shift) noexcept {
-  return {shifted(reading.rho, shift), shifted(reading.lower, shift), shifted(reading.upper, shift)};
+  return {shifted(reading.rho, shift), shifted(reading.lower, shift),
+          shifted(reading.upper, shift)};
 }
 
 }  // namespace ETLMON_BUILD

@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: MIT
 // Embeddings and targets in narrow storage, widened to float32.
 // Takes: float16 as their IEEE bits, or int8 and a scale. Gives: one element, or four.
-// Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x integer, rounded once.
-// Machines that widen by an instruction and those that do not get the same bits.
+// Keeps true: float16 widens exactly, subnormals, infinities and NaN included; int8 is scale x
+// integer, rounded once. Machines that widen by an instruction and those that do not get the same
+// bits.
 #pragma once
 
 #include "etlmon/pack.hpp"
 
-// ARM machines that convert float16 by an instruction, and a compiler that was not told to mean something else by it.
+// ARM machines that convert float16 by an instruction, and a compiler that was not told to mean
+// something else by it.
 #if defined(__ARM_FP16_FORMAT_IEEE) && defined(__ARM_FP) && (__ARM_FP & 2)
 #define ETLMON_HAS_HALVES 1
 #endif
@@ -15,8 +17,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// The float32 bits of a float16. Subnormals are scaled by integer arithmetic: no float operation could flush them to
-/// zero.
+/// The float32 bits of a float16. Subnormals are scaled by integer arithmetic: no float operation
+/// could flush them to zero.
 ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
   const uint32_t sign = (half & 0x8000u) << 16;
   uint32_t exponent = (half >> 10) & 0x1fu;
@@ -24,7 +26,8 @@ ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
   if (exponent == 0x1fu) return sign | detail::kInfinityBits | (mantissa << 13);
   if (exponent == 0) {
     if (mantissa == 0) return sign;
-    for (exponent = 1; (mantissa & 0x400u) == 0; --exponent) mantissa <<= 1;  // wraps below 0, the sum below does not
+    for (exponent = 1; (mantissa & 0x400u) == 0; --exponent)
+      mantissa <<= 1;  // wraps below 0, the sum below does not
     mantissa &= 0x3ffu;
   }
   return sign | ((exponent + 112u) << 23) | (mantissa << 13);
@@ -32,9 +35,9 @@ ETLMON_INLINE uint32_t widened_bits(uint16_t half) noexcept {
 
 #if defined(ETLMON_HAS_PACKS)
 namespace detail {
-/// Four float16: as integers they are shifted to where float32 has exponent and mantissa, and the exponent is moved by
-/// the difference of the biases, 112; a subnormal one is its mantissa times 2^-24, which is exact and flushed by
-/// nothing.
+/// Four float16: as integers they are shifted to where float32 has exponent and mantissa, and the
+/// exponent is moved by the difference of the biases, 112; a subnormal one is its mantissa times
+/// 2^-24, which is exact and flushed by nothing.
 ETLMON_INLINE Pack widened(const uint16_t* from) noexcept {
 #if defined(ETLMON_HAS_HALVES)
   typedef __fp16 Halves __attribute__((vector_size(8)));
@@ -72,7 +75,9 @@ struct ScaledRows {
   const int8_t* values;
   float scale;
 };
-ETLMON_INLINE ScaledRows operator+(ScaledRows rows, size_t n) noexcept { return {rows.values + n, rows.scale}; }
+ETLMON_INLINE ScaledRows operator+(ScaledRows rows, size_t n) noexcept {
+  return {rows.values + n, rows.scale};
+}
 ETLMON_INLINE ScaledRows& operator+=(ScaledRows& rows, size_t n) noexcept {
   rows.values += n;
   return rows;

@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // From the values of K rows to the distance of a predicate, and whether they can be trusted.
-// Takes: the values of all rows in row order. Gives: the aggregated distance and the nearest row. Keeps true: where a
-// square left [2^-80, FLT_MAX] and that could matter, the scaled form (rescaled.hpp) decides; a distance of exactly 0
-// is recognised without it; where an element of z is not finite, which makes the value of every row not finite, the
-// distance is unknown.
+// Takes: the values of all rows in row order. Gives: the aggregated distance and the nearest row.
+// Keeps true: where a square left [2^-80, FLT_MAX] and that could matter, the scaled form
+// (rescaled.hpp) decides; a distance of exactly 0 is recognised without it; where an element of z
+// is not finite, which makes the value of every row not finite, the distance is unknown.
 #pragma once
 
 #include "etlmon/aggregate.hpp"
@@ -23,7 +23,9 @@ struct Set {
   uint32_t rows, dimension, stride;
 
   struct Buffer {};
-  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept { return values + static_cast<size_t>(k) * stride; }
+  ETLMON_INLINE G row(uint32_t k, Buffer&) const noexcept {
+    return values + static_cast<size_t>(k) * stride;
+  }
 };
 
 /// The same in columns.
@@ -52,7 +54,8 @@ struct Set<true, G> {
 #endif
 };
 
-/// Everything about one measurement but its sizes and its rows: the nearest row, the aggregate, what they say together.
+/// Everything about one measurement but its sizes and its rows: the nearest row, the aggregate,
+/// what they say together.
 template <class Metric, class Aggregation>
 struct Tally {
   Nearest nearest;
@@ -62,7 +65,8 @@ struct Tally {
   ETLMON_INLINE void add(float value, uint32_t row) noexcept { add_bits(observe_sum(value), row); }
   ETLMON_INLINE void add_bits(uint32_t bits, uint32_t row) noexcept {
     nearest.add(bits, row);
-    if constexpr (Metric::kWeighted || Metric::kQuadratic) greatest = bits > greatest ? bits : greatest;
+    if constexpr (Metric::kWeighted || Metric::kQuadratic)
+      greatest = bits > greatest ? bits : greatest;
     if constexpr (Aggregation::kOfDistances) {
       aggregation.add(Metric::finish(from_bits(bits)));
     } else {
@@ -77,33 +81,37 @@ struct Tally {
       return aggregation.result(nearest);
     }
   }
-  /// No element of z can have been other than finite, no square that matters was lost, and no sum of distances
-  /// overflowed that may have a representable mean. Weights can make a far row near: with them no row may have
-  /// overflowed.
+  /// No element of z can have been other than finite, no square that matters was lost, and no sum
+  /// of distances overflowed that may have a representable mean. Weights can make a far row near:
+  /// with them no row may have overflowed.
   ETLMON_INLINE bool sound(uint32_t result) const noexcept {
     // Values decide, not their roots: clang's -ffast-math takes the root of a NaN for 0.
     if (Aggregation::kOfDistances && nearest.least > kGreatest) return false;
     if (!Metric::kRescales) return result <= kGreatest;
     return nearest.least >= kLeastSquare && result <= kGreatest && greatest <= kGreatest;
   }
-  /// The same, for other aggregations than min, where the nearest row turns out to be z itself: its 0 is exact, and no
-  /// other row's underflow can matter.
+  /// The same, for other aggregations than min, where the nearest row turns out to be z itself: its
+  /// 0 is exact, and no other row's underflow can matter.
   ETLMON_INLINE bool sound_if_equal(uint32_t result) const noexcept {
     constexpr uint32_t kLeastRoot = 0x2b800000u;  // 2^-40, in doubt whether a square or a root
-    return nearest.least == 0 && result >= kLeastRoot && result <= kGreatest && greatest <= kGreatest;
+    return nearest.least == 0 && result >= kLeastRoot && result <= kGreatest &&
+           greatest <= kGreatest;
   }
 };
 
 /// Every element of z is finite; out of line, since it is asked where a distance is not.
-ETLMON_COLD inline bool all_finite(const float* z, uint32_t dimension) noexcept { return finite(z, dimension); }
+ETLMON_COLD inline bool all_finite(const float* z, uint32_t dimension) noexcept {
+  return finite(z, dimension);
+}
 
 /// `measured`, or unknown where an element of z is not finite.
-ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimension, MeasuredBits measured) noexcept {
+ETLMON_COLD inline MeasuredBits unless_unknown(const float* z, uint32_t dimension,
+                                               MeasuredBits measured) noexcept {
   return all_finite(z, dimension) ? measured : packed(kUnmeasured);
 }
 
-/// The measurement where its values cannot be trusted: a row that equals z decides, or else the scaled form. Unknown
-/// where z is missing or an element of it is not finite.
+/// The measurement where its values cannot be trusted: a row that equals z decides, or else the
+/// scaled form. Unknown where z is missing or an element of it is not finite.
 template <class Metric, class Aggregation, class Size, bool InColumns, class G>
 ETLMON_COLD MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
                                        Aggregation aggregation) noexcept;
@@ -114,20 +122,24 @@ ETLMON_COLD bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t
 
 /// What the values say together. `aggregation`: as it was before it saw any.
 template <bool InColumns, class Metric, class Aggregation, class Size, class G>
-ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, const float* z, G targets,
-                                    const float* weights, Size size, Aggregation aggregation) noexcept {
+ETLMON_INLINE MeasuredBits conclude(const Tally<Metric, Aggregation>& tally, const float* z,
+                                    G targets, const float* weights, Size size,
+                                    Aggregation aggregation) noexcept {
   const uint32_t result = tally.result(size.rows());
   bool sound = tally.sound(result);
   if constexpr (Metric::kRescales && !Aggregation::kNearest) {
     if (!sound && tally.sound_if_equal(result)) {
-      sound = is_equal<Size::is_short(), InColumns, G>(z, {targets, size.rows(), size.dimension(), size.stride()},
-                                                       tally.nearest.row);
+      sound = is_equal<Size::is_short(), InColumns, G>(
+          z, {targets, size.rows(), size.dimension(), size.stride()}, tally.nearest.row);
     }
   }
   if constexpr (Metric::kRescales || Aggregation::kOfDistances) {
-    if (!sound) return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size, aggregation);
+    if (!sound)
+      return measure_again<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
+                                                                    aggregation);
   }
-  const float delta = Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
+  const float delta =
+      Aggregation::kOfDistances ? from_bits(result) : Metric::finish(from_bits(result));
   const MeasuredBits measured = packed({delta, tally.nearest.row});
   if constexpr (!Metric::kDirection) {  // else the length of z has said so
     if (!sound) return unless_unknown(z, size.dimension(), measured);

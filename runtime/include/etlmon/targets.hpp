@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// Target sets that lie beside the program: the bytes of a file NAME.targets.bin, mapped or linked in.
-// Takes: bytes at a multiple of 64, which must stay as they are while a monitor uses them. Gives: Targets, which says
-// whether they are the ones that the monitor was made with. Keeps true: rows are handed out only where size and
-// checksum are right; a Targets of one file is another type than that of any other.
+// Target sets that lie beside the program: the bytes of a file NAME.targets.bin, mapped or linked
+// in. Takes: bytes at a multiple of 64, which must stay as they are while a monitor uses them.
+// Gives: Targets, which says whether they are the ones that the monitor was made with. Keeps true:
+// rows are handed out only where size and checksum are right; a Targets of one file is another type
+// than that of any other.
 #pragma once
 
 #include "etlmon/checksum.hpp"
@@ -36,8 +37,8 @@ inline const char* words(TargetsState state) noexcept {
   return "the targets are not those that the monitor was made with, or are damaged";
 }
 
-/// The bytes of the file with this size and this XXH64. It owns nothing: what it views must outlive the monitors that
-/// take it.
+/// The bytes of the file with this size and this XXH64. It owns nothing: what it views must outlive
+/// the monitors that take it.
 template <uint64_t Size, uint64_t Xxh64>
 class Targets {
  public:
@@ -81,7 +82,8 @@ constexpr size_t with_pointer(size_t bytes) noexcept {
 
 /// measure() for rows that each begin at a multiple of 64 bytes; the same bits.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D>
-ETLMON_INLINE Measured measure_stored(const float* z, const float* rows, const float* weights = nullptr) noexcept {
+ETLMON_INLINE Measured measure_stored(const float* z, const float* rows,
+                                      const float* weights = nullptr) noexcept {
   return detail::best<Metric, Aggregation, detail::Padded<K, D>, false>(z, rows, weights, {}, {});
 }
 

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Truth inside a Boolean monitor: what is known of a yes or no, in two bits.
-// Takes: comparisons. Gives: a value type with which the temporal operators and machines work as they do with
-// robustness: min is "and", max is "or". Keeps true: low implies high; where nothing is missing the two are equal.
+// Takes: comparisons. Gives: a value type with which the temporal operators and machines work as
+// they do with robustness: min is "and", max is "or". Keeps true: low implies high; where nothing
+// is missing the two are equal.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -40,20 +41,26 @@ struct Lattice<Truth> {
 };
 
 constexpr Truth truth_of(bool yes) noexcept { return yes ? kYes : kNo; }
-constexpr Truth truth_of(Flag flag) noexcept { return flag.present() ? truth_of(flag.value()) : kPerhaps; }
+constexpr Truth truth_of(Flag flag) noexcept {
+  return flag.present() ? truth_of(flag.value()) : kPerhaps;
+}
 
-/// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is unknown: `range`,
-/// all that it may come to.
-ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+/// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is
+/// unknown: `range`, all that it may come to.
+ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon,
+                               Truth range = kPerhaps) noexcept {
   return is_nan(delta) ? range : truth_of(key_of(delta) <= key_of(epsilon));
 }
-ETLMON_INLINE Truth is_below(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+ETLMON_INLINE Truth is_below(const float& delta, const float& epsilon,
+                             Truth range = kPerhaps) noexcept {
   return is_nan(delta) ? range : truth_of(key_of(delta) < key_of(epsilon));
 }
-ETLMON_INLINE Truth is_at_least(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+ETLMON_INLINE Truth is_at_least(const float& delta, const float& epsilon,
+                                Truth range = kPerhaps) noexcept {
   return is_nan(delta) ? range : truth_of(key_of(delta) >= key_of(epsilon));
 }
-ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon, Truth range = kPerhaps) noexcept {
+ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon,
+                             Truth range = kPerhaps) noexcept {
   return is_nan(delta) ? range : truth_of(key_of(delta) > key_of(epsilon));
 }
 

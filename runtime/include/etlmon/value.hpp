@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: MIT
 // Robustness inside a monitor: ordered integer keys, in pairs.
-// Takes: float32 robustness. Gives: values that min and max combine exactly, infinities included, under any compiler
-// flags. Keeps true: key order is float order; -0 and +0 share a key; a NaN never becomes a key (predicates turn it
-// into a range). A value type V of the temporal operators is any type with min_of, max_of (here or found by
-// argument; min and max are macros of windows.h) and a Lattice<V>.
+// Takes: float32 robustness. Gives: values that min and max combine exactly, infinities included,
+// under any compiler flags. Keeps true: key order is float order; -0 and +0 share a key; a NaN
+// never becomes a key (predicates turn it into a range). A value type V of the temporal operators
+// is any type with min_of, max_of (here or found by argument; min and max are macros of windows.h)
+// and a Lattice<V>.
 #pragma once
 
 #include <stdint.h>
@@ -13,8 +14,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// float32 robustness as an integer whose order is the order of the floats. Comparing integers keeps -ffast-math, which
-/// assumes that infinities do not occur, from changing a verdict.
+/// float32 robustness as an integer whose order is the order of the floats. Comparing integers
+/// keeps -ffast-math, which assumes that infinities do not occur, from changing a verdict.
 using Key = int32_t;
 
 ETLMON_INLINE uint32_t bits_of(const float& x) noexcept { return detail::observe(x); }
@@ -22,7 +23,9 @@ ETLMON_INLINE uint32_t bits_of(const float& x) noexcept { return detail::observe
 ETLMON_INLINE float float_of_bits(uint32_t bits) noexcept { return detail::from_bits(bits); }
 
 /// The key of a robustness that is not NaN.
-ETLMON_INLINE Key key_of(const float& robustness) noexcept { return detail::ordered(bits_of(robustness)); }
+ETLMON_INLINE Key key_of(const float& robustness) noexcept {
+  return detail::ordered(bits_of(robustness));
+}
 
 /// The float of a key; 0 is +0. The order's own inverse is the order.
 ETLMON_INLINE float float_of(Key key) noexcept {
@@ -39,13 +42,14 @@ constexpr Key max_of(Key a, Key b) noexcept { return a < b ? b : a; }
 constexpr bool min_of(bool a, bool b) noexcept { return a && b; }
 constexpr bool max_of(bool a, bool b) noexcept { return a || b; }
 
-/// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the flags. Of two zeros,
-/// a.
+/// Of floats that are not NaN, compared as keys: exact for infinities and denormals whatever the
+/// flags. Of two zeros, a.
 ETLMON_INLINE float min_of(float a, float b) noexcept { return key_of(b) < key_of(a) ? b : a; }
 ETLMON_INLINE float max_of(float a, float b) noexcept { return key_of(a) < key_of(b) ? b : a; }
 
-/// What is known of a robustness: low == high where every sample it depends on was there, else the ends of its range.
-/// The min-max algebra works on both ends alike, since formulas are in negation normal form (only predicates negate).
+/// What is known of a robustness: low == high where every sample it depends on was there, else the
+/// ends of its range. The min-max algebra works on both ends alike, since formulas are in negation
+/// normal form (only predicates negate).
 struct Value {
   Key low;
   Key high;
@@ -54,12 +58,17 @@ struct Value {
 constexpr Value kTrue{kTop, kTop};
 constexpr Value kFalse{kBottom, kBottom};
 
-constexpr Value min_of(Value a, Value b) noexcept { return {min_of(a.low, b.low), min_of(a.high, b.high)}; }
-constexpr Value max_of(Value a, Value b) noexcept { return {max_of(a.low, b.low), max_of(a.high, b.high)}; }
+constexpr Value min_of(Value a, Value b) noexcept {
+  return {min_of(a.low, b.low), min_of(a.high, b.high)};
+}
+constexpr Value max_of(Value a, Value b) noexcept {
+  return {max_of(a.low, b.low), max_of(a.high, b.high)};
+}
 constexpr Value negate(Value a) noexcept { return {-a.high, -a.low}; }
 
-/// A value that a monitor keeps from step to step. Its ends are of two types: of one, g++ makes a vector of what two
-/// registers are assigned and stores that, and the next step, which reads them one by one, waits for the vector.
+/// A value that a monitor keeps from step to step. Its ends are of two types: of one, g++ makes a
+/// vector of what two registers are assigned and stores that, and the next step, which reads them
+/// one by one, waits for the vector.
 struct Register {
   struct End {
     uint32_t bits;
@@ -83,7 +92,9 @@ ETLMON_INLINE Value known(const float& robustness) noexcept {
 }
 
 /// The value of a robustness that lies in [low, high]; neither is NaN, low <= high.
-ETLMON_INLINE Value between(const float& low, const float& high) noexcept { return {key_of(low), key_of(high)}; }
+ETLMON_INLINE Value between(const float& low, const float& high) noexcept {
+  return {key_of(low), key_of(high)};
+}
 
 /// Of more than two: values and registers, or all of another type.
 template <class A, class B, class C, class... More>
@@ -95,9 +106,9 @@ constexpr auto max_of(A a, B b, C c, More... more) noexcept {
   return max_of(max_of(a, b), c, more...);
 }
 
-/// The least and the greatest element of a value type: bottom is false, top is true; End is the type of its two ends,
-/// low and high. A mode (truth.hpp, say) is a type with min_of and max_of found by argument-dependent lookup and a
-/// specialisation of this.
+/// The least and the greatest element of a value type: bottom is false, top is true; End is the
+/// type of its two ends, low and high. A mode (truth.hpp, say) is a type with min_of and max_of
+/// found by argument-dependent lookup and a specialisation of this.
 template <class V>
 struct Lattice;
 

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
 // What a monitor answers after a step.
 // Takes: values and keys at the end of a step. Gives: floats and the status that follows from them.
-// Keeps true: the status is decided on integer keys, never on floats, so compiler flags cannot change it; a Verdict is
-// 16 bytes on every target, trivially copyable, and undecided unless made by one of the two functions below.
+// Keeps true: the status is decided on integer keys, never on floats, so compiler flags cannot
+// change it; a Verdict is 16 bytes on every target, trivially copyable, and undecided unless made
+// by one of the two functions below.
 #pragma once
 
 #include <stdint.h>
@@ -13,8 +14,8 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
-/// What can be asked about one monitor after one step; Self has `status`, of the bits below. Undecided: every question
-/// but decided() is moot.
+/// What can be asked about one monitor after one step; Self has `status`, of the bits below.
+/// Undecided: every question but decided() is moot.
 template <class Self>
 struct Answers {
   static constexpr uint8_t kSatisfied = 1;
@@ -32,7 +33,9 @@ struct Answers {
   constexpr bool final() const noexcept { return has(kFinal); }
 
  private:
-  constexpr bool has(uint8_t bit) const noexcept { return (static_cast<const Self*>(this)->status & bit) != 0; }
+  constexpr bool has(uint8_t bit) const noexcept {
+    return (static_cast<const Self*>(this)->status & bit) != 0;
+  }
 };
 
 /// The answer about one monitor after one step. Undecided: the numbers are NaN.
@@ -52,7 +55,8 @@ struct BooleanVerdict : Answers<BooleanVerdict> {
 
 static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
 
-/// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over every continuation.
+/// About position 0 of the prefix seen so far. rho: its robustness; lower, upper: its bounds over
+/// every continuation.
 inline Verdict prefix_verdict(Value rho, Key lower, Key upper) noexcept {
   uint32_t status = Verdict::kDecided;
   if (rho.low >= 0) status += Verdict::kSatisfied;
@@ -66,7 +70,11 @@ inline Verdict sliding_verdict(Value rho) noexcept {
   const uint32_t satisfied = ~static_cast<uint32_t>(rho.low) >> 31;
   const uint32_t violated = static_cast<uint32_t>(rho.high) >> 31;
   const float low = float_of(rho.low);
-  return {{}, low, low, float_of(rho.high), satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal};
+  return {{},
+          low,
+          low,
+          float_of(rho.high),
+          satisfied | violated << 1 | Verdict::kDecided | Verdict::kFinal};
 }
 
 inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noexcept {
@@ -76,7 +84,9 @@ inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noe
   return {{}, static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
 }
 
-inline BooleanVerdict sliding_verdict(Truth holds) noexcept { return prefix_verdict(holds, true, true); }
+inline BooleanVerdict sliding_verdict(Truth holds) noexcept {
+  return prefix_verdict(holds, true, true);
+}
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: MIT
 // The kernel once per instruction set, and which of them runs.
-// Gives: `baseline`, the version for the machine that the program is built for; on hosted x86-64 the versions above it
-// (x86-64-v3: AVX2, FMA and F16C; x86-64-v4: AVX-512), and the pointer through which the best one that the CPU has is
-// called (small sets have no third one). Keeps true: the pointer is a constant until the first call, and whichever
-// thread sets it writes the same; no version runs on a CPU, or under an operating system, that lacks it. v3 and v4 give
-// equal bits; baseline x86-64, which cannot fuse, differs from them within error_bounds.hpp. Without dispatch:
+// Gives: `baseline`, the version for the machine that the program is built for; on hosted x86-64
+// the versions above it (x86-64-v3: AVX2, FMA and F16C; x86-64-v4: AVX-512), and the pointer
+// through which the best one that the CPU has is called (small sets have no third one). Keeps true:
+// the pointer is a constant until the first call, and whichever thread sets it writes the same; no
+// version runs on a CPU, or under an operating system, that lacks it. v3 and v4 give equal bits;
+// baseline x86-64, which cannot fuse, differs from them within error_bounds.hpp. Without dispatch:
 // freestanding programs, and ETLMON_NO_DISPATCH.
 #pragma once
 
@@ -13,10 +14,10 @@
 #include "etlmon/tally.hpp"
 
 #if defined(ETLMON_HAS_PACKS) && defined(__x86_64__)
-// All that a version's functions are made for (ETLMON_TARGET below): what is compiled for less cannot have them
-// inlined.
-#if defined(__AVX2__) && defined(__FMA__) && defined(__AVX512F__) && defined(__AVX512VL__) && defined(__AVX512BW__) && \
-    defined(__AVX512DQ__)
+// All that a version's functions are made for (ETLMON_TARGET below): what is compiled for less
+// cannot have them inlined.
+#if defined(__AVX2__) && defined(__FMA__) && defined(__AVX512F__) && defined(__AVX512VL__) && \
+    defined(__AVX512BW__) && defined(__AVX512DQ__)
 #define ETLMON_X86_64 4
 #elif defined(__AVX2__) && defined(__FMA__) && defined(__F16C__)
 #define ETLMON_X86_64 3
@@ -56,7 +57,8 @@ namespace x86_64_v4 {
 #endif
 
 // ---- x86-64-v3
-#if defined(ETLMON_X86_64) && (ETLMON_X86_64 == 3 || (ETLMON_X86_64 < 3 && defined(ETLMON_DISPATCH)))
+#if defined(ETLMON_X86_64) && \
+    (ETLMON_X86_64 == 3 || (ETLMON_X86_64 < 3 && defined(ETLMON_DISPATCH)))
 #define ETLMON_TARGET __attribute__((target("avx2,fma,f16c")))
 #define ETLMON_WIDTH 8
 #define ETLMON_TILE_ROWS 4

@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: MIT
-// What a user hands to Monitor::step: views of embeddings, flags, and the test of what counts as present.
-// Takes: arrays whose size the compiler checks, bools, floats. Gives: Vector, Flag, kMissing, present(...).
-// Keeps true: a default-constructed input is missing; a sample with an element that is not finite, or a scalar outside
-// its range, counts as missing, decided by bits; a view owns nothing and must not outlive what it views.
+// What a user hands to Monitor::step: views of embeddings, flags, and the test of what counts as
+// present. Takes: arrays whose size the compiler checks, bools, floats. Gives: Vector, Flag,
+// kMissing, present(...). Keeps true: a default-constructed input is missing; a sample with an
+// element that is not finite, or a scalar outside its range, counts as missing, decided by bits; a
+// view owns nothing and must not outlive what it views.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -30,7 +31,8 @@ struct If<true> {
 template <class A>
 const A& some() noexcept;
 
-// How many elements a container type always has: std::array by the size() of a constant, std::span by its extent.
+// How many elements a container type always has: std::array by the size() of a constant, std::span
+// by its extent.
 template <class A, size_t N = A{}.size()>
 constexpr size_t fixed_size(int, int) noexcept {
   return N;
@@ -47,15 +49,18 @@ using ReadsAs = decltype(reads<T>(some<A>().data()));
 
 }  // namespace detail
 
-/// A view of D contiguous elements: float, uint16_t (the IEEE bits of a float16) or int8_t. Default: missing.
+/// A view of D contiguous elements: float, uint16_t (the IEEE bits of a float16) or int8_t.
+/// Default: missing.
 template <class T, size_t D>
 class Vector {
  public:
   constexpr Vector() noexcept = default;
   constexpr Vector(const T (&elements)[D]) noexcept : data_(elements) {}
 
-  /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler, which must be D.
-  template <class A, class = detail::ReadsAs<T, A>, typename detail::If<detail::fixed_size<A>(0, 0) == D>::type = 0>
+  /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler,
+  /// which must be D.
+  template <class A, class = detail::ReadsAs<T, A>,
+            typename detail::If<detail::fixed_size<A>(0, 0) == D>::type = 0>
   constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
   /// A temporary array would be gone before step() reads it.
   template <class A, class = detail::ReadsAs<T, A>, class = decltype(A{}.size())>
@@ -81,7 +86,8 @@ struct Point {
   float elements[D];
 };
 
-/// A bool that may be missing. Only a bool converts to it: an int or a pointer is more often a mistake than a flag.
+/// A bool that may be missing. Only a bool converts to it: an int or a pointer is more often a
+/// mistake than a flag.
 class Flag {
  public:
   constexpr Flag() noexcept = default;
@@ -97,8 +103,8 @@ class Flag {
 };
 
 namespace detail {
-/// Elements of which the compiler does not know where they come from. Where NaN is assumed away it must not conclude
-/// from a choice between a number and a NaN that it was the number.
+/// Elements of which the compiler does not know where they come from. Where NaN is assumed away it
+/// must not conclude from a choice between a number and a NaN that it was the number.
 ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
 #if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
   __asm__("" : "+r"(elements) : : "memory");
@@ -109,7 +115,8 @@ ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
 
 #if defined(ETLMON_HAS_PACKS)
 namespace detail {
-/// Bits that have their sign set where one of four floats is not finite: one more carries an exponent of ones into it.
+/// Bits that have their sign set where one of four floats is not finite: one more carries an
+/// exponent of ones into it.
 ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
   typedef uint32_t PackExponents __attribute__((vector_size(16)));
   PackExponents bits;
@@ -169,7 +176,8 @@ ETLMON_INLINE float accept(const float& x) noexcept {
 /// The scalar; kMissing unless it is finite and in [low, high]. Either bound may be infinite.
 ETLMON_INLINE float accept(const float& x, const float& low, const float& high) noexcept {
   constexpr int32_t kMost = static_cast<int32_t>(detail::kInfinityBits) - 1;
-  const int32_t from = detail::ordered(detail::observe(low)), to = detail::ordered(detail::observe(high));
+  const int32_t from = detail::ordered(detail::observe(low)),
+                to = detail::ordered(detail::observe(high));
   const int32_t at = detail::ordered(detail::observe(x));  // of a NaN beyond the infinities
   const bool inside = (from < -kMost ? -kMost : from) <= at && at <= (to > kMost ? kMost : to);
   return detail::from_bits(inside ? detail::observe(x) : detail::kMissingBits);

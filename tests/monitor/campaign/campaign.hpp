@@ -1,7 +1,7 @@
-// The differential campaign: random formulas and traces, the plan's evaluator and compiled classes held to the
-// reference.
-// Takes: how much to try, and a seed. Gives: a tally, and every mismatch, made small, as a spec and a trace.
-// Keeps true: a formula counts as refused only for its size, under the limits that `etlc` has by default.
+// The differential campaign: random formulas and traces, the plan's evaluator and compiled classes
+// held to the reference. Takes: how much to try, and a seed. Gives: a tally, and every mismatch,
+// made small, as a spec and a trace. Keeps true: a formula counts as refused only for its size,
+// under the limits that `etlc` has by default.
 #pragma once
 
 #include <array>
@@ -30,8 +30,8 @@ struct Tally {
         int refused = 0;
         double share() const { return formulas == 0 ? 0 : static_cast<double>(refused) / formulas; }
     };
-    /// By depth - 1. Prefix monitors with windows to kLongWindow, with all operators and mostly future ones; with
-    /// windows to kShortWindow; sliding ones; all of these on truth values.
+    /// By depth - 1. Prefix monitors with windows to kLongWindow, with all operators and mostly
+    /// future ones; with windows to kShortWindow; sliding ones; all of these on truth values.
     using Row = std::array<Cell, kDepths>;
     Row long_windows;
     Row mostly_future;

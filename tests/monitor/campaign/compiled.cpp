@@ -50,11 +50,12 @@ Request request_for(const check::Model& model, const Subject& subject, std::uint
     constexpr std::size_t kLongest = 120;
     const reference::Trace first = subject_trace(model, subject, t, kLongest);
     return {spec, first,
-            t % 2 == 0 ? subject_trace(model, subject, t + 1, kLongest) : continuation(model, first, subject.seed)};
+            t % 2 == 0 ? subject_trace(model, subject, t + 1, kLongest)
+                       : continuation(model, first, subject.seed)};
 }
 
-std::optional<std::string> mismatch_of(const check::Model& model, check::Values values, const reference::Trace& trace,
-                                       Observed observed) {
+std::optional<std::string> mismatch_of(const check::Model& model, check::Values values,
+                                       const reference::Trace& trace, Observed observed) {
     observed.dependencies = PlanRunner(model, kRoomy, values).dependencies();
     const Comparison comparison{.on_demand = values == check::Values::boolean};
     return first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
@@ -62,7 +63,8 @@ std::optional<std::string> mismatch_of(const check::Model& model, check::Values 
 
 /// What the first instance of a program of this one class says on the trace.
 Trial trial_on(check::Values values, const Build& build) {
-    return [values, build](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+    return [values, build](const std::string& spec,
+                           const reference::Trace& trace) -> std::optional<std::string> {
         const auto model = load(spec);
         if (!model) return {};
         GeneratedProgram program("campaign_shrinking");
@@ -74,20 +76,21 @@ Trial trial_on(check::Values values, const Build& build) {
 }
 
 void compare(const GeneratedProgram& program, const std::vector<check::Values>& values,
-             const std::vector<Request>& requests, const GeneratedProgram::Result& result, const Build& build,
-             Tally& tally) {
+             const std::vector<Request>& requests, const GeneratedProgram::Result& result,
+             const Build& build, Tally& tally) {
     std::vector<bool> failed(program.size());
     for (std::size_t n = 0; n < result.answers.size(); ++n) {
         const check::Model& model = program.model(requests[n].spec);
         const check::Values of = values[requests[n].spec];
         for (int run = 0; run < 3 && !failed[requests[n].spec]; ++run) {
             const reference::Trace& trace = run == 0 ? requests[n].first : requests[n].second;
-            const auto mismatch = mismatch_of(model, of, trace, result.answers[n][static_cast<std::size_t>(run)]);
+            const auto mismatch =
+                mismatch_of(model, of, trace, result.answers[n][static_cast<std::size_t>(run)]);
             if (!mismatch) continue;
             failed[requests[n].spec] = true;
             const std::string what = fmt::format("compiled, {}: {}", build.name, *mismatch);
-            tally.findings.push_back(
-                shrink({std::string(model.file.text()), trace, what}, trial_on(of, build), kShrinkingTries));
+            tally.findings.push_back(shrink({std::string(model.file.text()), trace, what},
+                                            trial_on(of, build), kShrinkingTries));
         }
     }
 }
@@ -99,14 +102,16 @@ int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& 
     std::vector<Request> requests;
     int monitors = 0;
     for (std::uint64_t n = 0; n < kClassesPerProgram && monitors < formulas; ++n) {
-        const Subject tried = subject(effort.seed, first + n, std::min(kMonitorsPerClass, formulas));
+        const Subject tried =
+            subject(effort.seed, first + n, std::min(kMonitorsPerClass, formulas));
         const std::string spec = without_refused(tried.spec(), tried.values);
         const auto model = spec.empty() ? std::nullopt : load(spec);
         if (!model || !program.add(*model, tried.values)) continue;
         values.push_back(tried.values);
         monitors += static_cast<int>(model->monitors.size());
         for (int t = 0; t < 4; ++t)
-            requests.push_back(request_for(*model, tried, static_cast<std::uint32_t>(program.size() - 1), t));
+            requests.push_back(
+                request_for(*model, tried, static_cast<std::uint32_t>(program.size() - 1), t));
     }
     if (requests.empty()) return 0;
     for (int n = 0; n < std::min<int>(effort.builds, static_cast<int>(builds().size())); ++n) {
@@ -127,7 +132,8 @@ int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& 
 
 void try_compiled(const Effort& effort, Tally& tally) {
     constexpr std::uint64_t kBeyondPlans = 2'000'000;
-    for (std::uint64_t n = kBeyondPlans; tally.compiled < effort.compiled && !tally.enough(); n += kClassesPerProgram)
+    for (std::uint64_t n = kBeyondPlans; tally.compiled < effort.compiled && !tally.enough();
+         n += kClassesPerProgram)
         tally.compiled += try_program(effort, n, effort.compiled - tally.compiled, tally);
 }
 

@@ -1,5 +1,5 @@
-// campaign [--pairs N] [--planned N] [--compiled N] [--seed S]: exit status 1 where something disagrees with the
-// reference, or more formulas are refused than may be.
+// campaign [--pairs N] [--planned N] [--compiled N] [--seed S]: exit status 1 where something
+// disagrees with the reference, or more formulas are refused than may be.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -34,8 +34,9 @@ bool show_refused(const char* what, const std::array<Tally::Cell, kDepths>& row,
         const bool too_many = cell.formulas >= kEnoughForShare && cell.share() > may_be[depth - 1];
         good = good && !too_many;
         if (cell.formulas > 0)
-            fmt::print("{:28} depth {}: {:6} formulas, {:4} refused for their size, {:5.2f} %{}\n", what, depth,
-                       cell.formulas, cell.refused, 100 * cell.share(), too_many ? ": too many" : "");
+            fmt::print("{:28} depth {}: {:6} formulas, {:4} refused for their size, {:5.2f} %{}\n",
+                       what, depth, cell.formulas, cell.refused, 100 * cell.share(),
+                       too_many ? ": too many" : "");
     }
     return good;
 }
@@ -52,7 +53,8 @@ int report(const Effort& effort, const Tally& tally) {
         "{} mismatches\n",
         tally.pairs, tally.compiled, effort.builds, tally.findings.size());
     good = good && tally.findings.empty();
-    // A spec that does not load or a class that does not compile is a failure of GoogleTest's, outside of any test.
+    // A spec that does not load or a class that does not compile is a failure of GoogleTest's,
+    // outside of any test.
     good = good && !testing::UnitTest::GetInstance()->ad_hoc_test_result().Failed();
     return good ? 0 : 1;
 }
@@ -63,14 +65,19 @@ int main(int argc, char** argv) {
     testing::InitGoogleTest(&argc, argv);
     CLI::App app{"Holds random formulas on random traces to the reference"};
     Effort effort;
-    app.add_option("--pairs", effort.pairs, "formula/trace pairs for the evaluator")->capture_default_str();
-    app.add_option("--planned", effort.planned, "formulas that are only planned")->capture_default_str();
-    app.add_option("--compiled", effort.compiled, "formulas in compiled classes")->capture_default_str();
-    app.add_option("--builds", effort.builds,
-                   "of compiled classes: 1 as is, 2 also -ffast-math, 3 -Os by clang++, 4 sanitizers")
+    app.add_option("--pairs", effort.pairs, "formula/trace pairs for the evaluator")
+        ->capture_default_str();
+    app.add_option("--planned", effort.planned, "formulas that are only planned")
+        ->capture_default_str();
+    app.add_option("--compiled", effort.compiled, "formulas in compiled classes")
+        ->capture_default_str();
+    app.add_option(
+           "--builds", effort.builds,
+           "of compiled classes: 1 as is, 2 also -ffast-math, 3 -Os by clang++, 4 sanitizers")
         ->check(CLI::Range(1, 4))
         ->capture_default_str();
-    app.add_option("--longest", effort.longest, "steps of the longest trace")->capture_default_str();
+    app.add_option("--longest", effort.longest, "steps of the longest trace")
+        ->capture_default_str();
     app.add_option("--seed", effort.seed, "another campaign")->capture_default_str();
     app.add_flag("--show-refused", effort.show_refused, "print each formula that is refused");
     CLI11_PARSE(app, argc, argv);

@@ -14,12 +14,14 @@ constexpr int kTracesPerFormula = 3;
 constexpr int kShrinkingTries = 3000;
 
 Trial trial_on(check::Values values) {
-    return [values](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+    return [values](const std::string& spec,
+                    const reference::Trace& trace) -> std::optional<std::string> {
         const auto model = load(spec);
         if (!model) return {};
         PlanRunner runner(*model, {}, values);
         if (!runner.refusal().empty()) return {};
-        return first_mismatch(*model, reference::evaluate(*model, trace, values), runner.run(trace), {});
+        return first_mismatch(*model, reference::evaluate(*model, trace, values), runner.run(trace),
+                              {});
     };
 }
 
@@ -42,12 +44,14 @@ void try_formula(const Effort& effort, const Subject& subject, Tally& tally) {
         reference::Trace trace = subject_trace(*model, subject, t, effort.longest);
         // Bounds hold over every continuation: the last trace goes on from a prefix of the first.
         if (t == kTracesPerFormula)
-            trace = continuation(*model, subject_trace(*model, subject, 0, effort.longest), subject.seed);
+            trace = continuation(*model, subject_trace(*model, subject, 0, effort.longest),
+                                 subject.seed);
         ++tally.pairs;
-        const auto mismatch =
-            first_mismatch(*model, reference::evaluate(*model, trace, subject.values), runner.run(trace), {});
+        const auto mismatch = first_mismatch(
+            *model, reference::evaluate(*model, trace, subject.values), runner.run(trace), {});
         if (!mismatch) continue;
-        tally.findings.push_back(shrink({subject.spec(), trace, *mismatch}, trial_on(subject.values), kShrinkingTries));
+        tally.findings.push_back(
+            shrink({subject.spec(), trace, *mismatch}, trial_on(subject.values), kShrinkingTries));
         return;
     }
 }
@@ -63,7 +67,8 @@ void try_plans(const Effort& effort, Tally& tally) {
     constexpr std::uint64_t kBeyondPairs = 1'000'000;
     for (std::uint64_t n = 0; n < static_cast<std::uint64_t>(effort.planned); ++n) {
         const Subject tried = subject(effort.seed, kBeyondPairs + n, 1);
-        if (const auto model = load(tried.spec())) planned(effort, tried, PlanRunner(*model, {}, tried.values), tally);
+        if (const auto model = load(tried.spec()))
+            planned(effort, tried, PlanRunner(*model, {}, tried.values), tally);
     }
 }
 

@@ -31,7 +31,8 @@ Tree tree_of(const check::Model& model, Index index) {
     const Formula& formula = model.formulas[index];
     Tree tree{.kind = formula.kind, .low = formula.low, .high = formula.high};
     if (formula.operands.empty()) tree.atom = "(" + check::print(model, index) + ")";
-    if (formula.operands.empty() && formula.kind == Kind::predicate && !model.predicates[formula.index].name.empty())
+    if (formula.operands.empty() && formula.kind == Kind::predicate &&
+        !model.predicates[formula.index].name.empty())
         tree.atom = model.predicates[formula.index].name;
     for (const Index operand : formula.operands) tree.operands.push_back(tree_of(model, operand));
     return tree;
@@ -73,7 +74,8 @@ bool has_interval(Kind kind) {
 
 std::string interval_text(const Tree& tree) {
     if (!has_interval(tree.kind) || (tree.low == 0 && tree.high == kUnbounded)) return "";
-    return tree.high == kUnbounded ? fmt::format("[{}, inf]", tree.low) : fmt::format("[{}, {}]", tree.low, tree.high);
+    return tree.high == kUnbounded ? fmt::format("[{}, inf]", tree.low)
+                                   : fmt::format("[{}, {}]", tree.low, tree.high);
 }
 
 std::string text(const Tree& tree) {
@@ -81,7 +83,8 @@ std::string text(const Tree& tree) {
     const std::string word = symbol(tree.kind) + interval_text(tree);
     if (tree.operands.size() == 1) return word + " (" + text(tree.operands[0]) + ")";
     std::string result = "(" + text(tree.operands[0]) + ")";
-    for (std::size_t i = 1; i < tree.operands.size(); ++i) result += " " + word + " (" + text(tree.operands[i]) + ")";
+    for (std::size_t i = 1; i < tree.operands.size(); ++i)
+        result += " " + word + " (" + text(tree.operands[i]) + ")";
     return result;
 }
 
@@ -91,7 +94,8 @@ std::vector<Tree> smaller(const Tree& tree) {
     for (std::size_t i = 0; i < tree.operands.size(); ++i) {
         if (tree.operands.size() > 2) {
             result.push_back(tree);
-            result.back().operands.erase(result.back().operands.begin() + static_cast<std::ptrdiff_t>(i));
+            result.back().operands.erase(result.back().operands.begin() +
+                                         static_cast<std::ptrdiff_t>(i));
         }
         for (Tree& operand : smaller(tree.operands[i])) {
             result.push_back(tree);
@@ -123,21 +127,24 @@ std::string declarations(const std::string& spec) {
     std::string result;
     for (std::string line; std::getline(lines, line);) {
         const auto starts = [&](const char* word) { return line.rfind(word, 0) == 0; };
-        if (starts("spec ") || starts("input ") || starts("target ") || starts("predicate ")) result += line + '\n';
+        if (starts("spec ") || starts("input ") || starts("target ") || starts("predicate "))
+            result += line + '\n';
     }
     return result;
 }
 
 bool mentions(const std::string& text, const std::string& name) {
     const auto part_of_name = [&](std::size_t at) {
-        return at < text.size() && (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
+        return at < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[at])) != 0 || text[at] == '_');
     };
     for (std::size_t at = text.find(name); at != std::string::npos; at = text.find(name, at + 1))
         if (!part_of_name(at + name.size()) && (at == 0 || !part_of_name(at - 1))) return true;
     return false;
 }
 
-/// Without the predicates and targets that nothing after them names. Inputs stay: the trace has their columns.
+/// Without the predicates and targets that nothing after them names. Inputs stay: the trace has
+/// their columns.
 std::string used_only(const std::string& spec) {
     std::vector<std::string> lines;
     std::istringstream stream(spec);
@@ -177,7 +184,8 @@ public:
 
 private:
     std::string spec_of(const Tree& tree) const {
-        return used_only(declarations_ + fmt::format("{}monitor m = {};\n", sliding_ ? "sliding " : "", text(tree)));
+        return used_only(declarations_ + fmt::format("{}monitor m = {};\n",
+                                                     sliding_ ? "sliding " : "", text(tree)));
     }
 
     bool accepts(const Tree& tree, const reference::Trace& trace) {

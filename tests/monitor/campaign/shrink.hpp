@@ -1,6 +1,7 @@
 // A mismatch made small.
-// Takes: a spec and trace on which something fails, and the test that finds that out. Gives: a spec of one monitor and
-// a trace on which it still fails, where no single smaller step does. Keeps true: what it gives was seen to fail.
+// Takes: a spec and trace on which something fails, and the test that finds that out. Gives: a spec
+// of one monitor and a trace on which it still fails, where no single smaller step does. Keeps
+// true: what it gives was seen to fail.
 #pragma once
 
 #include <functional>
@@ -19,7 +20,8 @@ struct Finding {
 };
 
 /// What is wrong with this spec on this trace; nothing where all is well or the spec is refused.
-using Trial = std::function<std::optional<std::string>(const std::string& spec, const reference::Trace& trace)>;
+using Trial = std::function<std::optional<std::string>(const std::string& spec,
+                                                       const reference::Trace& trace)>;
 
 /// `tries`: how often the trial may be run.
 Finding shrink(const Finding& finding, const Trial& trial, int tries);

@@ -19,20 +19,24 @@ Subject subject(std::uint64_t campaign, std::uint64_t n, int monitors) {
     return result;
 }
 
-reference::Trace subject_trace(const check::Model& model, const Subject& subject, int t, std::size_t longest) {
+reference::Trace subject_trace(const check::Model& model, const Subject& subject, int t,
+                               std::size_t longest) {
     Random random(subject.seed * 31 + static_cast<std::uint64_t>(t));
     // Most are short: brute force over 200 steps is 1000 times that over 20.
     const double share = random.uniform();
     TraceShape shape;
-    shape.steps = 1 + static_cast<std::size_t>(share * share * share * static_cast<double>(longest - 1) + 0.5);
+    shape.steps = 1 + static_cast<std::size_t>(
+                          share * share * share * static_cast<double>(longest - 1) + 0.5);
     if (t % 3 > 0) shape.missing = 0.05 + 0.3 * random.uniform();
     if (t % 3 > 1) shape.invalid = 0.1;
     return random_trace(model, subject.seed * 37 + static_cast<std::uint64_t>(t), shape);
 }
 
-reference::Trace continuation(const check::Model& model, const reference::Trace& trace, std::uint64_t seed) {
+reference::Trace continuation(const check::Model& model, const reference::Trace& trace,
+                              std::uint64_t seed) {
     Random random(seed);
-    const auto cut = static_cast<std::size_t>(random.between(0, static_cast<int>(trace.size()) - 1)) + 1;
+    const auto cut =
+        static_cast<std::size_t>(random.between(0, static_cast<int>(trace.size()) - 1)) + 1;
     TraceShape shape;
     shape.steps = static_cast<std::size_t>(random.between(1, 60));
     shape.extreme = random.uniform();

@@ -1,7 +1,7 @@
 // What a campaign tries: one random formula, and random traces for it.
-// Takes: the seed of the campaign and a number. Gives: the same subject every time. Keeps true: depths 1 to 5, prefix
-// and sliding monitors, windows to 40 and short ones, robustness and truth values take turns; traces reach 200 steps,
-// with gaps and invalid samples.
+// Takes: the seed of the campaign and a number. Gives: the same subject every time. Keeps true:
+// depths 1 to 5, prefix and sliding monitors, windows to 40 and short ones, robustness and truth
+// values take turns; traces reach 200 steps, with gaps and invalid samples.
 #pragma once
 
 #include <cstdint>
@@ -16,7 +16,8 @@ namespace etlc::tests {
 inline constexpr int kDepths = 5;
 inline constexpr int kLongWindow = 40;
 inline constexpr int kShortWindow = 6;
-/// Subjects differ in their share of future operators: as many as other ones, or hardly anything else.
+/// Subjects differ in their share of future operators: as many as other ones, or hardly anything
+/// else.
 inline constexpr double kMostlyFuture = 0.8;
 
 struct Subject {
@@ -31,9 +32,12 @@ struct Subject {
 Subject subject(std::uint64_t campaign, std::uint64_t n, int monitors);
 
 /// Trace t of a subject: full of samples, with gaps, and with invalid samples too in turn.
-reference::Trace subject_trace(const check::Model& model, const Subject& subject, int t, std::size_t longest = 200);
+reference::Trace subject_trace(const check::Model& model, const Subject& subject, int t,
+                               std::size_t longest = 200);
 
-/// The trace up to a step of it, then other samples, many at the ends of their ranges: a continuation of that prefix.
-reference::Trace continuation(const check::Model& model, const reference::Trace& trace, std::uint64_t seed);
+/// The trace up to a step of it, then other samples, many at the ends of their ranges: a
+/// continuation of that prefix.
+reference::Trace continuation(const check::Model& model, const reference::Trace& trace,
+                              std::uint64_t seed);
 
 }  // namespace etlc::tests

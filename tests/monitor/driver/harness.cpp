@@ -74,7 +74,7 @@ int serve(const Answer* specs, size_t count, int argc) {
 
 }  // namespace harness
 
-// ---- counting ------------------------------------------------------------------------------------------------------
+// ---- counting -----------------------------------------------------------------------------------
 
 void* operator new(size_t size) {
   harness::count();

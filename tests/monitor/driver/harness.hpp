@@ -1,13 +1,14 @@
-// Steps generated monitors on traces from standard input and writes what they say to standard output.
-// Takes: one request after the other (see below), binary, in this machine's byte order. Gives: the runs. Keeps true: it
-// is C++17 without exceptions, RTTI or library containers, so that it compiles as firmware would; it compares no
-// floats.
+// Steps generated monitors on traces from standard input and writes what they say to standard
+// output. Takes: one request after the other (see below), binary, in this machine's byte order.
+// Gives: the runs. Keeps true: it is C++17 without exceptions, RTTI or library containers, so that
+// it compiles as firmware would; it compares no floats.
 //
-// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and, a step, its labels (per adaptive
-// predicate u8 number, then distances and u8 truths) and its samples (per input u8 present and, where present, the
-// elements). Answer: the first trace, the second, and the second once more. The first two run
-// in turns on two instances of the class; the third runs on the first instance after reset(). After the last request:
-// u64, how often memory was asked for while a monitor was constructed, stepped, finished or reset.
+// Request: u32 spec, u32 finish calls, then two traces, each u32 steps, u32 bytes and, a step, its
+// labels (per adaptive predicate u8 number, then distances and u8 truths) and its samples (per
+// input u8 present and, where present, the elements). Answer: the first trace, the second, and the
+// second once more. The first two run in turns on two instances of the class; the third runs on the
+// first instance after reset(). After the last request: u64, how often memory was asked for while a
+// monitor was constructed, stepped, finished or reset.
 #pragma once
 
 #include <stddef.h>
@@ -52,8 +53,8 @@ void write(T value) {
 }
 
 inline void write_verdict(const etlmon::Verdict& verdict) {
-  const bool answers[] = {verdict.satisfied(), verdict.violated(), verdict.unknown(), verdict.decided(),
-                          verdict.final()};
+  const bool answers[] = {verdict.satisfied(), verdict.violated(), verdict.unknown(),
+                          verdict.decided(), verdict.final()};
   uint32_t bits = 0;
   for (uint32_t n = 0; n < 5; ++n) bits |= static_cast<uint32_t>(answers[n]) << n;
   write(bits);
@@ -67,13 +68,15 @@ inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
   etlmon::Verdict numbers;
   numbers.status = verdict.status;
   numbers.robustness = etlmon::float_of(verdict.satisfied() ? etlmon::kTop : etlmon::kBottom);
-  numbers.lower = etlmon::float_of(verdict.final() && verdict.satisfied() ? etlmon::kTop : etlmon::kBottom);
-  numbers.upper = etlmon::float_of(verdict.final() && verdict.violated() ? etlmon::kBottom : etlmon::kTop);
+  numbers.lower =
+      etlmon::float_of(verdict.final() && verdict.satisfied() ? etlmon::kTop : etlmon::kBottom);
+  numbers.upper =
+      etlmon::float_of(verdict.final() && verdict.violated() ? etlmon::kBottom : etlmon::kTop);
   write_verdict(numbers);
 }
 
-// Where the class has no such input or predicate, because no monitor depends on it, the overloads for `long` are taken.
-// Each is instantiated for the members of one spec by the macros below.
+// Where the class has no such input or predicate, because no monitor depends on it, the overloads
+// for `long` are taken. Each is instantiated for the members of one spec by the macros below.
 #define HARNESS_INPUT(name)                                                             \
   struct name##_input {                                                                 \
     template <class Inputs, class Value>                                                \
@@ -87,52 +90,56 @@ inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
   struct name##_predicate {     \
     HARNESS_TELEMETRY(name)     \
   }
-#define HARNESS_TELEMETRY(name)                                                                          \
-  template <class Monitor>                                                                               \
-  static auto distance(const Monitor& m, float& delta, int)->decltype((void)m.distance_##name(), true) { \
-    delta = m.distance_##name();                                                                         \
-    return true;                                                                                         \
-  }                                                                                                      \
-  template <class Monitor>                                                                               \
-  static bool distance(const Monitor&, float&, long) {                                                   \
-    return false;                                                                                        \
-  }                                                                                                      \
-  template <class Monitor>                                                                               \
-  static auto nearest(const Monitor& m, uint32_t& row, int)->decltype((void)m.nearest_##name(), true) {  \
-    row = m.nearest_##name();                                                                            \
-    return true;                                                                                         \
-  }                                                                                                      \
-  template <class Monitor>                                                                               \
-  static bool nearest(const Monitor&, uint32_t&, long) {                                                 \
-    return false;                                                                                        \
+#define HARNESS_TELEMETRY(name)                             \
+  template <class Monitor>                                  \
+  static auto distance(const Monitor& m, float& delta, int) \
+      ->decltype((void)m.distance_##name(), true) {         \
+    delta = m.distance_##name();                            \
+    return true;                                            \
+  }                                                         \
+  template <class Monitor>                                  \
+  static bool distance(const Monitor&, float&, long) {      \
+    return false;                                           \
+  }                                                         \
+  template <class Monitor>                                  \
+  static auto nearest(const Monitor& m, uint32_t& row, int) \
+      ->decltype((void)m.nearest_##name(), true) {          \
+    row = m.nearest_##name();                               \
+    return true;                                            \
+  }                                                         \
+  template <class Monitor>                                  \
+  static bool nearest(const Monitor&, uint32_t&, long) {    \
+    return false;                                           \
   }
-#define HARNESS_ADAPTIVE_PREDICATE(name)                                                                     \
-  struct name##_predicate {                                                                                  \
-    HARNESS_TELEMETRY(name)                                                                                  \
-    template <class Monitor>                                                                                 \
-    static auto observe(Monitor& m, const float& distance, bool truth, int)                                  \
-        -> decltype(m.observe_##name(distance, truth)) {                                                     \
-      m.observe_##name(distance, truth);                                                                     \
-    }                                                                                                        \
-    template <class Monitor>                                                                                 \
-    static void observe(Monitor&, const float&, bool, long) {}                                               \
-    template <class Monitor>                                                                                 \
-    static auto threshold(const Monitor& m, int) -> decltype(m.threshold_##name()) {                         \
-      return m.threshold_##name();                                                                           \
-    }                                                                                                        \
-    template <class Monitor>                                                                                 \
-    static float threshold(const Monitor&, long) {                                                           \
-      return 0.0f;                                                                                           \
-    }                                                                                                        \
-    template <class Monitor>                                                                                 \
-    static auto restart(Monitor& m, int) -> decltype(m.set_threshold_##name(m.initial_threshold_##name())) { \
-      m.set_threshold_##name(m.initial_threshold_##name());                                                  \
-    }                                                                                                        \
-    template <class Monitor>                                                                                 \
-    static void restart(Monitor&, long) {}                                                                   \
+#define HARNESS_ADAPTIVE_PREDICATE(name)                                             \
+  struct name##_predicate {                                                          \
+    HARNESS_TELEMETRY(name)                                                          \
+    template <class Monitor>                                                         \
+    static auto observe(Monitor& m, const float& distance, bool truth, int)          \
+        -> decltype(m.observe_##name(distance, truth)) {                             \
+      m.observe_##name(distance, truth);                                             \
+    }                                                                                \
+    template <class Monitor>                                                         \
+    static void observe(Monitor&, const float&, bool, long) {}                       \
+    template <class Monitor>                                                         \
+    static auto threshold(const Monitor& m, int) -> decltype(m.threshold_##name()) { \
+      return m.threshold_##name();                                                   \
+    }                                                                                \
+    template <class Monitor>                                                         \
+    static float threshold(const Monitor&, long) {                                   \
+      return 0.0f;                                                                   \
+    }                                                                                \
+    template <class Monitor>                                                         \
+    static auto restart(Monitor& m, int)                                             \
+        -> decltype(m.set_threshold_##name(m.initial_threshold_##name())) {          \
+      m.set_threshold_##name(m.initial_threshold_##name());                          \
+    }                                                                                \
+    template <class Monitor>                                                         \
+    static void restart(Monitor&, long) {}                                           \
   }
 
-/// Reads one sample into `element` or `elements`, which a view may keep pointing at; leaves a missing input as it is.
+/// Reads one sample into `element` or `elements`, which a view may keep pointing at; leaves a
+/// missing input as it is.
 template <class Member, class Inputs, class T>
 void feed_scalar(Inputs& in, T (&element)[1]) {
   if (read<uint8_t>() == 0) return;
@@ -192,14 +199,15 @@ struct Tape {
   size_t position;
 };
 
-/// While set, read takes from `source` and write appends to `sink`, in place of the standard streams.
+/// While set, read takes from `source` and write appends to `sink`, in place of the standard
+/// streams.
 extern Tape* source;
 extern Tape* sink;
 
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
-/// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers, Spec::labels,
-/// Spec::restart, Spec::feed, Spec::verdicts, Spec::telemetry, Spec::finish.
+/// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers,
+/// Spec::labels, Spec::restart, Spec::feed, Spec::verdicts, Spec::telemetry, Spec::finish.
 template <class Spec>
 class Session {
  public:

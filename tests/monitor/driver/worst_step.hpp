@@ -1,6 +1,7 @@
-// Counts the instructions of single steps under callgrind, over signals that are hard on windows and machines.
-// Takes: a generated class over inputs x and y. Gives: a dump "NAME OPERATIONS" for each step looked at, and what does
-// not go through it on standard output: the bytes stated and the bytes taken.
+// Counts the instructions of single steps under callgrind, over signals that are hard on windows
+// and machines. Takes: a generated class over inputs x and y. Gives: a dump "NAME OPERATIONS" for
+// each step looked at, and what does not go through it on standard output: the bytes stated and the
+// bytes taken.
 #pragma once
 
 #include <stdint.h>
@@ -53,7 +54,8 @@ void run(const char* name, uint32_t steps) {
   static Monitor monitor;
   char label[64];
   snprintf(label, sizeof label, "%s %u", name, Monitor::kOperations);
-  printf("%s state %zu taken %zu stack %zu\n", name, Monitor::kStateBytes, sizeof monitor, stack_of<Monitor>(0));
+  printf("%s state %zu taken %zu stack %zu\n", name, Monitor::kStateBytes, sizeof monitor,
+         stack_of<Monitor>(0));
   for (uint32_t step = 0; step < steps; ++step) {
     Inputs in;
     in.x = signal(step, 0);

@@ -1,5 +1,5 @@
-// Writes target sets as .npy: rows that come in clusters, some of them twice, so that there are ties.
-// Usage: arrays FILE ROWS ELEMENTS
+// Writes target sets as .npy: rows that come in clusters, some of them twice, so that there are
+// ties. Usage: arrays FILE ROWS ELEMENTS
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -8,7 +8,8 @@
 
 int main(int argc, char** argv) {
     if (argc != 4) return 2;
-    const unsigned rows = static_cast<unsigned>(std::atoi(argv[2])), width = static_cast<unsigned>(std::atoi(argv[3]));
+    const unsigned rows = static_cast<unsigned>(std::atoi(argv[2])),
+                   width = static_cast<unsigned>(std::atoi(argv[3]));
     std::mt19937 random(rows * 31 + width);
     std::normal_distribution<float> normal;
     std::vector<float> center(width), values;
@@ -18,11 +19,12 @@ int main(int argc, char** argv) {
         }
         const bool again = k % 16 == 9;
         for (unsigned i = 0; i < width; ++i) {
-            values.push_back(again ? values[values.size() - 5 * width] : center[i] + 0.05F * normal(random));
+            values.push_back(again ? values[values.size() - 5 * width]
+                                   : center[i] + 0.05F * normal(random));
         }
     }
-    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" + std::to_string(rows) + ", " +
-                         std::to_string(width) + "), }";
+    std::string header = "{'descr': '<f4', 'fortran_order': False, 'shape': (" +
+                         std::to_string(rows) + ", " + std::to_string(width) + "), }";
     header.resize((10 + header.size() + 1 + 63) / 64 * 64 - 11, ' ');
     header += '\n';
     const unsigned char magic[] = {0x93,

@@ -1,6 +1,6 @@
-// One spec compiled twice, its target sets spelled out and in a file: the same bits from both, on embeddings that walk,
-// jump, stand still, touch rows, leave the range of float32, or are not there.
-// Usage: main STORED.targets.bin
+// One spec compiled twice, its target sets spelled out and in a file: the same bits from both, on
+// embeddings that walk, jump, stand still, touch rows, leave the range of float32, or are not
+// there. Usage: main STORED.targets.bin
 #include <cstdio>
 #include <cstring>
 #include <fstream>
@@ -44,7 +44,8 @@ std::vector<Sample> trace(std::uint32_t width, unsigned seed, const std::vector<
         if (kind == 4)
             for (float& x : z) x = 0;
         if (kind == 5)
-            for (std::uint32_t i = 0; i < width; ++i) z[i] = 0.5F * (row[i] + rows[i]);  // between two rows
+            for (std::uint32_t i = 0; i < width; ++i)
+                z[i] = 0.5F * (row[i] + rows[i]);  // between two rows
         if (kind == 6)
             for (std::uint32_t i = 0; i < width; ++i) z[i] = row[i] * (1 + 1e-6F * normal(random));
         if (kind > 12)
@@ -93,9 +94,11 @@ int main(int, char** argv) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(file.targets().rows());
     say(stored::Monitor::valid(bytes, size), "its bytes are valid");
 
-    const std::vector<float> wide = rows_of("wide.npy"), middle = rows_of("middle.npy"), narrow = rows_of("narrow.npy");
+    const std::vector<float> wide = rows_of("wide.npy"), middle = rows_of("middle.npy"),
+                             narrow = rows_of("narrow.npy");
     for (unsigned seed = 1; seed <= SEEDS; ++seed) {
-        const auto a = trace(384, seed, wide), b = trace(33, seed + 100, middle), c = trace(7, seed + 200, narrow);
+        const auto a = trace(384, seed, wide), b = trace(33, seed + 100, middle),
+                   c = trace(7, seed + 200, narrow);
         auto two = std::make_unique<stored::Monitor>(file.targets());
         auto three = std::make_unique<stored::Monitor>(bytes, size);
         const auto expected = run_inlined(a, b, c);
@@ -103,8 +106,8 @@ int main(int, char** argv) {
         for (std::size_t i = 0; i < expected.size(); ++i) {
             if (expected[i] == found[i]) continue;
             const std::size_t a_step = expected.size() / trial::kSteps;
-            std::printf("FAILED: seed %u, step %zu, word %zu: %08x, in the file %08x\n", seed, i / a_step, i % a_step,
-                        expected[i], found[i]);
+            std::printf("FAILED: seed %u, step %zu, word %zu: %08x, in the file %08x\n", seed,
+                        i / a_step, i % a_step, expected[i], found[i]);
             return 1;
         }
         say(trial::run<stored::Inputs>(*three, a, b, c) == expected, "the same from a pointer");

@@ -40,7 +40,8 @@ inline void keep(std::vector<std::uint32_t>& words, const etlmon::BooleanVerdict
 
 /// Every verdict, distance and nearest row of every step; after half of them a new episode.
 template <class Inputs, class Monitor>
-std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide, const std::vector<Sample>& middle,
+std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide,
+                               const std::vector<Sample>& middle,
                                const std::vector<Sample>& narrow) {
     std::vector<std::uint32_t> words;
     for (int step = 0; step < kSteps; ++step) {
@@ -53,7 +54,8 @@ std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide
         in.x = narrow[at].z[0], in.y = narrow[at].z[1];
         const auto v = monitor.step(in);
 #define MONITOR(name) keep(words, v.name);
-#define PREDICATE(name) keep(words, monitor.distance_##name()), keep(words, monitor.nearest_##name());
+#define PREDICATE(name) \
+    keep(words, monitor.distance_##name()), keep(words, monitor.nearest_##name());
 #include "names.inc"
         keep(words, monitor.missing_steps());
     }
@@ -63,5 +65,6 @@ std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide
 }  // namespace trial
 
 /// Of the class whose target sets are spelled out.
-std::vector<std::uint32_t> run_inlined(const std::vector<trial::Sample>& wide, const std::vector<trial::Sample>& middle,
+std::vector<std::uint32_t> run_inlined(const std::vector<trial::Sample>& wide,
+                                       const std::vector<trial::Sample>& middle,
                                        const std::vector<trial::Sample>& narrow);

@@ -10,5 +10,6 @@ int main() {
     reach::Inputs place;
     place.z = z;
     reach::Monitor monitor(file.targets());
-    std::printf("%s: reached %g\n", file.message(), static_cast<double>(monitor.step(place).reached.robustness));
+    std::printf("%s: reached %g\n", file.message(),
+                static_cast<double>(monitor.step(place).reached.robustness));
 }

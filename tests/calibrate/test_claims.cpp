@@ -1,0 +1,177 @@
+// What is claimed is true of episodes that nobody has seen.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <set>
+
+#include "calibrate/ground_truth.hpp"
+#include "check/guarantees.hpp"
+#include "driver/compile.hpp"
+#include "plan/evaluator.hpp"
+#include "random.hpp"
+#include "roads.hpp"
+
+namespace etlc::tests {
+namespace {
+
+constexpr int kDraws = 120;
+constexpr int kFresh = 8;  ///< episodes a draw
+
+/// x is near 0 where the label holds; s comes to lie on the threshold of the comparisons with it.
+struct Drawn {
+    std::vector<float> x, s;
+    std::vector<bool> label;
+
+    explicit Drawn(Random& random) {
+        const double share = random.uniform();
+        for (int t = 0; t < 6; ++t) {
+            label.push_back(random.chance(share));
+            double noise = 0;
+            for (int i = 0; i < 4; ++i) noise += random.uniform() - 0.5;
+            x.push_back(static_cast<float>((label.back() ? 0 : 1) + 0.8 * noise));
+            s.push_back(random.pick(std::vector<float>{0.25F, 0.5F, 0.5F, 1}));
+        }
+    }
+
+    std::string csv() const {
+        std::string text = "x,s,truth.a\n";
+        for (std::size_t t = 0; t < x.size(); ++t)
+            text += fmt::format("{},{},{}\n", x[t], s[t], label[t] ? 1 : 0);
+        return text;
+    }
+};
+
+std::vector<std::string> drawn(Random& random, int count) {
+    std::vector<std::string> episodes;
+    for (int i = 0; i < count; ++i) episodes.push_back(Drawn(random).csv());
+    return episodes;
+}
+
+/// Of every monitor with a claim: the fresh episodes, and those in which some verdict was what the
+/// claim excludes.
+struct Kept {
+    check::Claim claim;
+    int episodes = 0;
+    int broken = 0;
+};
+
+/// `zero_aside`: a verdict with robustness 0 is not meant.
+bool breaks(const check::Claim& claim, const etlmon::Verdict& said, const etlmon::Verdict& is) {
+    const bool alarm =
+        is.violated() && said.satisfied() && !(claim.zero_aside && said.robustness == 0);
+    const bool success = is.satisfied() && said.violated();
+    switch (claim.kind) {
+        case check::Claim::Kind::missed_success: return success;
+        case check::Claim::Kind::missed_alarm: return alarm;
+        case check::Claim::Kind::exact: return success || alarm;
+        case check::Claim::Kind::nothing: break;
+    }
+    return false;
+}
+
+void count(const driver::Compiled& monitors, const driver::Compiled& truths, Random& random,
+           std::map<std::string, Kept>& kept) {
+    plan::Evaluator said(monitors.plan);
+    plan::Evaluator is(truths.plan);
+    const Drawn episode(random);
+    std::set<std::string> broken;
+    for (std::size_t t = 0; t < episode.x.size(); ++t) {
+        std::vector<plan::Sample> samples{{true, {episode.x[t]}}, {true, {episode.s[t]}}};
+        const auto& verdicts = said.step(samples);
+        samples.push_back({true, {episode.label[t] ? 1.0F : 0.0F}});
+        const auto& truth = is.step(samples);
+        for (std::size_t m = 0; m < verdicts.size(); ++m) {
+            const check::Monitor& monitor =
+                monitors.model->monitors[monitors.plan.monitors[m].index];
+            Kept& of = kept[monitor.name];
+            of.claim = check::claims(*monitors.model, monitor, monitors.plan.values)[0];
+            if (breaks(of.claim, verdicts[m], truth[m])) broken.insert(monitor.name);
+        }
+    }
+    for (auto& [name, of] : kept) {
+        ++of.episodes;
+        of.broken += broken.contains(name) ? 1 : 0;
+    }
+}
+
+/// Calibrates anew for every draw. Draws that show too little to calibrate from are left out.
+std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
+                                  check::Values values) {
+    std::map<std::string, Kept> kept;
+    Random random(2027);
+    for (int draw = 0; draw < kDraws; ++draw) {
+        std::string thresholds;
+        const Files first(drawn(random, 10));
+        if (of_predicates) {
+            thresholds = calibrated(spec, first.paths()).thresholds;
+            if (thresholds.empty()) continue;
+        }
+        const Files second(drawn(random, 16));
+        if (of_monitors) {
+            thresholds = calibrated(spec, second.paths(), thresholds).thresholds;
+            if (thresholds.empty()) continue;
+        }
+        const TemporaryPath file("thresholds.json", thresholds);
+        driver::Request request;
+        request.check.thresholds_path = file.path();
+        request.values = values;
+        diag::Sink sink;
+        const auto monitors = driver::compile(source::File("t.etl", spec), request, sink);
+        if (!monitors) {
+            ADD_FAILURE() << thresholds;
+            return kept;
+        }
+        auto truth = calibrate::ground_truth(*monitors->model, {0});
+        const auto truths =
+            driver::compile(std::move(truth.model), {}, sink, check::Values::boolean);
+        for (int i = 0; i < kFresh; ++i) count(*monitors, *truths, random, kept);
+    }
+    return kept;
+}
+
+void expect_kept(const std::map<std::string, Kept>& all, const std::string& which) {
+    for (const auto& [name, kept] : all) {
+        EXPECT_GT(kept.episodes, kDraws * kFresh / 2) << which;
+        const double bound =
+            kept.claim.bound.empty() || kept.claim.kind == check::Claim::Kind::exact
+                ? 0
+                : std::stod(kept.claim.bound);
+        const double share = static_cast<double>(kept.broken) / kept.episodes;
+        EXPECT_LE(share, bound + 3 * std::sqrt(bound * (1 - bound) * kFresh / kept.episodes))
+            << which << " " << name << ": " << check::text(kept.claim);
+    }
+}
+
+const std::string kUnions =
+    "monitor p0 = F (a && s > 0.5); monitor p1 = G (s > 0.5 -> F[0, 2] a); monitor n0 = G (a -> s "
+    "> 0.5);"
+    "monitor n1 = G (a -> s >= 0.5); monitor n2 = G !(a && s <= 0.5); sliding monitor n3 = F[0, 2] "
+    "!a;"
+    "monitor e0 = G s > 0.5; monitor e1 = G s >= 0.5; monitor e2 = F !(s >= 0.5);";
+const std::string kWholes =
+    "monitor w0 = F (a && s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_alarm);"
+    "monitor w1 = F (a && s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_success);"
+    "monitor w2 = G (a -> s > 0.5) calibrated(conformal, alpha = 0.25, against = missed_alarm);"
+    "sliding monitor w3 = F[0, 2] !a calibrated(conformal, alpha = 0.25, against = missed_alarm);";
+
+std::string drawn_spec(const std::string& threshold, const std::string& monitors) {
+    return "spec t; input x, s : f32; predicate a = x <= " + threshold + ";\n" + monitors;
+}
+
+TEST(Claims, AreKept) {
+    using enum check::Values;
+    const std::string unions = drawn_spec("calibrated(conformal, alpha = 0.25)", kUnions);
+    expect_kept(draws(unions, true, false, robustness), "predicates");
+    expect_kept(draws(unions, true, false, boolean), "predicates, boolean");
+    expect_kept(draws(drawn_spec("0.5", kWholes), false, true, robustness), "wholes");
+    expect_kept(draws(drawn_spec("calibrated(f1)", kWholes), true, true, robustness),
+                "wholes of f1");
+    expect_kept(
+        draws(drawn_spec("calibrated(conformal, alpha = 0.25)", kWholes), true, true, robustness),
+        "wholes of conformal");
+}
+
+}  // namespace
+}  // namespace etlc::tests
