@@ -37,6 +37,9 @@ class Lazy {
   mutable bool found_ = false;
 };
 
+template <class Find>
+Lazy(Find) -> Lazy<Find>;
+
 namespace detail {
 
 /// What a combination keeps of an operand: a reference to a variable, a temporary itself.

@@ -150,7 +150,8 @@ BasicReading<V> pending_from_start(V& best, V& held,
   if (step >= horizon) {
     if (open(position)) best = Sense::gain(best, Sense::keep(held, g[0].rho));
     if (f != nullptr) held = Sense::keep(held, f[0].rho);
-    ++p, ++position;
+    ++p;
+    ++position;
   }
   BasicReading<V> result = settled(best);
   BasicReading<V> left = settled(held);
