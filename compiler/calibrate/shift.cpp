@@ -12,6 +12,8 @@
 #include "check/guarantees.hpp"
 #include "check/provenance.hpp"
 #include "data/episodes.hpp"
+#include "data/file.hpp"
+#include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
 
@@ -124,23 +126,14 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
     return text;
 }
 
-}  // namespace
-
-std::vector<Index> calibrated_monitors(const check::Model& model) {
-    std::vector<Index> found;
-    for (Index m = 0; m < model.monitors.size(); ++m)
-        if (model.monitors[m].calibration) found.push_back(m);
-    return found;
-}
-
-std::optional<std::vector<Index>> labelled_predicates(const check::Model& model,
-                                                      const std::vector<Index>& monitors,
-                                                      const Request& request, diag::Sink& sink) {
-    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
-    if (sink.has_errors()) return std::nullopt;
-    const auto labelled = labelled_in(model, paths[0], request.names);
+/// All that are not their own truth, and those that the first episode has an array of labels for.
+std::optional<std::vector<Index>> find_labelled(const check::Model& model,
+                                                const std::vector<Index>& monitors,
+                                                const std::string& first, const Request& request,
+                                                diag::Sink& sink) {
+    const auto labelled = labelled_in(model, first, request.names);
     if (!labelled) {
-        sink.report(data::in_file(labelled.failure(), paths[0]));
+        sink.report(data::in_file(labelled.failure(), first));
         return std::nullopt;
     }
     std::set<Index> found;
@@ -152,18 +145,36 @@ std::optional<std::vector<Index>> labelled_predicates(const check::Model& model,
     return std::vector<Index>(found.begin(), found.end());
 }
 
+}  // namespace
+
+std::vector<Index> calibrated_monitors(const check::Model& model) {
+    std::vector<Index> found;
+    for (Index m = 0; m < model.monitors.size(); ++m)
+        if (model.monitors[m].calibration) found.push_back(m);
+    return found;
+}
+
 check::Model unshifted(check::Model model) {
     for (check::Monitor& monitor : model.monitors) monitor.calibration.reset();
     return model;
 }
 
-std::optional<Calibration> calibrate_monitors(const check::Model& model, const MonitorPlans& plans,
-                                              thresholds::File before, const Request& request,
-                                              diag::Sink& sink) {
+std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
+                                              const Request& request, diag::Sink& sink) {
     const std::vector<Index> monitors = calibrated_monitors(model);
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
-    const Leaks leaks(model, labelled_predicates(plans.ground_truth));
+    const auto labelled = find_labelled(model, monitors, paths[0], request, sink);
+    if (!labelled) return std::nullopt;
+    const check::Model plain = unshifted(model);
+    const GroundTruth truth = ground_truth(plain, *labelled);
+    const auto compiled = pipeline::compile(plain, {}, sink);
+    // What is true is not a matter of rho.
+    const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
+    if (!compiled || !truths) return std::nullopt;
+    const MonitorPlans plans{compiled->plan, truths->plan, truth};
+
+    const Leaks leaks(model, *labelled);
     const auto episodes = over_episodes<MonitorEpisode>(paths, request, sink, [&] {
         return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
     });

@@ -20,12 +20,6 @@ namespace etlc::calibrate {
 /// Monitors of the model that are calibrated as a whole.
 std::vector<Index> calibrated_monitors(const check::Model& model);
 
-/// Predicates in these monitors that get labels: all that are not their own truth, and those that
-/// the first episode has an array of labels for. Nothing where the sink now says why.
-std::optional<std::vector<Index>> labelled_predicates(const check::Model& model,
-                                                      const std::vector<Index>& monitors,
-                                                      const Request& request, diag::Sink& sink);
-
 /// The model without shifts: what its plan is made of.
 check::Model unshifted(check::Model model);
 
@@ -49,9 +43,10 @@ struct MonitorEpisode : Recorded {
 };
 
 /// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the
-/// predicates (or an empty one where all are literal). Nothing where the sink now says why.
-std::optional<Calibration> calibrate_monitors(const check::Model& model, const MonitorPlans& plans,
-                                              thresholds::File before, const Request& request,
-                                              diag::Sink& sink);
+/// predicates (or an empty one where all are literal). Labels are asked for of the predicates in
+/// these monitors that are not their own truth, or that the first episode has an array of labels
+/// for. Nothing where the sink now says why.
+std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
+                                              const Request& request, diag::Sink& sink);
 
 }  // namespace etlc::calibrate

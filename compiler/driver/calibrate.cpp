@@ -4,7 +4,6 @@
 #include "check/check.hpp"
 #include "data/episodes.hpp"
 #include "data/file.hpp"
-#include "driver/compile.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
@@ -18,21 +17,6 @@ namespace {
 
 using calibrate::Calibration;
 
-std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
-                                              const calibrate::Request& request, diag::Sink& sink) {
-    const auto labelled =
-        calibrate::labelled_predicates(model, calibrate::calibrated_monitors(model), request, sink);
-    if (!labelled) return std::nullopt;
-    const check::Model unshifted = calibrate::unshifted(model);
-    const calibrate::GroundTruth truth = calibrate::ground_truth(unshifted, *labelled);
-    const auto monitors = compile(unshifted, {}, sink);
-    const auto truths = compile(truth.model, {}, sink,
-                                check::Values::boolean);  // what is true is not a matter of rho
-    if (!monitors || !truths) return std::nullopt;
-    return calibrate::calibrate_monitors(model, {monitors->plan, truths->plan, truth},
-                                         std::move(before), request, sink);
-}
-
 /// Predicates first; then, on other episodes, the monitors with these thresholds in them.
 std::optional<Calibration> calibrate_model(const check::Model& model,
                                            const CalibrateRequest& request,
@@ -42,7 +26,7 @@ std::optional<Calibration> calibrate_model(const check::Model& model,
     const bool has_predicates = !calibrate::calibrated_predicates(model).empty();
     if (request.thresholds.empty()) {
         if (has_monitors && !has_predicates)
-            return calibrate_monitors(model, {}, calibration, sink);
+            return calibrate::calibrate_monitors(model, {}, calibration, sink);
         auto result = calibrate::calibrate(model, calibration, sink);
         if (result && has_monitors)
             result->report +=
@@ -62,7 +46,7 @@ std::optional<Calibration> calibrate_model(const check::Model& model,
         sink.report(data::in_file(before.failure(), request.thresholds));
         return std::nullopt;
     }
-    return calibrate_monitors(model, std::move(*before), calibration, sink);
+    return calibrate::calibrate_monitors(model, std::move(*before), calibration, sink);
 }
 
 /// What may not be written over. Thresholds may: those of the monitors come to those of the

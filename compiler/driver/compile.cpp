@@ -6,7 +6,6 @@
 
 #include "driver/version.hpp"
 #include "emit/emit.hpp"
-#include "opt/opt.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
@@ -17,19 +16,7 @@ std::optional<Compiled> compile(const source::File& file, const Request& request
     const ast::Spec spec = parse::parse(file, sink);
     auto model = check::check(spec, file, request.check, sink);
     if (!model || sink.has_errors()) return std::nullopt;
-    return compile(std::move(*model), request.limits, sink, request.values, request.targets_as);
-}
-
-std::optional<Compiled> compile(check::Model model, const plan::Limits& limits, diag::Sink& sink,
-                                check::Values values, plan::Storage targets_as) {
-    Compiled result;
-    result.model = std::make_unique<check::Model>(std::move(model));
-    result.program = std::make_unique<ir::Program>(ir::lower(*result.model));
-    opt::optimise(*result.program);
-    auto plan = plan::plan(*result.program, limits, sink, values, targets_as);
-    if (!plan) return std::nullopt;
-    result.plan = std::move(*plan);
-    return result;
+    return pipeline::compile(std::move(*model), request, sink);
 }
 
 namespace {

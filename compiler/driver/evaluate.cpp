@@ -51,14 +51,9 @@ bool evaluate(const source::File& file, const Request& request, const EvaluateRe
         return false;
     asked.progress = episodes_progress();
 
-    auto labelled = evaluate::find_labelled(model, asked, sink);
-    if (!labelled) return false;
-    evaluate::Subject subject = evaluate::subject(model, std::move(*labelled));
-    const auto truth =
-        compile(std::move(subject.truth.model), request.limits, sink, check::Values::boolean);
-    if (!truth) return false;
-    const auto result = evaluate::evaluate(compiled->plan, truth->plan, subject, asked,
-                                           thresholds_of(model, file.path(), request), sink);
+    asked.limits = request.limits;
+    const auto result =
+        evaluate::evaluate(*compiled, asked, thresholds_of(model, file.path(), request), sink);
     if (!result) return false;
     // What is printed comes before the files take their names: where a part of it is lost, nothing
     // has changed.

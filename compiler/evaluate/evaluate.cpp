@@ -196,26 +196,27 @@ Evaluation summarise(const check::Model& model, const Subject& subject,
 
 }  // namespace
 
-std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request,
-                                                diag::Sink& sink) {
-    auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
-    if (labelled) return std::move(*labelled);
-    sink.report(data::in_file(labelled.failure(), request.episodes[0]));
-    return std::nullopt;
-}
-
-std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth,
-                                   const Subject& subject, const Request& request,
+std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request& request,
                                    const std::optional<thresholds::File>& seen, diag::Sink& sink) {
-    const calibrate::Leaks leaks(*plan.model, subject.labelled);
+    const check::Model& model = *spec.model;
+    auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
+    if (!labelled) {
+        sink.report(data::in_file(labelled.failure(), request.episodes[0]));
+        return std::nullopt;
+    }
+    const Subject subject = evaluate::subject(model, std::move(*labelled));
+    const auto truth =
+        pipeline::compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
+    if (!truth) return std::nullopt;
+    const calibrate::Leaks leaks(model, subject.labelled);
     const auto judge = [&] {
-        return std::make_unique<Judge>(plan, truth, subject, leaks, request.names);
+        return std::make_unique<Judge>(spec.plan, truth->plan, subject, leaks, request.names);
     };
     const auto episodes =
         calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
     if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
-    warn_of_leaks(*plan.model, *episodes, request, sink);
-    return summarise(*plan.model, subject, *episodes);
+    warn_of_leaks(model, *episodes, request, sink);
+    return summarise(model, subject, *episodes);
 }
 
 }  // namespace etlc::evaluate

@@ -1,5 +1,5 @@
 // `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
-// Takes: the plans of the spec and of its ground truth, and the episodes. Gives: counts and rates
+// Takes: the compiled spec and the episodes. Gives: counts and rates
 // per predicate and monitor, each with its interval and beside the claims that do not look. Keeps
 // true: the result is the same whatever the number of threads; one episode a thread is open at a
 // time; episodes that thresholds were calibrated on are refused.
@@ -15,7 +15,7 @@
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/judge.hpp"
 #include "evaluate/subject.hpp"
-#include "plan/plan.hpp"
+#include "pipeline/compile.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::evaluate {
@@ -23,7 +23,8 @@ namespace etlc::evaluate {
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
-    unsigned jobs = 0;  ///< threads; 0: as many as the machine has
+    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
+    plan::Limits limits;  ///< of the ground truth's plan
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
@@ -76,15 +77,10 @@ struct Evaluation {
     std::vector<MonitorScore> monitors;
 };
 
-/// The predicates that have a truth in the spec or an array in the first episode; nothing where
-/// that cannot be read, as the sink then says.
-std::optional<std::vector<Index>> find_labelled(const check::Model& model, const Request& request,
-                                                diag::Sink& sink);
-
-/// `seen`: the thresholds that the plan has, where they were calibrated; the episodes in it are
-/// refused. Nothing where the sink now says why.
-std::optional<Evaluation> evaluate(const plan::Plan& plan, const plan::Plan& truth,
-                                   const Subject& subject, const Request& request,
+/// Predicates are held to the truth that the spec has, or an array in the first episode. `seen`:
+/// the thresholds that the plan has, where they were calibrated; the episodes in it are refused.
+/// Nothing where the sink now says why.
+std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request& request,
                                    const std::optional<thresholds::File>& seen, diag::Sink& sink);
 
 /// For people: an aligned table. For spreadsheets: a figure a row. For programs: JSON.

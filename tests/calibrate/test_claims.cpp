@@ -125,7 +125,7 @@ std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, b
         }
         auto truth = calibrate::ground_truth(*monitors->model, {0});
         const auto truths =
-            driver::compile(std::move(truth.model), {}, sink, check::Values::boolean);
+            pipeline::compile(std::move(truth.model), {{}, check::Values::boolean}, sink);
         for (int i = 0; i < kFresh; ++i) count(*monitors, *truths, random, kept);
     }
     return kept;

@@ -142,8 +142,7 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         const bool alarms = against == "missed_alarm";
         const check::Model model = model_of(against, 0);
         const Planned unshifted(calibrate::unshifted(model));
-        const calibrate::GroundTruth ground_truth = calibrate::ground_truth(unshifted.model, {0});
-        const Planned truths(ground_truth.model);
+        const Planned truths(calibrate::ground_truth(unshifted.model, {0}).model);
         plan::Evaluator said(unshifted.plan);
         plan::Evaluator truth(truths.plan);
         Random random(78);
@@ -161,8 +160,7 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         }
         std::sort(scores.begin(), scores.end());
         diag::Sink sink;
-        const auto result = calibrate::calibrate_monitors(
-            model, {unshifted.plan, truths.plan, ground_truth}, {}, request, sink);
+        const auto result = calibrate::calibrate_monitors(model, {}, request, sink);
         ASSERT_TRUE(result);
         const thresholds::Entry& entry = result->file.monitors.at("m");
         ASSERT_EQ(entry.n, scores.size());

@@ -45,13 +45,7 @@ std::optional<evaluate::Evaluation> run(const std::string& spec,
     evaluate::Request request;
     request.episodes = folder.files;
     request.jobs = jobs;
-    auto labelled = evaluate::find_labelled(*compiled->model, request, sink);
-    if (!labelled) return std::nullopt;
-    evaluate::Subject subject = evaluate::subject(*compiled->model, *labelled);
-    const auto truth =
-        driver::compile(std::move(subject.truth.model), {}, sink, check::Values::boolean);
-    if (!truth) return std::nullopt;
-    return evaluate::evaluate(compiled->plan, truth->plan, subject, request, std::nullopt, sink);
+    return evaluate::evaluate(*compiled, request, std::nullopt, sink);
 }
 
 }  // namespace

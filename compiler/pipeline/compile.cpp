@@ -1,0 +1,19 @@
+#include "pipeline/compile.hpp"
+
+#include "opt/opt.hpp"
+
+namespace etlc::pipeline {
+
+std::optional<Compiled> compile(check::Model model, const Options& options, diag::Sink& sink) {
+    Compiled result;
+    result.model = std::make_unique<check::Model>(std::move(model));
+    result.program = std::make_unique<ir::Program>(ir::lower(*result.model));
+    opt::optimise(*result.program);
+    auto plan =
+        plan::plan(*result.program, options.limits, sink, options.values, options.targets_as);
+    if (!plan) return std::nullopt;
+    result.plan = std::move(*plan);
+    return result;
+}
+
+}  // namespace etlc::pipeline
