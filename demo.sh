@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# ./demo.sh: installs what is missing, builds what the demo needs, then goes from two specs to running monitors.
-# What it makes is below build/; nothing of the repository changes.
+# ./demo.sh: installs what is missing, builds what the demo needs, then goes from two specs to
+# running monitors. What it makes is below build/; nothing of the repository changes.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -52,15 +52,18 @@ record=build/release/examples/dubins/dubins_record
 show grep -E '^(predicate|truth|monitor|sliding)' examples/dubins/paper.etl
 echo
 show "$record" "$drives" 1
-show etlc calibrate examples/dubins/paper.etl --data "$drives/1/calibration" -o "$out/paper.thresholds.json"
+show etlc calibrate examples/dubins/paper.etl --data "$drives/1/calibration" \
+    -o "$out/paper.thresholds.json"
 echo
 show etlc examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" -o "$out/paper.hpp"
-show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I "$out" examples/dubins/watch.cpp -o "$out/watch"
+show "${CXX:-c++}" -std=c++17 -O2 -I runtime/include -I "$out" examples/dubins/watch.cpp \
+    -o "$out/watch"
 echo
 echo "The compiled class, on the 180 drives that the thresholds have not seen:"
 show "$out/watch" "$drives/1/test"
 echo
-show etlc evaluate examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" --data "$drives/1/test"
+show etlc evaluate examples/dubins/paper.etl --thresholds "$out/paper.thresholds.json" \
+    --data "$drives/1/test"
 
 title "The same over five seeds, beside the paper's table"
 show examples/dubins/experiment.sh build/release/etlc "$record" "$drives"

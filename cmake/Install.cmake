@@ -13,7 +13,8 @@ install(EXPORT etlcTargets NAMESPACE etlc:: DESTINATION "${package_dir}")
 install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in" "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")
-# etlc runs where the build runs and the runtime is headers, so a cross build may use the package of the build machine.
+# etlc runs where the build runs and the runtime is headers, so a cross
+# build may use the package of the build machine.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake" COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake" "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")

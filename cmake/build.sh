@@ -18,6 +18,7 @@ build() {
     if [ -t 1 ]; then
         cmake --build "build/$preset" --parallel "$(nproc)" --target "$@"
     else
-        cmake --build "build/$preset" --parallel "$(nproc)" --target "$@" >"$log" 2>&1 || { cat "$log"; return 1; }
+        cmake --build "build/$preset" --parallel "$(nproc)" --target "$@" >"$log" 2>&1 ||
+            { cat "$log"; return 1; }
     fi
 }

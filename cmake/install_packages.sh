@@ -1,12 +1,14 @@
 #!/usr/bin/env bash
-# install_packages.sh GROUP...: makes sure that the packages of these groups of packages.txt are installed; says nothing where they are.
-# Installs through apt as root or with sudo; elsewhere names what is missing and fails.
+# install_packages.sh GROUP...: makes sure that the packages of these groups of
+# packages.txt are installed; says nothing where they are. Installs through apt as root or
+# with sudo; elsewhere names what is missing and fails.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 
 packages=()
 for group in "$@"; do
-    mapfile -t -O "${#packages[@]}" packages < <(awk -v group="$group" '$1 == group { print $2 }' "$list")
+    mapfile -t -O "${#packages[@]}" packages < <(awk -v group="$group" '$1 == group { print $2 }' \
+        "$list")
 done
 
 if ! command -v dpkg-query >/dev/null; then
@@ -14,7 +16,8 @@ if ! command -v dpkg-query >/dev/null; then
     exit 0
 fi
 
-installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null | awk '$1 == "installed" { print $2 }' || true)
+installed=$(dpkg-query -W -f '${db:Status-Status} ${Package}\n' "${packages[@]}" 2>/dev/null |
+    awk '$1 == "installed" { print $2 }' || true)
 missing=()
 for package in "${packages[@]}"; do
     grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
@@ -25,7 +28,8 @@ as_root=()
 if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo)
 fi
-if ! command -v apt-get >/dev/null || { [ ${#as_root[@]} -gt 0 ] && ! command -v sudo >/dev/null; }; then
+if ! command -v apt-get >/dev/null || { [ ${#as_root[@]} -gt 0 ] &&
+    ! command -v sudo >/dev/null; }; then
     echo "These packages are missing, and only root or sudo with apt could install them:" >&2
     echo "    apt-get install ${missing[*]}" >&2
     exit 1
@@ -34,4 +38,5 @@ fi
 echo "Installing ${missing[*]}"
 as_root+=(env DEBIAN_FRONTEND=noninteractive)
 "${as_root[@]}" apt-get -qq update
-"${as_root[@]}" apt-get -qq install --no-install-recommends -o Dpkg::Use-Pty=0 "${missing[@]}" >/dev/null
+"${as_root[@]}" apt-get -qq install --no-install-recommends -o Dpkg::Use-Pty=0 "${missing[@]}" \
+    >/dev/null

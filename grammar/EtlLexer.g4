@@ -1,7 +1,8 @@
 // The words of Embedding Temporal Logic. docs/language.md explains them.
 //
-// Reserved words come first. The contextual words after them (types, units, distances, aggregations, functions) are
-// tokens of their own, which the parser's rule `name` accepts as names as well.
+// Reserved words come first. The contextual words after them (types, units,
+// distances, aggregations, functions) are tokens of their own, which the
+// parser's rule `name` accepts as names as well.
 lexer grammar EtlLexer;
 
 // ---- reserved: declarations
@@ -78,7 +79,8 @@ SQRT        : 'sqrt' ;
 
 IDENTIFIER : [A-Za-z_] [A-Za-z_0-9]* ;
 
-// ---- numbers and strings: the sign is a token of its own; a string is taken as it stands, without escapes
+// ---- numbers and strings: the sign is a token of its own; a
+// string is taken as it stands, without escapes
 
 NUMBER : DIGIT+ ('.' DIGIT+)? EXPONENT? ;
 STRING : '"' ~["\r\n]* '"' ;
@@ -108,8 +110,8 @@ BLANKS        : [ \t\r\n\f\u000B]+            -> skip ;
 LINE_COMMENT  : '//' ~[\r\n]*                 -> skip ;
 BLOCK_COMMENT : '/*' .*? '*/'                 -> skip ;
 
-// ---- mistakes, as tokens, so that messages can name them. An unterminated comment takes the rest of the file: were it
-// two characters long, a file full of them would be read over and over.
+// ---- mistakes, as tokens, so that messages can name them. An unterminated comment takes the rest
+// of the file: were it two characters long, a file full of them would be read over and over.
 
 UNTERMINATED_STRING  : '"' ~["\r\n]* ;
 UNTERMINATED_COMMENT : '/*' (~[*] | '*'+ ~[*/])* '*'* ;

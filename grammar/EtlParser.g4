@@ -1,9 +1,10 @@
 // The grammar of Embedding Temporal Logic. docs/language.md explains it.
 //
-// Formulas and expressions share one ladder of rules, from the loosest operator to the tightest: `(x + y) * 2 > 1` and
-// `(a && b)` begin alike, and a parser that had to tell them apart at the bracket would read ahead without bound.
-// compiler/parse tells them apart as it builds the tree, where it knows which of the two may stand.
-// Every decision but those on contextual words takes one token of lookahead. Chains are loops, not recursion.
+// Formulas and expressions share one ladder of rules, from the loosest operator to the tightest:
+// `(x + y) * 2 > 1` and `(a && b)` begin alike, and a parser that had to tell them apart at the
+// bracket would read ahead without bound. compiler/parse tells them apart as it builds the tree,
+// where it knows which of the two may stand. Every decision but those on contextual words takes one
+// token of lookahead. Chains are loops, not recursion.
 parser grammar EtlParser;
 
 options { tokenVocab = EtlLexer; }

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, and what becomes of a threshold that stays and of one that
-# follows labels. Both are calibrated on 120 drives with the camera as new; then 300 other drives go past the compiled class, with labels
-# two seconds late. What it makes stays in FOLDER.
+# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, and what
+# becomes of a threshold that stays and of one that follows labels. Both are calibrated on
+# 120 drives with the camera as new; then 300 other drives go past the compiled class, with
+# labels two seconds late. What it makes stays in FOLDER.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3 seed=${4:-1}
 here=$(dirname "${BASH_SOURCE[0]}")
@@ -9,7 +10,9 @@ later=$((seed + 1000))  # the drives of another seed
 
 [ -d "$folder/$seed/calibration" ] || "$record" "$folder" "$seed"
 "$record" --sagging "$folder" "$later"
-"$etlc" calibrate "$here/drift.etl" --data "$folder/$seed/calibration" -o "$folder/drift.thresholds.json" >"$folder/drift.txt"
+"$etlc" calibrate "$here/drift.etl" --data "$folder/$seed/calibration" \
+    -o "$folder/drift.thresholds.json" >"$folder/drift.txt"
 "$etlc" "$here/drift.etl" --thresholds "$folder/drift.thresholds.json" -o "$folder/drift.hpp"
-"${CXX:-c++}" -std=c++17 -O2 -I "$here/../../runtime/include" -I "$folder" "$here/drift.cpp" -o "$folder/drift"
+"${CXX:-c++}" -std=c++17 -O2 -I "$here/../../runtime/include" -I "$folder" "$here/drift.cpp" \
+    -o "$folder/drift"
 "$folder/drift" "$folder/$later/sagging"

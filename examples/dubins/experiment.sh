@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# experiment.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the paper's Dubins experiment, for each seed (default: 1 to 5) on drives of its own.
-# 300 drives a seed: thresholds from 120, by F1 and by conformal calibration with alpha = 0.10; evaluation on the other 180. Prints the
-# mean and the standard deviation over the seeds beside the paper's table. What it makes stays in FOLDER/SEED.
+# experiment.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the paper's Dubins experiment, for each seed
+# (default: 1 to 5) on drives of its own. 300 drives a seed: thresholds from 120, by F1 and by
+# conformal calibration with alpha = 0.10; evaluation on the other 180. Prints the mean and the
+# standard deviation over the seeds beside the paper's table. What it makes stays in FOLDER/SEED.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3
 shift 3
@@ -11,8 +12,10 @@ spec=$(dirname "${BASH_SOURCE[0]}")/paper.etl
 "$record" "$folder" "$@"
 results=()
 for seed in "$@"; do
-    "$etlc" calibrate "$spec" --data "$folder/$seed/calibration" -o "$folder/$seed/thresholds.json" >"$folder/$seed/calibration.txt"
-    "$etlc" evaluate "$spec" --data "$folder/$seed/test" --thresholds "$folder/$seed/thresholds.json" \
+    "$etlc" calibrate "$spec" --data "$folder/$seed/calibration" \
+        -o "$folder/$seed/thresholds.json" >"$folder/$seed/calibration.txt"
+    "$etlc" evaluate "$spec" --data "$folder/$seed/test" \
+        --thresholds "$folder/$seed/thresholds.json" \
         --csv "$folder/$seed/evaluation.csv" >"$folder/$seed/evaluation.txt"
     results+=("$folder/$seed/evaluation.csv")
 done

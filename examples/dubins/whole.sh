@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# whole.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the guarantee of a formula, by the union bound over its predicates and by calibrating the
-# monitor as a whole, for each seed (default: 1 to 5) on the drives of experiment.sh. Both have the same 120 drives to calibrate on; calibrated
-# as a whole, 60 of them give the thresholds and the other 60 the shift. Prints what came of it on 180 others.
+# whole.sh ETLC DUBINS_RECORD FOLDER [SEED...]: the guarantee of a formula, by the union bound over
+# its predicates and by calibrating the monitor as a whole, for each seed (default: 1 to 5) on the
+# drives of experiment.sh. Both have the same 120 drives to calibrate on; calibrated as a whole, 60
+# of them give the thresholds and the other 60 the shift. Prints what came of it on 180 others.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3
 shift 3
@@ -13,13 +14,19 @@ for seed in "$@"; do
     drives=$folder/$seed
     [ -d "$drives/calibration" ] || "$record" "$folder" "$seed"
     mapfile -t all < <(printf '%s\n' "$drives"/calibration/*.csv)
-    "$etlc" calibrate "$here/union.etl" --data "${all[@]}" -o "$drives/union.thresholds.json" >"$drives/union.txt"
-    "$etlc" calibrate "$here/whole.etl" --data "${all[@]:0:60}" -o "$drives/predicates.json" >"$drives/predicates.txt"
-    "$etlc" calibrate "$here/whole.etl" --data "${all[@]:60}" --thresholds "$drives/predicates.json" -o "$drives/whole.thresholds.json" >"$drives/whole.txt"
+    "$etlc" calibrate "$here/union.etl" --data "${all[@]}" -o "$drives/union.thresholds.json" \
+        >"$drives/union.txt"
+    "$etlc" calibrate "$here/whole.etl" --data "${all[@]:0:60}" -o "$drives/predicates.json" \
+        >"$drives/predicates.txt"
+    "$etlc" calibrate "$here/whole.etl" --data "${all[@]:60}" \
+        --thresholds "$drives/predicates.json" -o "$drives/whole.thresholds.json" \
+        >"$drives/whole.txt"
     for spec in union whole; do
-        "$etlc" "$here/$spec.etl" --thresholds "$drives/$spec.thresholds.json" -o "$drives/$spec.hpp"
+        "$etlc" "$here/$spec.etl" --thresholds "$drives/$spec.thresholds.json" \
+            -o "$drives/$spec.hpp"
     done
-    "${CXX:-c++}" -std=c++17 -O2 -I "$here/../../runtime/include" -I "$drives" "$here/whole.cpp" -o "$drives/whole"
+    "${CXX:-c++}" -std=c++17 -O2 -I "$here/../../runtime/include" -I "$drives" "$here/whole.cpp" \
+        -o "$drives/whole"
     "$drives/whole" "$drives/test" >"$drives/whole.csv"
     results+=("$drives/whole.csv")
 done

@@ -1,6 +1,7 @@
 #!/bin/sh
-# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and both programs for each board, into the folder OUT.
-# RUNTIME: the folder that holds etlmon/. BOARD: cortex_m4, rv32 (QEMU's mps2-an386 and virt machines), host.
+# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and both programs for
+# each board, into the folder OUT. RUNTIME: the folder that holds etlmon/. BOARD: cortex_m4,
+# rv32 (QEMU's mps2-an386 and virt machines), host.
 set -eu
 etlc=$1 runtime=$2 out=$3
 shift 3
@@ -19,9 +20,11 @@ for board in "$@"; do
     for program in loop interrupts; do
         sources="$here/$program.cpp $source.cpp" image=$out/${board}_$program
         case $board in
-        host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror -O2 ${HOST_FLAGS:-} $includes $sources -o "$image" ;;
+        host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror \
+            -O2 ${HOST_FLAGS:-} $includes $sources -o "$image" ;;
         cortex_m4) $cortex_m4 -nostartfiles -T "$source.ld" $sources -lm -o "$image.elf" ;;
-        rv32) $rv32 -nostdlib -nostartfiles -T "$source.ld" -Wl,--no-warn-rwx-segments $sources -lm -lc -lgcc -o "$image.elf" ;;
+        rv32) $rv32 -nostdlib -nostartfiles -T "$source.ld" -Wl,--no-warn-rwx-segments $sources \
+            -lm -lc -lgcc -o "$image.elf" ;;
         *) echo "build.sh: no board $board" >&2; exit 2 ;;
         esac
     done

@@ -1,11 +1,12 @@
 #!/bin/sh
-# run.sh OUT BOARD [PROGRAM]: runs what build.sh made, loop or interrupts, in QEMU where the board is one, and prints what
-# it writes.
+# run.sh OUT BOARD [PROGRAM]: runs what build.sh made, loop or interrupts, in QEMU
+# where the board is one, and prints what it writes.
 set -eu
 out=$1 board=$2 program=${3:-loop}
 name=$out/${board}_$program
 emulate() {
-    "$@" -nographic -monitor none -serial none -icount shift=0 -chardev "file,id=text,path=$name.txt" \
+    "$@" -nographic -monitor none -serial none -icount shift=0 \
+        -chardev "file,id=text,path=$name.txt" \
         -semihosting-config enable=on,target=native,chardev=text -kernel "$name.elf" </dev/null
 }
 case $board in

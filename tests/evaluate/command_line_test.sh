@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: its table, CSV and JSON, alike for any number of threads;
-# episodes in an .h5 file; a call that is wrong.
+# command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: its table, CSV and JSON,
+# alike for any number of threads; episodes in an .h5 file; a call that is wrong.
 set -euo pipefail
 etlc=$1 expected=$2 data=$3
 folder=$(mktemp -d)
@@ -43,13 +43,16 @@ target origin = [[0, 0, 0]];
 predicate at_a = l2(z, origin) > 3.5;
 monitor m = F at_a;
 SPEC
-"$etlc" evaluate groups.etl --data "$data/trace.h5" --episodes 'data/demo_*[0-9]' --map z=obs/z >groups.txt
+"$etlc" evaluate groups.etl --data "$data/trace.h5" --episodes 'data/demo_*[0-9]' --map z=obs/z \
+    >groups.txt
 grep -q '^3 episodes, 21 frames' groups.txt || fail "$(cat groups.txt)"
 
-sed 's/<= 0.5;/<= calibrated(adaptive, alpha = 0.5, gamma = 0.1, lo = 0, hi = 4);/' dock.etl >adaptive.etl
+sed 's/<= 0.5;/<= calibrated(adaptive, alpha = 0.5, gamma = 0.1, lo = 0, hi = 4);/' dock.etl \
+    >adaptive.etl
 "$etlc" calibrate adaptive.etl --data episodes/[012].csv >calibrated.txt
 "$etlc" evaluate adaptive.etl --data episodes/[345].csv >adaptive.txt
-grep -q '^near: with the threshold that it starts with; labels would move it$' adaptive.txt || fail "$(cat adaptive.txt)"
+grep -q '^near: with the threshold that it starts with; labels would move it$' adaptive.txt ||
+    fail "$(cat adaptive.txt)"
 
 status=0
 "$etlc" evaluate dock.etl 2>err.txt || status=$?

@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# dubins_paper_test.sh DUBINS_RECORD ETLC SOURCE CXX: the paper's experiment with one seed: drives are recorded, thresholds calibrated and
-# evaluated; the compiled class agrees with `etlc evaluate` on every count; the figures are not below the paper's.
+# dubins_paper_test.sh DUBINS_RECORD ETLC SOURCE CXX: the paper's experiment with one seed: drives
+# are recorded, thresholds calibrated and evaluated; the compiled class agrees with `etlc evaluate`
+# on every count; the figures are not below the paper's.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 cxx=$4
 folder=$(mktemp -d)
@@ -10,9 +11,11 @@ fail() { echo "FAILED: $*"; exit 1; }
 
 "$source/examples/dubins/experiment.sh" "$etlc" "$record" drives 7 >table.txt
 for side in calibration:120 test:180; do
-    [ "$(find "drives/7/${side%:*}" -name '*.csv' | wc -l)" = "${side#*:}" ] || fail "not ${side#*:} drives for ${side%:*}"
+    [ "$(find "drives/7/${side%:*}" -name '*.csv' | wc -l)" = "${side#*:}" ] ||
+        fail "not ${side#*:} drives for ${side%:*}"
 done
-# The table: a row of ours has no figure below that of the paper in the next row, but for what a drive in 180 may do.
+# The table: a row of ours has no figure below that of the paper in the
+# next row, but for what a drive in 180 may do.
 awk '/^(Reach A|Avoid C|Reach-avoid|Sequential)/ { gsub(/\([0-9.]+\)|%/, ""); n = split($0, ours); getline; gsub(/%/, ""); split($0, paper)
          ++rows; for (i = 0; i < 7; ++i) if (ours[n - i] < paper[9 - i] - (paper[9 - i] > 2 ? 2 : 0.03)) { print "below the paper: " ours[n - i]; bad = 1 } }
      END { if (rows != 4 || bad) exit 1 }' table.txt || { cat table.txt; fail "the table"; }
@@ -26,13 +29,16 @@ for monitor in reach avoid reach_avoid sequential; do
         evaluated=$(awk -F, -v m=${monitor}_$method '$2 == m && $3 == "episodes" && $4 ~ /^true_/ { agree += $5 }
             $2 == m && $3 == "episodes" && ($4 == "true_positives" || $4 == "false_negatives") { is += $5 }
             END { print agree, is }' drives/7/evaluation.csv)
-        [ "$compiled" = "$evaluated" ] || fail "$monitor by $method: compiled $compiled, evaluated $evaluated"
+        [ "$compiled" = "$evaluated" ] ||
+            fail "$monitor by $method: compiled $compiled, evaluated $evaluated"
     done
 done
 
 # Drives that the thresholds were calibrated on are refused, under another name too.
 mv drives/7/calibration/000.csv drives/7/test/300.csv
-if "$etlc" evaluate "$source/examples/dubins/paper.etl" --data drives/7/test --thresholds drives/7/thresholds.json >/dev/null 2>err.txt; then
+if "$etlc" evaluate "$source/examples/dubins/paper.etl" --data drives/7/test \
+    --thresholds drives/7/thresholds.json >/dev/null 2>err.txt; then
     fail "a drive of the calibration was evaluated on"
 fi
-grep -q '300.csv: error: 1 of the 181 episodes is among those .* calibrated on \[E0670\]' err.txt || fail "$(cat err.txt)"
+grep -q '300.csv: error: 1 of the 181 episodes is among those .* calibrated on \[E0670\]' err.txt ||
+    fail "$(cat err.txt)"

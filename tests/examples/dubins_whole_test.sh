@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed; calibrated as wholes the monitors miss about as
-# often as they may, and are wrong the other way no more often than by the union bound.
+# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed;
+# calibrated as wholes the monitors miss about as often as they may, and are wrong the
+# other way no more often than by the union bound.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 compiler=$4
 folder=$(mktemp -d)
@@ -10,7 +11,8 @@ CXX=$compiler "$source/examples/dubins/whole.sh" "$etlc" "$record" "$folder" 1 >
 cat "$folder/printed" "$folder/1/whole.csv"
 awk -F, '
     FNR > 1 { share = $5 / $4; other[$1 " " $2] = $6; ++rows }
-    # One set of 60 drives: coverage is drawn from a Beta, whose 5 % quantile is about 0.82, and 180 drives measure it.
+    # One set of 60 drives: coverage is drawn from a Beta, whose 5 %
+    # quantile is about 0.82, and 180 drives measure it.
     FNR > 1 && share > ($1 == "whole" ? 0.3 : 0.2) { wrong = $1 " " $2 " misses too much" }
     END {
         if (rows != 4) wrong = "there are not four rows"

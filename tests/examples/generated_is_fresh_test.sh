@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# generated_is_fresh_test.sh ETLC SPEC HEADER: the committed HEADER is what etlc makes of SPEC, byte for byte.
-# With ETLC_UPDATE=1 in the environment HEADER is written anew.
+# generated_is_fresh_test.sh ETLC SPEC HEADER: the committed HEADER is what etlc makes of SPEC, byte
+# for byte. With ETLC_UPDATE=1 in the environment HEADER is written anew.
 set -euo pipefail
 etlc=$1 spec=$2 header=$3
 folder=$(mktemp -d)
@@ -15,4 +15,5 @@ elif ! diff -u "$header" "$made"; then
     exit 1
 fi
 # Nothing but the header: neither example needs a file of targets beside it.
-[ "$(ls "$folder")" = "$(basename "$header")" ] || { echo "more than the header came out:" && ls "$folder" && exit 1; }
+[ "$(ls "$folder")" = "$(basename "$header")" ] || { echo "more than the header came out:" &&
+    ls "$folder" && exit 1; }

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and an RV32IMAFC in QEMU answer as on the
-# host: to the bit as a host that adds in the same order, within the stated bounds as any other. And what they are made of: no library
-# symbol that is not allowed, no exception tables, no data that needs initialising, code within its limit. And interrupts at any instruction
-# of a step.
+# firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and
+# an RV32IMAFC in QEMU answer as on the host: to the bit as a host that adds in the same
+# order, within the stated bounds as any other. And what they are made of: no library symbol
+# that is not allowed, no exception tables, no data that needs initialising, code within its
+# limit. And interrupts at any instruction of a step.
 set -euo pipefail
 etlc=$1 source=$2 cxx=$3
 loop=$source/examples/firmware_loop
@@ -18,21 +19,27 @@ for board in cortex_m4 rv32 host; do
 done
 "$cxx" -std=c++17 -O1 -I "$runtime" "$source/tests/firmware/compare.cpp" -o "$box/compare"
 for board in cortex_m4 rv32; do
-    "$box/compare" "$box/${board}_loop.txt" "$box/host_loop.txt" || fail "$board and the host differ"
+    "$box/compare" "$box/${board}_loop.txt" "$box/host_loop.txt" ||
+        fail "$board and the host differ"
 done
 verdicts() { grep -v instructions "$1"; }
-cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/rv32_loop.txt") || fail "the boards differ"
-if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then  # scalars, one sum a row, fused: what the boards do
+cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/rv32_loop.txt") ||
+    fail "the boards differ"
+if [ "$(uname -m)" = x86_64 ] &&
+    grep -qw fma /proc/cpuinfo; then  # scalars, one sum a row, fused: what the boards do
     CXX=$cxx HOST_FLAGS="-DETLMON_NO_PACKS -mfma" sh "$loop/build.sh" "$etlc" "$runtime" "$box" host
     sh "$loop/run.sh" "$box" host >/dev/null
-    cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/host_loop.txt") || fail "the boards and a host without vectors differ"
+    cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/host_loop.txt") ||
+        fail "the boards and a host without vectors differ"
 fi
 
-# A timer's interrupt judges what the loop measures, and fills what the loop reads: no verdict is another than without.
+# A timer's interrupt judges what the loop measures, and fills what the
+# loop reads: no verdict is another than without.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" interrupts
     awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ } END { exit good != 2 || NR != 2 }' \
-        "$box/${board}_interrupts.txt" || fail "$board: interrupts change verdicts, or hardly any came during a step"
+        "$box/${board}_interrupts.txt" ||
+            fail "$board: interrupts change verdicts, or hardly any came during a step"
 done
 
 # Each monitor alone, as a program would compile it.
@@ -47,25 +54,30 @@ $spec::Verdicts step(${spec}::Monitor& m, const $spec::Inputs& in) { return m.st
 void reset(${spec}::Monitor& m);
 void reset(${spec}::Monitor& m) { m.reset(); }
 END
-        "${prefix}g++" "$@" -std=c++17 -Os -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -fno-asynchronous-unwind-tables \
+        "${prefix}g++" "$@" -std=c++17 -Os -ffreestanding -fno-exceptions -fno-rtti \
+            -fno-math-errno -fno-asynchronous-unwind-tables \
             -fstack-usage -I "$box" -I "$runtime" -c "$box/$spec.cpp" -o "$box/$spec.o"
-        foreign=$("${prefix}nm" -u "$box/$spec.o" | awk '{ print $2 }' | grep -v -x -E 'sqrtf|memcpy|memset|atanf') || true
+        foreign=$("${prefix}nm" -u "$box/$spec.o" | awk '{ print $2 }' |
+            grep -v -x -E 'sqrtf|memcpy|memset|atanf') || true
         [ -z "$foreign" ] || fail "$prefix$spec refers to" $foreign
-        ! "${prefix}objdump" -h "$box/$spec.o" | grep -E 'gcc_except_table|ARM.extab|eh_frame' || fail "$prefix$spec has exception tables"
-        ! "${prefix}nm" "$box/$spec.o" | grep -E ' [BbDdCc] ' || fail "$prefix$spec has data that changes"
+        ! "${prefix}objdump" -h "$box/$spec.o" | grep -E 'gcc_except_table|ARM.extab|eh_frame' ||
+            fail "$prefix$spec has exception tables"
+        ! "${prefix}nm" "$box/$spec.o" | grep -E ' [BbDdCc] ' ||
+            fail "$prefix$spec has data that changes"
         read -r text constants <<<"$("${prefix}size" -A "$box/$spec.o" | awk '
             $1 ~ /^\.text/ { t += $2 } $1 ~ /^\.s?rodata/ { c += $2 } END { print t + 0, c + 0 }')"
         state=$(grep -o 'kStateBytes = [0-9]*' "$box/$spec.hpp" | grep -o '[0-9]*$')
         stack=$(awk '{ if ($(NF - 1) > most) most = $(NF - 1) } END { print most }' "$box/$spec.su")
-        printf '%-22s %-6s code %5d  constants %5d  state %4d  deepest frame %4d\n' "$prefix" "$spec" "$text" "$constants" "$state" "$stack"
+        printf '%-22s %-6s code %5d  constants %5d  state %4d  deepest frame %4d\n' "$prefix" \
+            "$spec" "$text" "$constants" "$state" "$stack"
     done
 }
 objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f
 objects arm-none-eabi- -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
 grep instructions "$box/rv32_loop.txt"
 
-# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes; beside it what only a missing
-# embedding and distances that overflow, vanish or are exactly 0 need.
+# One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes;
+# beside it what only a missing embedding and distances that overflow, vanish or are exactly 0 need.
 read -r step reset rare <<<"$(arm-none-eabi-nm -S -C --radix=d "$box/grasp.o" | awk '
     $3 !~ /[tTwW]/ { next } $4 ~ /^reset/ { r += $2; next } /measure_again|Rescaled|all_finite/ { c += $2; next } { s += $2 } END { print s, r, c }')"
 echo "grasp on a Cortex-M4F: step $step bytes, reset $reset, rare cases $rare"

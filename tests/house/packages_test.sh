@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# packages_test.sh CMAKE_FOLDER: install_packages.sh with every command that it could change the system by replaced by one that notes the call.
+# packages_test.sh CMAKE_FOLDER: install_packages.sh with every command that it could change the
+# system by replaced by one that notes the call.
 set -euo pipefail
 script=$1/install_packages.sh
 box=$(mktemp -d)
@@ -15,7 +16,8 @@ stub sudo 'echo "sudo" >>"$BOX/calls"; exec "$@"'
 stub id 'echo "$USER_ID"'
 stub dpkg-query 'for p in "${@:4}"; do case " $ABSENT " in *" $p "*) ;; *) echo "installed $p";; esac; done'
 
-# try USER_ID ABSENT: runs the script for the group `build`; its output, exit status and calls are then in $output, $status, $calls.
+# try USER_ID ABSENT: runs the script for the group `build`; its output, exit status
+# and calls are then in $output, $status, $calls.
 try() {
     rm -f "$box/calls"
     status=0
@@ -24,16 +26,19 @@ try() {
 }
 
 try 0 ""
-[ "$status$output$calls" = 0 ] || fail "says or does something where nothing is missing: $output $calls"
+[ "$status$output$calls" = 0 ] ||
+    fail "says or does something where nothing is missing: $output $calls"
 
 try 0 "libfmt-dev libgtest-dev"
 [ "$status" = 0 ] || fail "$output"
 [[ $calls == *update*install*libfmt-dev* ]] || fail "does not install what is missing: $calls"
-[[ $calls != *sudo* && $calls != *libgtest-dev* && $calls != *antlr4* ]] || fail "does more than it should: $calls"
+[[ $calls != *sudo* && $calls != *libgtest-dev* && $calls != *antlr4* ]] ||
+    fail "does more than it should: $calls"
 
 try 1000 "antlr4"
 [[ $status = 0 && $calls == sudo*install*antlr4* ]] || fail "does not use sudo: $output $calls"
 
 rm "$box/sudo"
 try 1000 "antlr4 g++"
-[[ $status = 1 && -z $calls && $output == *antlr4* && $output == *g++* ]] || fail "does not name what is missing: $output $calls"
+[[ $status = 1 && -z $calls && $output == *antlr4* && $output == *g++* ]] ||
+    fail "does not name what is missing: $output $calls"

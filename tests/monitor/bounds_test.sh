@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation, as those who trust a final verdict rely on. At each step
-# lower <= robustness <= upper, and no later step leaves [lower, upper]: robustness, lower, upper. For every distance, aggregation, type of input and
-# storage of targets, with and without declared ranges, in `etlc run` and in generated classes, on points where distances end: a target, its negative,
-# what is orthogonal to it, zero, what is tiny and what is huge.
+# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation, as those
+# who trust a final verdict rely on. At each step lower <= robustness <= upper, and no later
+# step leaves [lower, upper]: robustness, lower, upper. For every distance, aggregation, type
+# of input and storage of targets, with and without declared ranges, in `etlc run` and in
+# generated classes, on points where distances end: a target, its negative, what is
+# orthogonal to it, zero, what is tiny and what is huge.
 set -euo pipefail
 etlc=$1 cxx=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -12,8 +14,9 @@ trap 'rm -rf "$box"' EXIT
 cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# The rows of a set are multiples of one vector, so that every aggregation reaches the ends of the range; 25 of them, since a mean of so many
-# angles pi is rounded above pi. Numbers are multiples of 1/4: a sample may be a target in every type of input.
+# The rows of a set are multiples of one vector, so that every aggregation reaches the ends of the
+# range; 25 of them, since a mean of so many angles pi is rounded above pi. Numbers are multiples of
+# 1/4: a sample may be a target in every type of input.
 awk 'BEGIN {
   print "spec bounds;\ninput z : f32[3];\ninput h : f16[3];\ninput i : i8[3] scale 0.25;\ninput w : f32[70];"
   print "input x : f32 in [0, 7.3];\ninput y : f32 in [-2.1, 7.3];\ninput v : f32;"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags compiles. Objects of two sets share no inline function
-# of ours, unless the flags leave the code as it is; then it is the same to the byte. A unit answers the same bits alone and linked with another, in
-# either order, also where that one is made for a CPU that this machine is not.
+# flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags
+# compiles. Objects of two sets share no inline function of ours, unless the flags leave the code as
+# it is; then it is the same to the byte. A unit answers the same bits alone and linked with
+# another, in either order, also where that one is made for a CPU that this machine is not.
 set -euo pipefail
 etlc=$1 gxx=$2 clangxx=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -11,8 +12,9 @@ trap 'rm -rf "$box"' EXIT
 cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# Every family of kernels: rows in lanes and in columns, int8 that is widened and int8 in integers,
-# float32 where those leave a comparison open; and state of every kind: a window, a machine, a past operator.
+# Every family of kernels: rows in lanes and in columns, int8 that is widened and
+# int8 in integers, float32 where those leave a comparison open; and state of
+# every kind: a window, a machine, a past operator.
 awk 'BEGIN {
   srand(3)
   print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];\ninput on : bool;"
@@ -28,7 +30,8 @@ awk 'BEGIN {
   print "sliding monitor held = G[0, 4] (root S near) && O[1, 3] far;"
 }' >flags.etl
 "$etlc" flags.etl --targets-as i8 -o flags.hpp
-grep -q measure_bytes flags.hpp && grep -q measure_scaled flags.hpp || fail "no int8, or none that is widened"
+grep -q measure_bytes flags.hpp && grep -q measure_scaled flags.hpp ||
+  fail "no int8, or none that is widened"
 
 cat >unit.cpp <<'END'
 #include <initializer_list>
@@ -68,7 +71,8 @@ int main() {
 }
 END
 
-# name, compiler, flags. What is named as_NAME leaves the code of NAME as it is. Without optimisation what has to be inlined is inlined too.
+# name, compiler, flags. What is named as_NAME leaves the code of NAME as it is. Without
+# optimisation what has to be inlined is inlined too.
 sets() {
   cat <<'END'
 base g++ -O2
@@ -109,21 +113,25 @@ END
 while read -r name cxx flags; do
   [ "$cxx" = g++ ] && cxx=$gxx || cxx=$clangxx
   # shellcheck disable=SC2086
-  "$cxx" -std=c++17 $flags -DANSWERS="answers_$name" -I "$runtime" -I . -c unit.cpp -o "$name.o" 2>errors ||
+  "$cxx" -std=c++17 $flags -DANSWERS="answers_$name" -I "$runtime" -I . -c unit.cpp \
+    -o "$name.o" 2>errors ||
     fail "$name: $cxx $flags does not compile: $(head -n 3 errors)"
 done < <(sets)
 
 # Code that the linker keeps one copy of, of a name.
 for object in *.o; do
-  nm --defined-only "$object" | awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'
+  nm --defined-only "$object" |
+    awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'
 done | sort >weak.txt
 [ "$(wc -l <weak.txt)" -gt 100 ] || fail "no inline function is to be seen in the objects"
 awk '$2 !~ /^as_/ { if ($1 == last) { print $1 " of " before " and of " $2; bad = 1 } last = $1; before = $2 } END { exit bad }' weak.txt >shared.txt ||
   fail "one name for the code of different flags: $(head -n 2 shared.txt | c++filt)"
-code() { objdump -d --no-show-raw-insn "$1.o" | sed "1,6d; s/answers_$1/answers/g; s/^.*Disassembly.*answers.*//"; }
+code() { objdump -d --no-show-raw-insn "$1.o" |
+  sed "1,6d; s/answers_$1/answers/g; s/^.*Disassembly.*answers.*//"; }
 for same in as_*.o; do
   same=${same%.o}
-  cmp <(code "$same") <(code "${same#as_}") || fail "$same and ${same#as_} have the names of one another, and other code"
+  cmp <(code "$same") <(code "${same#as_}") ||
+    fail "$same and ${same#as_} have the names of one another, and other code"
 done
 
 # Units together. Where this machine cannot run one, it is still linked.
@@ -140,8 +148,10 @@ for unit in base tiny fast clang; do
   [ "$(wc -l <"$unit.alone")" -eq 25 ] || fail "$unit does not answer"
   for other in base tiny_fast v4 clang_v4; do
     [ "$other" != "$unit" ] || continue
-    cmp "$unit.alone" <(run_with "$unit" "$unit.o" "$other.o") || fail "$unit answers otherwise before $other"
-    cmp "$unit.alone" <(run_with "$unit" "$other.o" "$unit.o") || fail "$unit answers otherwise after $other"
+    cmp "$unit.alone" <(run_with "$unit" "$unit.o" "$other.o") ||
+      fail "$unit answers otherwise before $other"
+    cmp "$unit.alone" <(run_with "$unit" "$other.o" "$unit.o") ||
+      fail "$unit answers otherwise after $other"
     ran=$((ran + 1))
   done
 done

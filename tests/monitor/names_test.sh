@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# names_test.sh ETLC CHECK_NAMES CXX...: no name that a spec may declare collides with what the generated code is made
-# of. Every identifier of the headers of one spec that has everything, in both modes, becomes a name of that spec: as an
-# input, a flag, an embedding, a target, a predicate, a let, a monitor, a sliding monitor and a namespace. The headers
-# compile without a warning, and their verdicts are those of `etlc run`. The last compiler makes the program that says so.
+# names_test.sh ETLC CHECK_NAMES CXX...: no name that a spec may declare collides with what the
+# generated code is made of. Every identifier of the headers of one spec that has everything, in
+# both modes, becomes a name of that spec: as an input, a flag, an embedding, a target, a predicate,
+# a let, a monitor, a sliding monitor and a namespace. The headers compile without a warning, and
+# their verdicts are those of `etlc run`. The last compiler makes the program that says so.
 set -euo pipefail
 etlc=$1
 check_names=$2
@@ -38,9 +39,11 @@ END
 echo "truth low = y < 1;" >>base.txt
 { echo "spec base;"; cat base.txt; } >base.etl
 for x in 0.5 0.75 1; do printf 'x,y\n%s,0\n' $x >demonstration_$x.csv; done
-"$etlc" calibrate base.etl --data demonstration_*.csv -o thresholds.json >report.txt 2>&1 || { cat report.txt >&2; exit 1; }
+"$etlc" calibrate base.etl --data demonstration_*.csv -o thresholds.json >report.txt 2>&1 ||
+  { cat report.txt >&2; exit 1; }
 header() {
-    "$etlc" "$1" --thresholds thresholds.json "${limits[@]}" -o "$2" "${@:3}" 2>words.txt || { head -20 words.txt >&2; exit 1; }
+    "$etlc" "$1" --thresholds thresholds.json "${limits[@]}" -o "$2" "${@:3}" 2>words.txt ||
+      { head -20 words.txt >&2; exit 1; }
 }
 
 # ---- the identifiers
@@ -55,7 +58,8 @@ reserved='spec rate period input target predicate truth let monitor sliding true
 sed 's|//.*||; /^#/d' robustness.hpp boolean.hpp stored.hpp narrow.hpp halves.hpp |
     grep -oP '(?<![0-9A-Za-z_])[A-Za-z_][A-Za-z_0-9]*' | LC_ALL=C sort -u |
     grep -vxF "$(tr -s ' ' '\n' <<<"$reserved")" >all.txt
-declared=$(grep -oE '(input|target|predicate|let|monitor) [a-z_, ]+' base.txt | sed 's/^[a-z]* //; s/,//g')
+declared=$(grep -oE '(input|target|predicate|let|monitor) [a-z_, ]+' base.txt |
+  sed 's/^[a-z]* //; s/,//g')
 "$check_names" field <all.txt | grep -vxF "$(tr -s ' ' '\n' <<<"$declared")" >names.txt
 [ "$(wc -l <names.txt)" -gt 120 ]
 printf "%s\n" step finished measured targets verdicts >>names.txt  # what an older header had
@@ -178,8 +182,10 @@ for ((turn = 0; turn < roles; ++turn)); do
         {
             printf '#include "show.hpp"\n#include "%s.hpp"\n' $space
             printf 'namespace run_%s {\n#include "turn%d.inc"\n' $space "$turn"
-            printf 'inline void run() {\n%s::Monitor m;\nfor (int t = 0; t < %d; ++t) {\n' $space $steps
-            printf '%s::Inputs in;\nfeed(in, t);\nconst %s::Verdicts v = m.step(in);\n' $space $space
+            printf 'inline void run() {\n%s::Monitor m;\nfor (int t = 0; t < %d; ++t) {\n' $space \
+              $steps
+            printf '%s::Inputs in;\nfeed(in, t);\nconst %s::Verdicts v = m.step(in);\n' $space \
+              $space
             grep -oE 'monitor [A-Za-z_0-9]+ =' turn$turn.etl | awk -v mode=$space \
                 '{ printf "show(\"%s\", t, \"%s\", v.%s);\n", mode, $2, $2 }'
             printf '}\n}\n}\n'
@@ -223,7 +229,8 @@ done
 for name in class linux printf a::class std etlmon::x a::std NULL _a a_ a__b a:: ::a a::::b 1a; do
     status=0
     "$etlc" small.etl --namespace "$name" -o refused.hpp 2>words.txt || status=$?
-    [ $status = 2 ] && [ ! -e refused.hpp ] || { echo "FAILED: --namespace $name is not refused"; exit 1; }
+    [ $status = 2 ] && [ ! -e refused.hpp ] ||
+      { echo "FAILED: --namespace $name is not refused"; exit 1; }
 done
 "$etlc" small.etl --namespace acme::printf -o nested.hpp  # not at global scope
 

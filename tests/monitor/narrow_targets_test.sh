@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# narrow_targets_test.sh ETLC CXX...: with --targets-as the verdicts are those of float32 targets in the same build, on inputs that lie as close to
-# the thresholds as float32 can say; lower and upper enclose them; the generated class, of float32 targets too, and `etlc run` agree to the bit.
+# narrow_targets_test.sh ETLC CXX...: with --targets-as the verdicts are those of float32 targets in
+# the same build, on inputs that lie as close to the thresholds as float32 can say; lower and upper
+# enclose them; the generated class, of float32 targets too, and `etlc run` agree to the bit.
 set -euo pipefail
 etlc=$1
 shift
@@ -10,8 +11,9 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# The distances to float32 targets are not known here: the trace walks through every threshold, in steps that shrink to roundings of it. z is measured on few short rows, which are
-# widened; y on rows that are measured in integers where they are int8.
+# The distances to float32 targets are not known here: the trace walks through every threshold, in
+# steps that shrink to roundings of it. z is measured on few short rows, which are widened; y on
+# rows that are measured in integers where they are int8.
 awk 'BEGIN {
   srand(7); D = 37; K = 5; steps = 900; E = 70; L = 9
   for (k = 0; k < K; ++k) for (i = 0; i < D; ++i) g[k, i] = sprintf("%.6f", 2 * rand() - 1)
@@ -44,11 +46,14 @@ awk 'BEGIN {
   }
 }'
 
-# encloses WIDE NARROW [ROUNDED]: lines of the first are lines of the second but for the numbers, which enclose them.
-# ROUNDED: both builds may add in any order. Where float32 decided, each then has a rounding of its own, as two builds without narrow rows have: at step 874, case 'six', the
-# exact angle is 0.155157831, and g++ 12 gave 0.155157819 and 0.155157804 for the same source, one unit in the last place apart and well within error_bounds.hpp. Such lines may
-# differ by those bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the robustness is within them. They have to be rare: clang 14 makes half a percent of them, mostly angles, as |z| is found
-# once for all distances to float32 rows.
+# encloses WIDE NARROW [ROUNDED]: lines of the first are lines of the second but for the numbers,
+# which enclose them. ROUNDED: both builds may add in any order. Where float32 decided, each then
+# has a rounding of its own, as two builds without narrow rows have: at step 874, case 'six', the
+# exact angle is 0.155157831, and g++ 12 gave 0.155157819 and 0.155157804 for the same source, one
+# unit in the last place apart and well within error_bounds.hpp. Such lines may differ by those
+# bounds, (3/4 D + 16) FLT_EPSILON of the distance, or of 1 for an angle; the status too, where the
+# robustness is within them. They have to be rare: clang 14 makes half a percent of them, mostly
+# angles, as |z| is found once for all distances to float32 rows.
 encloses() {
   paste -d, "$1" "$2" | awk -F, -v rounded="${3:-}" 'BEGIN {
     split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 seven 5.25 eight 5.25 nine 5.25 ten .5 eleven .25 twelve 6.1 thirteen 6.3 fourteen 7.4 fifteen .01 sixteen 1", words, " ")
@@ -127,12 +132,14 @@ done
 for storage in f16 i8; do
   "$etlc" run narrow.etl --trace narrow.csv --targets-as $storage -o $storage.csv
   encloses f32.csv $storage.csv
-  "$etlc" run narrow.etl --trace narrow.csv --values boolean --targets-as $storage -o $storage.boolean.csv
+  "$etlc" run narrow.etl --trace narrow.csv --values boolean --targets-as $storage \
+    -o $storage.boolean.csv
   cmp boolean.csv $storage.boolean.csv
   "$etlc" narrow.etl --targets-as $storage -o narrow.hpp
   [[ $storage != i8 ]] || grep -q 'measure_bytes<etlmon::Angular' narrow.hpp
   for compiler in "$@"; do
-    "$compiler" -std=c++17 -O2 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -I "$runtime" -I . source/main.cpp -o compiled \
+    "$compiler" -std=c++17 -O2 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic \
+      -Werror -I "$runtime" -I . source/main.cpp -o compiled \
       2>errors || { cat errors >&2; exit 1; }
     ./compiled <narrow.csv >compiled.csv
     cmp $storage.csv compiled.csv

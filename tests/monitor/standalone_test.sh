@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# standalone_test.sh ETLC CXX...: a header made with --standalone needs no include path, compiles without a warning and freestanding, may
-# stand beside another one in a program, and answers as the header that includes the runtime does.
+# standalone_test.sh ETLC CXX...: a header made with --standalone needs no include path,
+# compiles without a warning and freestanding, may stand beside another one in a program, and
+# answers as the header that includes the runtime does.
 set -euo pipefail
 etlc=$1
 shift
@@ -52,7 +53,8 @@ fi
 for cxx in "$@"; do
     for spec in responses pending; do
         echo "#include \"$spec.hpp\"" >alone.cpp
-        "$cxx" "${flags[@]}" -ffreestanding -fno-exceptions -fno-rtti -I pasted -c alone.cpp -o alone.o
+        "$cxx" "${flags[@]}" -ffreestanding -fno-exceptions -fno-rtti -I pasted -c alone.cpp \
+          -o alone.o
     done
     "$cxx" "${flags[@]}" -I pasted main.cpp -o with_pasted
     "$cxx" "${flags[@]}" -I included -I "$runtime" main.cpp -o with_included

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# stored_test.sh ETLC CXX...: a monitor whose target sets lie in a file gives the verdicts and telemetry of the same
-# monitor with its sets spelled out, bit for bit: every distance and aggregation, sets in every layout, robustness and
-# truth values, the runtime included and pasted in, under sanitizers.
+# stored_test.sh ETLC CXX...: a monitor whose target sets lie in a file gives the
+# verdicts and telemetry of the same monitor with its sets spelled out, bit for bit:
+# every distance and aggregation, sets in every layout, robustness and truth values, the
+# runtime included and pasted in, under sanitizers.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
@@ -29,7 +30,8 @@ target scalar_set = load("scalars.npy");
 END
 predicates=
 add() { echo "predicate $1 = $2 <= $3;" >>stored.etl; predicates+=" $1"; }
-for metric in l2 l2sq l1 linf cosine angular; do add "${metric}_middle" "min $metric(middle, middle_set)" 1; done
+for metric in l2 l2sq l1 linf cosine angular; do add \
+  "${metric}_middle" "min $metric(middle, middle_set)" 1; done
 for metric in l2 l1 cosine; do add "${metric}_wide" "min $metric(wide, wide_set)" 1; done
 add kth_wide "kth(5) l2(wide, wide_set)" 20
 add mean_middle "mean l2(middle, middle_set)" 5
@@ -44,7 +46,8 @@ for p in $predicates; do echo "PREDICATE($p)" >>names.inc; done
 echo "monitor touched = F (l2_wide && F (l2_middle || l2_narrow));" >>stored.etl
 echo "monitor every = G ($(sed 's/^ //; s/ / || /g' <<<"$predicates"));" >>stored.etl
 echo "sliding monitor none = F[0,2] !($(sed 's/^ //; s/ / \&\& /g' <<<"$predicates"));" >>stored.etl
-printf 'MONITOR(touched) MONITOR(every) MONITOR(none)\n#undef PREDICATE\n#undef MONITOR\n' >>names.inc
+printf 'MONITOR(touched) MONITOR(every) MONITOR(none)\n#undef PREDICATE\n#undef MONITOR\n' \
+  >>names.inc
 
 options=(--max-code 10000000 --inline-targets)
 "$etlc" stored.etl -o inlined.hpp --namespace inlined "${options[@]}" 100000000
@@ -62,12 +65,14 @@ int main() {
   return monitor.ready() && monitor.step(stored::Inputs()).touched.unknown() ? 0 : 1;
 }
 END
-flags=(-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror -I. "-I$here/stored" "-I$runtime")
+flags=(-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror \
+  -I. "-I$here/stored" "-I$runtime")
 for cxx in "$@"; do
     "$cxx" "${flags[@]}" -O1 -c "$here/stored/inlined.cpp" -o inlined.o
     "$cxx" "${flags[@]}" -O2 -DSEEDS=12 "$here/stored/main.cpp" inlined.o -o plain
     ./plain stored.targets.bin
-    "$cxx" "${flags[@]}" -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DSEEDS=3 "$here/stored/main.cpp" inlined.o -o sanitized
+    "$cxx" "${flags[@]}" -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DSEEDS=3 \
+      "$here/stored/main.cpp" inlined.o -o sanitized
     ./sanitized stored.targets.bin
     "$cxx" "${flags[@]}" -O1 -DETLMON_MAPPED_TARGETS pasted.cpp -o pasted
     ./pasted

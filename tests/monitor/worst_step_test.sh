@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# worst_step_test.sh ETLC CXX: the work, the state and the stack of the worst step are what the class states. callgrind counts the instructions of
-# the steps of one class per kind of stream and reading, wide windows among them; none takes more than a fixed number
-# and so many per operation of kOperations. What is measured here is what docs/generated_code.md says of kOperations.
+# worst_step_test.sh ETLC CXX: the work, the state and the stack of the worst step are what the
+# class states. callgrind counts the instructions of the steps of one class per kind of stream and
+# reading, wide windows among them; none takes more than a fixed number and so many per operation of
+# kOperations. What is measured here is what docs/generated_code.md says of kOperations.
 set -euo pipefail
 etlc=$1
 cxx=$2
@@ -58,8 +59,10 @@ while read -r name steps formula; do
     runs+="  worst_step::run<$name::Monitor, $name::Inputs>(\"$name\", $steps);"$'\n'
 done <formulas
 printf '#include "worst_step.hpp"\nint main() {\n%s}\n' "$runs" >>main.cpp
-"$cxx" -std=c++17 -O2 -fstack-usage -I. -I"$here/driver" -I"$here/../../runtime/include" main.cpp -o main
-valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main >states 2>valgrind.log || { cat valgrind.log; exit 1; }
+"$cxx" -std=c++17 -O2 -fstack-usage -I. -I"$here/driver" -I"$here/../../runtime/include" main.cpp \
+    -o main
+valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main \
+    >states 2>valgrind.log || { cat valgrind.log; exit 1; }
 
 # The class lies in an inline namespace that is named after the flags.
 class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::Monitor'

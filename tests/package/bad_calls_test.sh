@@ -20,10 +20,12 @@ include(\${CALL})
 END
 
 failures=0
-# refused WORDS CALL: configuring with CALL must fail, and say WORDS (line breaks and indentation aside).
+# refused WORDS CALL: configuring with CALL must fail, and
+# say WORDS (line breaks and indentation aside).
 refused() {
     echo "$2" >"$box/call.cmake"
-    if "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
+    if "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" \
+        >"$box/log" 2>&1; then
         echo "FAILED: accepted: $2"; failures=1
     elif ! tr -s ' \n' ' ' <"$box/log" | grep -qF -- "$1"; then
         echo "FAILED: $2: does not say '$1':"; cat "$box/log"; failures=1
@@ -35,18 +37,24 @@ refused "neither an executable nor a library" "etlc_add_monitor(headers SPEC spe
 refused "neither an executable nor a library" "etlc_add_monitor(etlc::etlc SPEC specs/a.etl)"
 refused "SPEC is missing" "etlc_add_monitor(robot)"
 refused "unknown arguments: specs/a.etl" "etlc_add_monitor(robot specs/a.etl)"
-refused "unknown arguments: TRESHOLDS t.json" "etlc_add_monitor(robot SPEC specs/a.etl TRESHOLDS t.json)"
+refused "unknown arguments: TRESHOLDS t.json" \
+    "etlc_add_monitor(robot SPEC specs/a.etl TRESHOLDS t.json)"
 refused "no value after: THRESHOLDS" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS)"
-refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" "etlc_add_monitor(robot SPEC specs/b.etl)"
+refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" \
+    "etlc_add_monitor(robot SPEC specs/b.etl)"
 refused "SPEC specs: there is no such file" "etlc_add_monitor(robot SPEC specs)"
-refused "THRESHOLDS t.json: there is no such file" "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
-refused "NAMESPACE a-b is not a C++ namespace" "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
-refused "INLINE_TARGETS 1k: expected a number of bytes" "etlc_add_monitor(robot SPEC specs/a.etl INLINE_TARGETS 1k)"
+refused "THRESHOLDS t.json: there is no such file" \
+    "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
+refused "NAMESPACE a-b is not a C++ namespace" \
+    "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
+refused "INLINE_TARGETS 1k: expected a number of bytes" \
+    "etlc_add_monitor(robot SPEC specs/a.etl INLINE_TARGETS 1k)"
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 
 echo "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a::b STANDALONE)" >"$box/call.cmake"
-if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
+if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" \
+    >"$box/log" 2>&1; then
     echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
 fi
 exit $failures

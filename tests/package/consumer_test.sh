@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc below a new prefix; a project outside the source tree then finds it, builds
-# monitors with it and runs them, and a changed target makes the header anew, and that one only.
+# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc below a new prefix; a project
+# outside the source tree then finds it, builds monitors with it and runs them, and a changed
+# target makes the header anew, and that one only.
 set -euo pipefail
 build_dir=$1 cmake=$2 cxx=$3 generator=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -9,22 +10,28 @@ trap 'rm -rf "$box"' EXIT
 
 fail() { echo "FAILED: $*"; exit 1; }
 expect() { [ "$1" = "$2" ] || fail "expected '$2', found '$1'"; }
-compile() { "$cmake" --build "$box/build" >"$box/log" 2>&1 || { cat "$box/log"; fail "the consumer does not build"; }; }
-# Ninja compares whole time stamps, make those of a second or finer: a changed file must be newer than what was made from it.
+compile() { "$cmake" --build "$box/build" >"$box/log" 2>&1 ||
+    { cat "$box/log"; fail "the consumer does not build"; }; }
+# Ninja compares whole time stamps, make those of a second or finer: a changed
+# file must be newer than what was made from it.
 change() { sleep 1.1; "$@"; }
 
-"$cmake" --install "$build_dir" --prefix "$box/prefix" >"$box/log" 2>&1 || { cat "$box/log"; fail "cmake --install"; }
+"$cmake" --install "$build_dir" --prefix "$box/prefix" >"$box/log" 2>&1 ||
+    { cat "$box/log"; fail "cmake --install"; }
 cp -r "$here/consumer" "$box/consumer"
 cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
 
-"$cmake" -S "$box/consumer" -B "$box/build" -G "$generator" -DCMAKE_CXX_COMPILER="$cxx" -DCMAKE_PREFIX_PATH="$box/prefix" \
-    -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror" >"$box/log" 2>&1 ||
+"$cmake" -S "$box/consumer" -B "$box/build" -G "$generator" -DCMAKE_CXX_COMPILER="$cxx" \
+    -DCMAKE_PREFIX_PATH="$box/prefix" \
+    -DCMAKE_CXX_FLAGS="-Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror" \
+        >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "the consumer does not configure"; }
 compile
 expect "$("$box/build/robot")" "reached 0 limit 0.5"
 "$box/build/alone" || fail "the standalone monitor"
 expect "$("$box/build/stored")" "ready: reached 0"
-if grep 'include.*etlmon' "$box/build/etlc/alone/guard.hpp"; then fail "a standalone header includes the runtime"; fi
+if grep 'include.*etlmon' "$box/build/etlc/alone/guard.hpp"; then fail \
+    "a standalone header includes the runtime"; fi
 
 reach=$box/build/etlc/robot/reach.hpp guard=$box/build/etlc/robot/guard.hpp
 if grep -F "$box" "$reach"; then fail "the header names a folder of the machine that made it"; fi
@@ -48,4 +55,5 @@ expect "$("$box/build/robot")" "reached -3 limit 0.25"
 
 change sed -i 's/<= 2.25/<= /' "$box/consumer/specs/guard.etl"
 if "$cmake" --build "$box/build" >"$box/log" 2>&1; then fail "a spec with an error builds"; fi
-grep -q 'guard.etl:4:.*error:' "$box/log" || { cat "$box/log"; fail "the error of the spec is not shown"; }
+grep -q 'guard.etl:4:.*error:' "$box/log" ||
+    { cat "$box/log"; fail "the error of the spec is not shown"; }

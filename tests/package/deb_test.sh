@@ -16,8 +16,10 @@ for library in libc6 libstdc++6 libfmt9 libhdf5-103 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
-[[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] || fail "etlc --version does not say $version"
-for file in include/etlmon/value.hpp share/cmake/etlc/etlcConfig.cmake share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright; do
+[[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] ||
+    fail "etlc --version does not say $version"
+for file in include/etlmon/value.hpp share/cmake/etlc/etlcConfig.cmake \
+    share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright; do
     [ -f "$box/root/usr/$file" ] || fail "it lacks /usr/$file"
 done
 
@@ -28,5 +30,7 @@ input gripper : f32;
 monitor m = F (gripper > 0.5);
 SPEC
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/../unit/data
-verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") || fail "an .h5 trace cannot be read: $verdicts"
-[ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1" ] || fail "the verdicts on an .h5 trace: $verdicts"
+verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") ||
+    fail "an .h5 trace cannot be read: $verdicts"
+[ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1" ] ||
+    fail "the verdicts on an .h5 trace: $verdicts"

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc answers specs of 10 KB soon, with a header or with an error: within
-# SECONDS of the processor and KILOBYTES of memory (0: any), in texts that are in proportion. Each spec below takes
-# hours or all memory in a compiler that walks formulas as trees, or that builds a state machine however large.
+# answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc answers specs of 10 KB soon, with a header or
+# with an error: within SECONDS of the processor and KILOBYTES of memory (0: any), in texts that are
+# in proportion. Each spec below takes hours or all memory in a compiler that walks formulas as
+# trees, or that builds a state machine however large.
 set -euo pipefail
 etlc=$1
 seconds=$2
@@ -39,37 +40,48 @@ answers() {
     exec "$etlc" "$2.etl" -o "$2.hpp" >"$2.out" 2>"$2.err"
   ) || status=$?
   [ "$status" = "$1" ] || fail "$2: exit status $status, expected $1: $(head -c 500 "$2.err")"
-  [ "$(stat -c %s "$2.err")" -le $most_diagnostics ] || fail "$2: $(stat -c %s "$2.err") bytes of diagnostics"
+  [ "$(stat -c %s "$2.err")" -le $most_diagnostics ] ||
+    fail "$2: $(stat -c %s "$2.err") bytes of diagnostics"
   [ "$(wc -L <"$2.err")" -le $most_message ] || fail "$2: a line of $(wc -L <"$2.err") characters"
-  [ "$status" != 0 ] || [ "$(stat -c %s "$2.hpp")" -le $most_header ] || fail "$2: $(stat -c %s "$2.hpp") bytes"
+  [ "$status" != 0 ] || [ "$(stat -c %s "$2.hpp")" -le $most_header ] ||
+    fail "$2: $(stat -c %s "$2.hpp") bytes"
 }
 
 # ---- parts that are shared: the text of the whole doubles with each let
 
-{ echo "let a0 = x > 0;"; times 22 "let a@j = a@i S !a@i;"; echo "sliding monitor m = a22;"; } | answers 0 since
-{ echo "let a0 = x > 0;"; times 400 "let a@j = a@i S !a@i;"; echo "monitor m = G a400;"; } | answers 0 long_since
-{ echo "let a0 = x > 0;"; times 60 "let a@j = a@i U[0, 2] !a@i;"; echo "sliding monitor m = a60;"; } | answers 0 until
-{ echo "let a0 = x > 0;"; times 300 "let a@j = a@i W !a@i;"; echo "monitor m = a300;"; } | answers 1 weak
+{ echo "let a0 = x > 0;"; times 22 "let a@j = a@i S !a@i;"; echo "sliding monitor m = a22;"; } |
+  answers 0 since
+{ echo "let a0 = x > 0;"; times 400 "let a@j = a@i S !a@i;"; echo "monitor m = G a400;"; } |
+  answers 0 long_since
+{ echo "let a0 = x > 0;"; times 60 "let a@j = a@i U[0, 2] !a@i;"; echo \
+  "sliding monitor m = a60;"; } | answers 0 until
+{ echo "let a0 = x > 0;"; times 300 "let a@j = a@i W !a@i;"; echo "monitor m = a300;"; } |
+  answers 1 weak
 { echo "monitor m = "; times 100 "x > @i <-> "; echo "b;"; } | answers 0 iff
 { echo "monitor m = G ("; times 60 "(F x > @i) <-> "; echo "b);"; } | answers 1 iff_of_futures
 { echo "let a0 = b; let c0 = p0;"
   times 100 "let a@j = (a@i || O c@i) && (p@m || c@i); let c@j = (c@i && a@i) || Y a@i;"
   echo "monitor m = G a100;"; } | answers 0 mixed
-{ echo "let a0 = b S p0;"; times 300 "let a@j = a@i S !a@i;"; echo "monitor m = F (a300 -> a299);"; } | answers 0 warned
-{ echo "let a0 = b && p0;"; times 200 "let a@j = a@i && (a@i || b);"; echo "monitor m = F a200;"; } | answers 0 conjuncts
+{ echo "let a0 = b S p0;"; times 300 "let a@j = a@i S !a@i;"; echo \
+  "monitor m = F (a300 -> a299);"; } | answers 0 warned
+{ echo "let a0 = b && p0;"; times 200 "let a@j = a@i && (a@i || b);"; echo \
+  "monitor m = F a200;"; } | answers 0 conjuncts
 
 # ---- refusals: as soon as answers, and as short
 
 for depth in 20 24 200; do
-  { echo "let c0 = x > 0;"; times $depth "let c@j = F c@i && !(G c@i);"; echo "monitor m = c$depth;"; } |
+  { echo "let c0 = x > 0;"; times $depth "let c@j = F c@i && !(G c@i);"; echo \
+    "monitor m = c$depth;"; } |
     answers 1 nested_$depth
 done
 echo "monitor m = G F[100,1000] (p0 U p1);" | answers 0 windows
 echo "monitor m = G F[1000,100000] (p0 U p1);" | answers 1 long_windows
 echo "monitor m = F G[1073741823,2147483646] ((F p0) U (G p1));" | answers 1 longest_windows
 { echo "monitor m = "; times 40 "F G "; echo "p0;"; } | answers 1 alternating
-{ echo "monitor m = "; times 100 "(p@m R "; echo "p1"; times 100 ")"; echo ";"; } | answers 0 releases
-{ echo "monitor m = "; times 24 "F (p@m && !(G "; echo "p1"; times 24 "))"; echo ";"; } | answers 1 alternatives
+{ echo "monitor m = "; times 100 "(p@m R "; echo "p1"; times 100 ")"; echo ";"; } |
+  answers 0 releases
+{ echo "monitor m = "; times 24 "F (p@m && !(G "; echo "p1"; times 24 "))"; echo ";"; } |
+  answers 1 alternatives
 { times 150 "monitor m@i = G F[@i, @j00] (p0 U p1);"; } | answers 1 many
 
 # ---- wide, long and broken ones

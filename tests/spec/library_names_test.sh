@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# library_names_test.sh CHECK_NAMES CXX: what the headers of C and POSIX declare at global scope is refused as a spec's
-# name, and what they define as a macro as any name. CHECK_NAMES names the names that it is given and that may be
-# declared. The compiler says which names clash: a namespace, or a field, of each name is put behind all headers.
-# ETLC_UPDATE=1 adds what this machine's headers declare beyond the standards to compiler/check/library_names.inc.
+# library_names_test.sh CHECK_NAMES CXX: what the headers of C and POSIX declare at global scope is
+# refused as a spec's name, and what they define as a macro as any name. CHECK_NAMES names the names
+# that it is given and that may be declared. The compiler says which names clash: a namespace, or a
+# field, of each name is put behind all headers. ETLC_UPDATE=1 adds what this machine's headers
+# declare beyond the standards to compiler/check/library_names.inc.
 set -euo pipefail
 check_names=$1
 cxx=$2
@@ -25,12 +26,14 @@ for header in $headers; do
     printf '#if __has_include(<%s.h>)\n#include <%s.h>\n#endif\n' "$header" "$header"
 done >headers.hpp
 
-# clashing TEXT: those of the names in candidates.txt with which TEXT, where & is the name, does not compile.
+# clashing TEXT: those of the names in candidates.txt with
+# which TEXT, where & is the name, does not compile.
 clashing() {
     { cat headers.hpp; sed "s/.*/$1/" candidates.txt; echo "struct LastLine;"; } >probe.cpp
     "${compile[@]}" -fmax-errors=0 -fsyntax-only probe.cpp 2>errors.txt || true
     grep -oE '^probe.cpp:[0-9]+:[0-9]+: error' errors.txt | cut -d: -f2 |
-        awk -v before="$(wc -l <headers.hpp)" '$1 > before { print $1 - before }' | sort -nu >lines.txt
+        awk -v before="$(wc -l <headers.hpp)" '$1 > before { print $1 - before }' |
+            sort -nu >lines.txt
     awk 'NR == FNR { clash[$1]; next } FNR in clash' lines.txt candidates.txt
 }
 
@@ -54,7 +57,8 @@ failed=0
 for kind in field namespace; do
     "$check_names" $kind <${kind}s.txt >missed.txt
     if [ -s missed.txt ]; then
-        echo "FAILED: may be declared as a $kind, and clashes with a header of C:" $(head -40 missed.txt)
+        echo "FAILED: may be declared as a $kind, and clashes with a header of C:" $(head \
+            -40 missed.txt)
         failed=1
     fi
 done

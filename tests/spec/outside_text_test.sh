@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# outside_text_test.sh ETLC CXX: whatever the names of files, the spec's comments and strings, the thresholds file and the
-# data say, it stays text in every output. A header compiles, and holds nothing that was planted; JSON can be read; what
-# goes to a terminal has no control characters, none that are hidden and none that are not UTF-8; make and ninja
-# rebuild when a file of the depfile changes, or etlc refuses the name.
+# outside_text_test.sh ETLC CXX: whatever the names of files, the spec's comments and strings,
+# the thresholds file and the data say, it stays text in every output. A header compiles, and
+# holds nothing that was planted; JSON can be read; what goes to a terminal has no control
+# characters, none that are hidden and none that are not UTF-8; make and ninja rebuild when a
+# file of the depfile changes, or etlc refuses the name.
 set -euo pipefail
 etlc=$1
 cxx=$2
@@ -28,7 +29,8 @@ hostile=(
     "$(printf 'long %.0s' {1..40})"
 )
 
-# Outputs are kept, each with what it is of, and looked at together in the end. keep KIND WHAT names the next file.
+# Outputs are kept, each with what it is of, and looked at together
+# in the end. keep KIND WHAT names the next file.
 kept=0
 mkdir text json code
 keep() { out=$1/$((++kept)); printf '%s\n' "$2" >"$out.what"; }
@@ -37,7 +39,8 @@ keep() { out=$1/$((++kept)); printf '%s\n' "$2" >"$out.what"; }
 compiles() {
     cp "$1" plain.hpp
     printf '#include "plain.hpp"\nint main() { return sizeof(t::Inputs) == 0; }\n' >main.cpp
-    "$cxx" -std=c++17 -Wall -Wextra -Wpedantic -Werror -fsyntax-only -I "$runtime" main.cpp 2>log.txt ||
+    "$cxx" -std=c++17 -Wall -Wextra -Wpedantic -Werror -fsyntax-only \
+        -I "$runtime" main.cpp 2>log.txt ||
         { fail "$2: does not compile"; head -3 log.txt; }
 }
 
@@ -61,7 +64,8 @@ print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monito
 END
 }
 
-# header WHAT OF ARGUMENT...: a header, where there is one, whose code has to be that of the first that is OF this.
+# header WHAT OF ARGUMENT...: a header, where there is one, whose
+# code has to be that of the first that is OF this.
 header() {
     local what=$1 of=$2
     shift 2
@@ -113,10 +117,12 @@ for text in "${hostile[@]}"; do
     cp plain.etl "at $name/$name.etl"
     cp plain.json "at $name/$name.json"
     everything "at $name/$name.etl" plain "spec called $shown" --thresholds "at $name/$name.json"
-    header "spec called $shown, standalone" standalone "at $name/$name.etl" "${given[@]}" --standalone
+    header "spec called $shown, standalone" standalone "at $name/$name.etl" "${given[@]}" \
+        --standalone
     "$etlc" "at $name/$name.etl" "${given[@]}" -o out.hpp
     compiles out.hpp "spec called $shown"
-    header "targets called $shown" stored plain.etl "${given[@]}" --inline-targets 0 --targets-file "at $name/$name"
+    header "targets called $shown" stored plain.etl "${given[@]}" --inline-targets 0 \
+        --targets-file "at $name/$name"
     "$etlc" plain.etl "${given[@]}" --inline-targets 0 -o "at $name/$name.hpp"
     compiles "at $name/$name.hpp" "header called $shown"
     everything plain.etl plain "no thresholds called $shown" --thresholds "no $name"
@@ -128,12 +134,14 @@ for text in "${hostile[@]}"; do
     # Comments and strings of the spec: in a formula, after it, between declarations.
     oneline=${text//[$'\n\r']/ }
     closed=${oneline//\*\// }
-    { spec_text; printf '// %s\nmonitor c = F /* %s */ (p // %s\n && q); /* %s */\n' "$oneline" "$closed" \
+    { spec_text; printf '// %s\nmonitor c = F /* %s */ (p // %s\n && q); /* %s */\n' "$oneline" \
+        "$closed" \
         "$oneline" "$closed"; } >commented.etl
     everything commented.etl commented "comment $shown" "${given[@]}"
     string=${oneline//[\"\/]/_}
     cp o.npy "$string.npy" 2>/dev/null || true  # what is too long for a name is missing
-    { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$string"; } >loads.etl
+    { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$string"; } \
+        >loads.etl
     everything loads.etl loads "string $shown" "${given[@]}"
     { spec_text; printf 'target o = load("no %s");\n%s' "$string" "$text"; } >loads.etl
     everything loads.etl wrong "wrong string $shown" "${given[@]}"
@@ -155,7 +163,8 @@ for text in "${hostile[@]}"; do
         keep text "run on $shown"
         "$etlc" run plain.etl "${given[@]}" --trace "$trace" >"$out" 2>&1 || true
         keep json "run on $shown"
-        "$etlc" run plain.etl "${given[@]}" --trace "$trace" --diagnostics json 2>"$out" >out.csv || true
+        "$etlc" run plain.etl "${given[@]}" --trace "$trace" --diagnostics json 2>"$out" >out.csv ||
+            true
     done
     keep text "map $shown"
     "$etlc" run plain.etl "${given[@]}" --trace episodes/1.csv --map "x=$text" >"$out" 2>&1 || true
@@ -163,10 +172,12 @@ for text in "${hostile[@]}"; do
         keep text "calibrate on $shown"
         "$etlc" calibrate "at $name/$name.etl" --data "$data" -o "$out.json" >"$out" 2>&1 || true
         keep text "evaluate on $shown"
-        "$etlc" evaluate "at $name/$name.etl" "${given[@]}" --data "$data" --json "$out.json" --csv out.csv \
+        "$etlc" evaluate "at $name/$name.etl" "${given[@]}" --data "$data" --json "$out.json" \
+            --csv out.csv \
             >"$out" 2>&1 && mv "$out.json" json/$kept && cp "$out.what" json/$kept.what
         keep json "evaluate on $shown"
-        "$etlc" evaluate plain.etl "${given[@]}" --data "$data" --diagnostics json 2>"$out" >out.csv || true
+        "$etlc" evaluate plain.etl "${given[@]}" --data "$data" --diagnostics json 2>"$out" \
+            >out.csv || true
     done
     rm -rf "at $name"
 done
@@ -203,21 +214,26 @@ print(looked)
 sys.exit(problems > 0 or min(looked.values()) < 100)
 END
 
-# Depfiles. What they can name, make and ninja follow; what they cannot is refused, and nothing is written.
+# Depfiles. What they can name, make and ninja follow; what
+# they cannot is refused, and nothing is written.
 rebuilds() {  # NAME: of the spec, of what it loads, of the header
     local name=$1 loaded=${1//[$'\n\r']/}
     rm -rf built && mkdir built && cd built
-    { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$loaded"; } >"$name.etl"
+    { spec_text; printf 'target o = load("%s.npy");\nmonitor c = F l2(z, o) < 1;\n' "$loaded"; } \
+        >"$name.etl"
     cp ../o.npy "$loaded.npy"
-    if ! "$etlc" "$name.etl" --thresholds ../plain.json -o "$name.hpp" --depfile out.d 2>text.txt; then
+    if ! "$etlc" "$name.etl" --thresholds ../plain.json -o "$name.hpp" \
+        --depfile out.d 2>text.txt; then
         grep -q E0901 text.txt || fail "depfile with $name: $(cat text.txt)"
-        [ ! -e "$name.hpp" ] && [ ! -e out.d ] || fail "depfile with $name: refused, and something is written"
+        [ ! -e "$name.hpp" ] && [ ! -e out.d ] ||
+            fail "depfile with $name: refused, and something is written"
         cd .. && return 1
     fi
     # As in a build, the target is a plain one; the prerequisites are the hostile ones.
     printf '"%s" "$SPEC" --thresholds ../plain.json -o out.hpp --depfile out.d\necho made >>log.txt\n' "$etlc" >make.sh
     printf 'out.hpp:\n\tbash make.sh\n-include out.d\n' >Makefile
-    printf 'rule etlc\n  command = bash make.sh\n  depfile = out.d\nbuild out.hpp: etlc\n' >build.ninja
+    printf 'rule etlc\n  command = bash make.sh\n  depfile = out.d\nbuild out.hpp: etlc\n' \
+        >build.ninja
     export SPEC="$name.etl"
     for tool in make ninja; do
         rm -f out.hpp out.d log.txt .ninja_*
@@ -232,7 +248,8 @@ rebuilds() {  # NAME: of the spec, of what it loads, of the header
 for name in plain 'two  blanks' 'a#b' 'a$b' '$$(x)' 'a:b' '(1) x' 'é@{~}+,!'; do
     rebuilds "$name" || fail "depfile refuses $name"
 done
-for name in "$live" $'tab\tx' 'semi;colon' 'back\slash' 'star*' 'pipe|' 'quote'"'" 'a=b' 'a&b' '~x' '[a]' 'a?' 'c%d'; do
+for name in "$live" $'tab\tx' 'semi;colon' 'back\slash' 'star*' 'pipe|' 'quote'"'" 'a=b' 'a&b' \
+    '~x' '[a]' 'a?' 'c%d'; do
     ! rebuilds "${name//\//_}" || fail "depfile names $name"
 done
 exit $failed

@@ -6,7 +6,8 @@ target goal = [[1]];
 predicate near = l2(z, goal) <= calibrated(f1);
 monitor m = F near;
 END
-fault() { sed "$1" "$SPECS/E0604_invalid_thresholds.thresholds.json" | sed 's/1e39/0.5/' > fault.json; "$ETLC" t.etl --check --thresholds fault.json; }
+fault() { sed "$1" "$SPECS/E0604_invalid_thresholds.thresholds.json" |
+    sed 's/1e39/0.5/' > fault.json; "$ETLC" t.etl --check --thresholds fault.json; }
 fault '/"spec"/d'
 fault 's/"epsilon"/"epsilom"/'
 fault 's/"epsilon".*/"epsilon": 1, "epsilon": 2,/'

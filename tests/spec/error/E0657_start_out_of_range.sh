@@ -1,4 +1,5 @@
-# A threshold that would start outside [lo, hi] is refused where it is fitted, and where the spec changed after that.
+# A threshold that would start outside [lo, hi] is refused where it is
+# fitted, and where the spec changed after that.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;
@@ -9,7 +10,8 @@ END
 for i in 1 2 3; do printf "grip,force\n0.1,0\n0.6$i,2\n" > "$i.csv"; done
 "$ETLC" calibrate hand.etl --data 1.csv 2.csv 3.csv
 echo "exit status $?"
-sed -i 's/lo = 0.25/lo = 0.5/' hand.etl && "$ETLC" hand.etl --check && "$ETLC" run hand.etl --trace 3.csv
+sed -i 's/lo = 0.25/lo = 0.5/' hand.etl && "$ETLC" hand.etl --check &&
+    "$ETLC" run hand.etl --trace 3.csv
 sed -i 's/lo = 0.5/lo = 0.75/' hand.etl
 "$ETLC" hand.etl --check
 "$ETLC" calibrate hand.etl --data 1.csv 2.csv 3.csv

@@ -1,4 +1,5 @@
-# The ground truth of a monitor has to do what the monitor must not miss, in enough episodes, and rho has to be finite.
+# The ground truth of a monitor has to do what the monitor must not miss,
+# in enough episodes, and rho has to be finite.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

@@ -1,4 +1,5 @@
-# Predicates calibrated again, on the episodes of the monitors, and the two files put together by hand.
+# Predicates calibrated again, on the episodes of the
+# monitors, and the two files put together by hand.
 cat > hand.etl <<'END'
 spec hand;
 input grip, force : f32;

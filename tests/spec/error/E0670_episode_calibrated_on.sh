@@ -1,4 +1,5 @@
-# Thresholds are evaluated on other episodes than those they were calibrated on, whatever the files are called.
+# Thresholds are evaluated on other episodes than those they were
+# calibrated on, whatever the files are called.
 cat > t.etl <<'SPEC'
 spec t;
 input x, px : f32;

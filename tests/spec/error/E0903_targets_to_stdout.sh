@@ -12,7 +12,8 @@ mkdir t2.targets.bin
 "$ETLC" t.etl -o t2.hpp --inline-targets 23
 ls
 # A check writes nothing and needs no file, whatever the sizes.
-printf "\\x93NUMPY\\x01\\x00\\x76\\x00%-117s\\n" "{'descr': '<f4', 'fortran_order': False, 'shape': (70000, 1), }" > large.npy
+printf "\\x93NUMPY\\x01\\x00\\x76\\x00%-117s\\n" \
+    "{'descr': '<f4', 'fortran_order': False, 'shape': (70000, 1), }" > large.npy
 head -c 280000 /dev/zero >> large.npy
 sed 's/f32\[3\]/f32[1]/; s/\[\[.*\]\]/load("large.npy")/' t.etl > large.etl
 "$ETLC" large.etl --check

@@ -1,4 +1,5 @@
-# No output may be a file that the call reads, by whatever name, nor another output; nothing is written then.
+# No output may be a file that the call reads, by whatever
+# name, nor another output; nothing is written then.
 cat > dock.etl <<'END'
 spec dock;
 input z : f32[2];
@@ -6,7 +7,8 @@ target goal = load("goal.npy");
 predicate near = l2(z, goal) <= 0.5;
 monitor arrive = F near;
 END
-printf '\x93NUMPY\x01\x00\x46\x00%-69s\n' "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }" > goal.npy
+printf '\x93NUMPY\x01\x00\x46\x00%-69s\n' \
+    "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }" > goal.npy
 printf '\0\0\0\0\0\0\0\0' >> goal.npy
 printf 'z[0],z[1],truth.near\n0,0,1\n1,1,0\n' > trace.csv
 ln -s dock.etl link.etl

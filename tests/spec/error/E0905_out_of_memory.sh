@@ -1,12 +1,13 @@
-# Files that unpack to more memory than there is: the file is named. A sanitizer takes the address space for itself, so
-# that there is no limit to set; then there is nothing to see.
+# Files that unpack to more memory than there is: the file is named. A sanitizer takes the address
+# space for itself, so that there is no limit to set; then there is nothing to see.
 cat > big.etl <<'END'
 spec big;
 input z : f32[1000];
 target goal = load("big.npy");
 monitor m = F min l2(z, goal) <= 0.5;
 END
-printf '\x93NUMPY\x01\x00\x46\x00%-69s\n' "{'descr': '|i1', 'fortran_order': False, 'shape': (50000, 1000), }" > big.npy
+printf '\x93NUMPY\x01\x00\x46\x00%-69s\n' \
+    "{'descr': '|i1', 'fortran_order': False, 'shape': (50000, 1000), }" > big.npy
 truncate -s 50000080 big.npy
 limited() { (ulimit -v 300000 && exec "$ETLC" "$@"); }
 if limited --version > version 2>&1; then
