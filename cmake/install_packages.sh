@@ -7,12 +7,13 @@ list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 
 packages=()
 for group in "$@"; do
-    mapfile -t -O "${#packages[@]}" packages < <(awk -v group="$group" '$1 == group { print $2 }' \
-        "$list")
+    mapfile -t -O "${#packages[@]}" packages \
+        < <(awk -v group="$group" '$1 == group { print $2 }' "$list")
 done
 
 if ! command -v dpkg-query >/dev/null; then
-    echo "This is no Debian: the packages that are needed cannot be looked up. Their Debian 12 names: ${packages[*]}" >&2
+    echo "This is no Debian: the packages that are needed cannot be looked up." \
+        "Their Debian 12 names: ${packages[*]}" >&2
     exit 0
 fi
 
@@ -28,8 +29,8 @@ as_root=()
 if [ "$(id -u)" -ne 0 ]; then
     as_root=(sudo)
 fi
-if ! command -v apt-get >/dev/null || { [ ${#as_root[@]} -gt 0 ] &&
-    ! command -v sudo >/dev/null; }; then
+if ! command -v apt-get >/dev/null ||
+    { [ ${#as_root[@]} -gt 0 ] && ! command -v sudo >/dev/null; }; then
     echo "These packages are missing, and only root or sudo with apt could install them:" >&2
     echo "    apt-get install ${missing[*]}" >&2
     exit 1

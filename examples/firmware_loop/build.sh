@@ -11,10 +11,12 @@ for spec in grasp dock hover belt gauge; do
     "$etlc" "$here/$spec.etl" -o "$out/$spec.hpp"
 done
 includes="-I$here -I$out -I$runtime"
-firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -fno-threadsafe-statics
-  -fno-asynchronous-unwind-tables -fstack-usage"
-cortex_m4="arm-none-eabi-g++ -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard $firmware $includes"
-rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f $firmware $includes"
+firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti
+  -fno-math-errno -fno-threadsafe-statics -fno-asynchronous-unwind-tables -fstack-usage"
+cortex_m4="arm-none-eabi-g++ -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
+  $firmware $includes"
+rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f
+  $firmware $includes"
 for board in "$@"; do
     source=$here/boards/$board
     for program in loop interrupts; do

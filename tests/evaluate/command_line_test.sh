@@ -21,8 +21,14 @@ monitor twice = F (near && F (px < 0));
 SPEC
 mkdir episodes
 for e in 0 1 2 3 4 5; do
-    awk -v e=$e 'BEGIN { print "px,z[0],z[1]"; for (t = 0; t < 12; ++t) {
-        px = (t * (e + 3)) % 7 - 3.5; z = px > 0 || (t + e) % 5 == 0 ? 1.25 : 3; print px "," z ",1" } }' >episodes/$e.csv
+    awk -v e=$e 'BEGIN {
+        print "px,z[0],z[1]"
+        for (t = 0; t < 12; ++t) {
+            px = (t * (e + 3)) % 7 - 3.5
+            z = px > 0 || (t + e) % 5 == 0 ? 1.25 : 3
+            print px "," z ",1"
+        }
+    }' >episodes/$e.csv
 done
 
 for jobs in 1 4; do

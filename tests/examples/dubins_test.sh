@@ -30,7 +30,10 @@ done
 
 # The last verdict of each monitor on the recorded drive, by the plan and by the compiled code.
 "$etlc" run "$spec" --trace one/dubins.csv -o verdicts.csv
-run=$(awk -F, 'NR > 1 { last[$2] = $6 } END { print last["reach"], last["avoid"], last["reach_avoid"], last["sequential"] }' verdicts.csv)
+run=$(awk -F, '
+    NR > 1 { last[$2] = $6 }
+    END { print last["reach"], last["avoid"], last["reach_avoid"], last["sequential"] }
+' verdicts.csv)
 line=$(grep -E '^ +9  ' one.txt)
 compiled=$(grep -oE '\b(yes|no)\b' <<<"$line" | sed 's/yes/satisfied/; s/no/violated/' |
     paste -sd ' ')

@@ -15,5 +15,8 @@ elif ! diff -u "$header" "$made"; then
     exit 1
 fi
 # Nothing but the header: neither example needs a file of targets beside it.
-[ "$(ls "$folder")" = "$(basename "$header")" ] || { echo "more than the header came out:" &&
-    ls "$folder" && exit 1; }
+if [ "$(ls "$folder")" != "$(basename "$header")" ]; then
+    echo "more than the header came out:"
+    ls "$folder"
+    exit 1
+fi

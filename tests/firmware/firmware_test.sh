@@ -37,9 +37,9 @@ fi
 # loop reads: no verdict is another than without.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" interrupts
-    awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ } END { exit good != 2 || NR != 2 }' \
-        "$box/${board}_interrupts.txt" ||
-            fail "$board: interrupts change verdicts, or hardly any came during a step"
+    awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ }
+         END { exit good != 2 || NR != 2 }' "$box/${board}_interrupts.txt" ||
+        fail "$board: interrupts change verdicts, or hardly any came during a step"
 done
 
 # Each monitor alone, as a program would compile it.
@@ -79,6 +79,10 @@ grep instructions "$box/rv32_loop.txt"
 # One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes;
 # beside it what only a missing embedding and distances that overflow, vanish or are exactly 0 need.
 read -r step reset rare <<<"$(arm-none-eabi-nm -S -C --radix=d "$box/grasp.o" | awk '
-    $3 !~ /[tTwW]/ { next } $4 ~ /^reset/ { r += $2; next } /measure_again|Rescaled|all_finite/ { c += $2; next } { s += $2 } END { print s, r, c }')"
+    $3 !~ /[tTwW]/ { next }
+    $4 ~ /^reset/ { r += $2; next }
+    /measure_again|Rescaled|all_finite/ { c += $2; next }
+    { s += $2 }
+    END { print s, r, c }')"
 echo "grasp on a Cortex-M4F: step $step bytes, reset $reset, rare cases $rare"
 [ "$step" -le 420 ] && [ "$reset" -le 48 ] && [ "$rare" -le 360 ] || fail "more code than its limit"

@@ -1,13 +1,15 @@
 #!/bin/sh
-# campaign.sh SECONDS [TARGET...]: fuzzes every target, or those named, for SECONDS each and stops at the first finding.
-# Run it in a build folder of the preset `sanitized`; what the targets learn is kept in its tests/fuzz/found for the next time.
+# campaign.sh SECONDS [TARGET...]: fuzzes every target, or those named, for SECONDS each and stops
+# at the first finding. Run it in a build folder of the preset `sanitized`; it keeps what the targets
+# learn in its tests/fuzz/found for the next time.
 set -eu
 seconds=${1:?usage: campaign.sh SECONDS [TARGET...]}
 shift
 here=$(cd "$(dirname "$0")" && pwd)
-[ -d tests/fuzz ] ||
-  { echo "campaign.sh: no tests/fuzz here: run it in a build folder of the preset sanitized" \
-  >&2; exit 2; }
+if ! [ -d tests/fuzz ]; then
+  echo "campaign.sh: no tests/fuzz here: run it in a build folder of the preset sanitized" >&2
+  exit 2
+fi
 [ $# -gt 0 ] || set -- $(ls "$here/corpus")
 for target in "$@"; do
   echo "$target: $seconds s"

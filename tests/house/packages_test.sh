@@ -14,7 +14,9 @@ done
 stub apt-get 'echo "$*" >>"$BOX/calls"'
 stub sudo 'echo "sudo" >>"$BOX/calls"; exec "$@"'
 stub id 'echo "$USER_ID"'
-stub dpkg-query 'for p in "${@:4}"; do case " $ABSENT " in *" $p "*) ;; *) echo "installed $p";; esac; done'
+stub dpkg-query 'for p in "${@:4}"; do
+    case " $ABSENT " in *" $p "*) ;; *) echo "installed $p" ;; esac
+done'
 
 # try USER_ID ABSENT: runs the script for the group `build`; its output, exit status
 # and calls are then in $output, $status, $calls.

@@ -17,17 +17,26 @@ fail() { echo "FAILED: $*" >&2; exit 1; }
 # every kind: a window, a machine, a past operator.
 awk 'BEGIN {
   srand(3)
-  print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];\ninput on : bool;"
+  print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];"
+  print "input on : bool;"
   printf "target a = ["
-  for (k = 0; k < 9; ++k) { printf "%s[", k ? ", " : ""; for (i = 0; i < 70; ++i) printf "%s%.4f", i ? ", " : "", 2 * rand() - 1; printf "]" }
+  rows(9, 70)
   printf "];\ntarget b = ["
-  for (k = 0; k < 6; ++k) { printf "%s[", k ? ", " : ""; for (i = 0; i < 5; ++i) printf "%s%.4f", i ? ", " : "", 2 * rand() - 1; printf "]" }
+  rows(6, 5)
   print "];"
   print "predicate near = mean angular(z, a) <= 1.57;\npredicate far = kth(3) l1(y, b) >= 2.5;"
   print "predicate bent = max mahalanobis([2, 1, 1, 0.5, 3])(y, b) < 2.2;"
   print "predicate root = sqrt(x) + x / 3 <= 3.3;"
-  print "monitor safe = G (near -> F[0, 3] (bent || root));\nmonitor late = F (far && G[0, 2] bent) || on U root;"
+  print "monitor safe = G (near -> F[0, 3] (bent || root));"
+  print "monitor late = F (far && G[0, 2] bent) || on U root;"
   print "sliding monitor held = G[0, 4] (root S near) && O[1, 3] far;"
+}
+function rows(K, D) {
+  for (k = 0; k < K; ++k) {
+    printf "%s[", k ? ", " : ""
+    for (i = 0; i < D; ++i) printf "%s%.4f", i ? ", " : "", 2 * rand() - 1
+    printf "]"
+  }
 }' >flags.etl
 "$etlc" flags.etl --targets-as i8 -o flags.hpp
 grep -q measure_bytes flags.hpp && grep -q measure_scaled flags.hpp ||
@@ -40,25 +49,31 @@ cat >unit.cpp <<'END'
 
 extern "C" unsigned ANSWERS(unsigned* to);
 unsigned ANSWERS(unsigned* to) {
-  flags::Monitor monitor;
-  unsigned state = 5, n = 0;
-  for (int step = 0; step < 25; ++step) {
-    float z[70];
-    uint16_t y[5];
-    for (float& element : z) element = static_cast<float>(static_cast<int>((state = state * 1664525u + 1013904223u) >> 16) - 32768) / 30000.0f;
-    for (uint16_t& element : y) element = static_cast<uint16_t>(0x3800u + ((state = state * 1664525u + 1013904223u) >> 22));
-    flags::Inputs in;
-    if (step % 7 != 6) in.z = z;
-    in.y = y;
-    in.x = static_cast<float>((state >> 8) % 90u) / 10.0f;
-    in.on = step % 3 == 0;
-    const auto verdicts = monitor.step(in);
-    for (const etlmon::Verdict& v : {verdicts.safe, verdicts.late, verdicts.held}) {
-      to[n++] = etlmon::bits_of(v.lower), to[n++] = etlmon::bits_of(v.robustness);
-      to[n++] = etlmon::bits_of(v.upper), to[n++] = v.status;
+    flags::Monitor monitor;
+    unsigned state = 5, n = 0;
+    for (int step = 0; step < 25; ++step) {
+        float z[70];
+        uint16_t y[5];
+        for (float& element : z)
+            element =
+                static_cast<float>(
+                    static_cast<int>((state = state * 1664525u + 1013904223u) >> 16) - 32768) /
+                30000.0f;
+        for (uint16_t& element : y)
+            element =
+                static_cast<uint16_t>(0x3800u + ((state = state * 1664525u + 1013904223u) >> 22));
+        flags::Inputs in;
+        if (step % 7 != 6) in.z = z;
+        in.y = y;
+        in.x = static_cast<float>((state >> 8) % 90u) / 10.0f;
+        in.on = step % 3 == 0;
+        const auto verdicts = monitor.step(in);
+        for (const etlmon::Verdict& v : {verdicts.safe, verdicts.late, verdicts.held}) {
+            to[n++] = etlmon::bits_of(v.lower), to[n++] = etlmon::bits_of(v.robustness);
+            to[n++] = etlmon::bits_of(v.upper), to[n++] = v.status;
+        }
     }
-  }
-  return n;
+    return n;
 }
 END
 cat >main.cpp <<'END'
@@ -124,10 +139,15 @@ for object in *.o; do
     awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'
 done | sort >weak.txt
 [ "$(wc -l <weak.txt)" -gt 100 ] || fail "no inline function is to be seen in the objects"
-awk '$2 !~ /^as_/ { if ($1 == last) { print $1 " of " before " and of " $2; bad = 1 } last = $1; before = $2 } END { exit bad }' weak.txt >shared.txt ||
+awk '$2 !~ /^as_/ {
+  if ($1 == last) { print $1 " of " before " and of " $2; bad = 1 }
+  last = $1; before = $2
+} END { exit bad }' weak.txt >shared.txt ||
   fail "one name for the code of different flags: $(head -n 2 shared.txt | c++filt)"
-code() { objdump -d --no-show-raw-insn "$1.o" |
-  sed "1,6d; s/answers_$1/answers/g; s/^.*Disassembly.*answers.*//"; }
+code() {
+  objdump -d --no-show-raw-insn "$1.o" |
+    sed "1,6d; s/answers_$1/answers/g; s/^.*Disassembly.*answers.*//"
+}
 for same in as_*.o; do
   same=${same%.o}
   cmp <(code "$same") <(code "${same#as_}") ||

@@ -53,8 +53,9 @@ header base.etl boolean.hpp --values boolean
 header base.etl stored.hpp --values boolean --inline-targets 0
 header base.etl narrow.hpp --targets-as i8
 header base.etl halves.hpp --targets-as f16
-reserved='spec rate period input target predicate truth let monitor sliding true false calibrated load inf X F G U W R Y
-  O H S iff implies or and not until weak_until release since next eventually always previous once historically'
+reserved='spec rate period input target predicate truth let monitor sliding
+  true false calibrated load inf X F G U W R Y O H S iff implies or and not
+  until weak_until release since next eventually always previous once historically'
 sed 's|//.*||; /^#/d' robustness.hpp boolean.hpp stored.hpp narrow.hpp halves.hpp |
     grep -oP '(?<![0-9A-Za-z_])[A-Za-z_][A-Za-z_0-9]*' | LC_ALL=C sort -u |
     grep -vxF "$(tr -s ' ' '\n' <<<"$reserved")" >all.txt
@@ -78,22 +79,35 @@ for ((turn = 0; turn < roles; ++turn)); do
       function feed(t, text) { feeds[t] = feeds[t] text "\n" }
       function scalar(name, j) {
         column(name)
-        for (t = 0; t < steps; ++t) { v = value(t, j, 0); cell(t, v); feed(t, sprintf("in.%s = %.2ff;", name, v)) }
+        for (t = 0; t < steps; ++t) {
+          v = value(t, j, 0)
+          cell(t, v)
+          feed(t, sprintf("in.%s = %.2ff;", name, v))
+        }
       }
       function flag(name, j) {
         column(name)
-        for (t = 0; t < steps; ++t) { v = value(t, j, 1) > 0; cell(t, v); feed(t, sprintf("in.%s = %s;", name, v ? "true" : "false")) }
+        for (t = 0; t < steps; ++t) {
+          v = value(t, j, 1) > 0
+          cell(t, v)
+          feed(t, sprintf("in.%s = %s;", name, v ? "true" : "false"))
+        }
       }
       function vector(name, j, type) {
         column(name "[0]"); column(name "[1]")
         for (t = 0; t < steps; ++t) {
           for (k = 0; k < 2; ++k) {
             v = value(t, j, k) + 0.125
-            if (type == "uint16_t") { n = half(t, j, k); v = n - 1; bits = n == 0 ? "0xbc00" : n == 1 ? "0" : "0x3c00" }
+            if (type == "uint16_t") {
+              n = half(t, j, k)
+              v = n - 1
+              bits = n == 0 ? "0xbc00" : n == 1 ? "0" : "0x3c00"
+            }
             if (type == "int8_t") v = 4 * value(t, j, k) + 1
             cell(t, v); e[k] = type == "uint16_t" ? bits : type == "float" ? sprintf("%.4ff", v) : v
           }
-          feed(t, sprintf("static const %s values_%d_%d[] = {%s, %s};\nin.%s = values_%d_%d;", type, j, t, e[0], e[1], name, j, t))
+          feed(t, sprintf("static const %s values_%d_%d[] = {%s, %s};", type, j, t, e[0], e[1]))
+          feed(t, sprintf("in.%s = values_%d_%d;", name, j, t))
         }
       }
       BEGIN {
@@ -105,10 +119,12 @@ for ((turn = 0; turn < roles; ++turn)); do
       {
         j = NR; role = (j + turn) % roles; c = (j + 1) / 512
         if (role == 0) {
-          spec = spec "input " $1 " : f32 in [-2, 2];\nmonitor zz" j " = F (" $1 " * " $1 " > 1) && G (" $1 " <= 1.5);\n"
+          formula = "F (" $1 " * " $1 " > 1) && G (" $1 " <= 1.5)"
+          spec = spec "input " $1 " : f32 in [-2, 2];\nmonitor zz" j " = " formula ";\n"
           scalar($1, j)
         } else if (role == 1) {
-          spec = spec "input " $1 " : bool" (j % 3 ? "" : " hold 1") ";\nmonitor zz" j " = G[0, 2] " $1 " || F (" $1 " && !on);\n"
+          spec = spec "input " $1 " : bool" (j % 3 ? "" : " hold 1") ";\n"
+          spec = spec "monitor zz" j " = G[0, 2] " $1 " || F (" $1 " && !on);\n"
           flag($1, j)
         } else if (role == 2) {
           of = j % 2 ? "x - " c " >= 0.5" : "min l2(z, goal) <= " (0.5 + c)
@@ -122,13 +138,16 @@ for ((turn = 0; turn < roles; ++turn)); do
           if (kind == 3) formula = "G[1, 3] (" above " U[0, 2] on)"
           spec = spec "monitor " $1 " = " formula ";\n"
         } else if (role == 4) {
-          spec = spec "sliding monitor " $1 " = " (j % 16 < 8 ? "F[0, 2] x > " c : "x > " c " S on") ";\n"
+          formula = j % 16 < 8 ? "F[0, 2] x > " c : "x > " c " S on"
+          spec = spec "sliding monitor " $1 " = " formula ";\n"
         } else if (role == 5) {
-          spec = spec "target " $1 " = [[" c ", 1], [1, 0.5]];\nmonitor zz" j " = F min l2(z, " $1 ") <= 0.5 && F min cosine(z, " $1 ") <= 0.1;\n"
+          formula = "F min l2(z, " $1 ") <= 0.5 && F min cosine(z, " $1 ") <= 0.1"
+          spec = spec "target " $1 " = [[" c ", 1], [1, 0.5]];\nmonitor zz" j " = " formula ";\n"
         } else {
           kind = int(j / roles) % 3
           type = kind == 0 ? "f32[2] hold 1" : kind == 1 ? "f16[2]" : "i8[2] scale 0.25"
-          spec = spec "input " $1 " : " type ";\nmonitor zz" j " = F min l2(" $1 ", goal) <= " (1 + c) ";\n"
+          spec = spec "input " $1 " : " type ";\n"
+          spec = spec "monitor zz" j " = F min l2(" $1 ", goal) <= " (1 + c) ";\n"
           vector($1, j, kind == 0 ? "float" : kind == 1 ? "uint16_t" : "int8_t")
         }
       }
@@ -136,9 +155,10 @@ for ((turn = 0; turn < roles; ++turn)); do
         printf "%s", spec >"turn" turn ".etl"
         print heads >"turn" turn ".csv"
         for (t = 0; t < steps; ++t) print cells[t] >"turn" turn ".csv"
-        print "template <class Inputs> void feed(Inputs& in, int step) {\nswitch (step) {" >"turn" turn ".inc"
-        for (t = 0; t < steps; ++t) printf "case %d: {\n%sbreak;\n}\n", t, feeds[t] >"turn" turn ".inc"
-        print "}\n}" >"turn" turn ".inc"
+        inc = "turn" turn ".inc"
+        print "template <class Inputs> void feed(Inputs& in, int step) {\nswitch (step) {" >inc
+        for (t = 0; t < steps; ++t) printf "case %d: {\n%sbreak;\n}\n", t, feeds[t] >inc
+        print "}\n}" >inc
       }' names.txt
 done
 
@@ -149,18 +169,19 @@ cat >show.hpp <<'END'
 #include <cstdio>
 #include "etlmon/verdict.hpp"
 inline const char* word(bool satisfied, bool violated, bool decided) {
-  return !decided ? "undecided" : satisfied ? "satisfied" : violated ? "violated" : "unknown";
+    return !decided ? "undecided" : satisfied ? "satisfied" : violated ? "violated" : "unknown";
 }
 inline void show(const char* mode, int step, const char* name, const etlmon::Verdict& v) {
-  std::printf("%s,%d,%s,", mode, step, name);
-  if (v.decided())
-    std::printf("%.9g,%.9g,%.9g", double(v.lower), double(v.robustness), double(v.upper));
-  else
-    std::printf(",,");
-  std::printf(",%s,%d\n", word(v.satisfied(), v.violated(), v.decided()), int(v.final()));
+    std::printf("%s,%d,%s,", mode, step, name);
+    if (v.decided())
+        std::printf("%.9g,%.9g,%.9g", double(v.lower), double(v.robustness), double(v.upper));
+    else
+        std::printf(",,");
+    std::printf(",%s,%d\n", word(v.satisfied(), v.violated(), v.decided()), int(v.final()));
 }
 inline void show(const char* mode, int step, const char* name, const etlmon::BooleanVerdict& v) {
-  std::printf("%s,%d,%s,,,,%s,%d\n", mode, step, name, word(v.satisfied(), v.violated(), v.decided()), int(v.final()));
+    std::printf("%s,%d,%s,,,,%s,%d\n", mode, step, name,
+                word(v.satisfied(), v.violated(), v.decided()), int(v.final()));
 }
 END
 # Every header is compiled; the verdicts are asked for in one mode a turn.
@@ -177,7 +198,10 @@ for ((turn = 0; turn < roles; ++turn)); do
               function number(text) {
                 return mode ~ /boolean/ ? "" : text ~ /[0-9]/ ? sprintf("%.9g", text + 0) : text
               }
-              NR > 1 { print mode "," $1 "," $2 "," number($3) "," number($4) "," number($5) "," $6 "," $7 }
+              NR > 1 {
+                numbers = number($3) "," number($4) "," number($5)
+                print mode "," $1 "," $2 "," numbers "," $6 "," $7
+              }
             ' >>expected.csv
         {
             printf '#include "show.hpp"\n#include "%s.hpp"\n' $space
@@ -240,10 +264,13 @@ awk '{ print "zz" NR }' names.txt >others.txt
 for values in robustness boolean; do
     for lets in names.txt others.txt; do
         { sed 's/spec base/spec lets/' base.etl
-          awk '{ print "let " $1 " = x > " NR / 512 " S on;\nmonitor zy" NR " = F[1, 4] " $1 ";" }' $lets; } >lets.etl
+          awk '{ print "let " $1 " = x > " NR / 512 " S on;"
+                 print "monitor zy" NR " = F[1, 4] " $1 ";" }' $lets
+        } >lets.etl
         header lets.etl lets.hpp --values $values
         sed 's|//.*||' lets.hpp >>lets_$values.txt
     done
-    awk '{ lines[NR] = $0 } END { for (n = 1; n <= NR / 2; ++n) if (lines[n] != lines[n + NR / 2]) exit 1 }' \
+    awk '{ lines[NR] = $0 }
+         END { for (n = 1; n <= NR / 2; ++n) if (lines[n] != lines[n + NR / 2]) exit 1 }' \
         lets_$values.txt || { echo "FAILED: the names of lets change the code"; exit 1; }
 done

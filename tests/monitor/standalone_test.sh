@@ -14,30 +14,35 @@ cd "$box"
 cat >main.cpp <<'END'
 #include <cstdio>
 
-#include "responses.hpp"
 #include "pending.hpp"
+#include "responses.hpp"
 
 template <class Verdict>
 void show(const Verdict& v) {
-  std::printf("%.9g %.9g %.9g %u\n", double(v.lower), double(v.robustness), double(v.upper), unsigned(v.status));
+    std::printf("%.9g %.9g %.9g %u\n", double(v.lower), double(v.robustness), double(v.upper),
+                unsigned(v.status));
 }
 
 int main() {
-  responses::Monitor first;
-  pending::Monitor second;
-  unsigned state = 1;
-  const auto next = [&] { return float(int((state = state * 1664525u + 1013904223u) >> 27) - 16) / 4; };
-  for (int step = 0; step < 200; ++step) {
-    responses::Inputs a;
-    a.x = next();
-    a.y = step % 7 == 0 ? etlmon::kMissing : next();
-    const responses::Verdicts v = first.step(a);
-    show(v.answered), show(v.later), show(v.within), show(v.held), show(v.until_answered), show(v.looks_back);
-    pending::Inputs b;
-    b.x = a.x, b.y = a.y, b.on = step % 3 == 0;
-    const pending::Verdicts w = second.step(b);
-    show(w.excused), show(w.until_all), show(w.answered_twice), show(w.kept_after), show(w.flags);
-  }
+    responses::Monitor first;
+    pending::Monitor second;
+    unsigned state = 1;
+    const auto next = [&] {
+        return float(int((state = state * 1664525u + 1013904223u) >> 27) - 16) / 4;
+    };
+    for (int step = 0; step < 200; ++step) {
+        responses::Inputs a;
+        a.x = next();
+        a.y = step % 7 == 0 ? etlmon::kMissing : next();
+        const responses::Verdicts v = first.step(a);
+        show(v.answered), show(v.later), show(v.within), show(v.held), show(v.until_answered),
+            show(v.looks_back);
+        pending::Inputs b;
+        b.x = a.x, b.y = a.y, b.on = step % 3 == 0;
+        const pending::Verdicts w = second.step(b);
+        show(w.excused), show(w.until_all), show(w.answered_twice), show(w.kept_after),
+            show(w.flags);
+    }
 }
 END
 flags=(-std=c++17 -O1 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)

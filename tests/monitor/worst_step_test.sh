@@ -8,7 +8,7 @@ etlc=$1
 cxx=$2
 per_operation=${PER_OPERATION:-8}
 fixed=${FIXED:-120} # reading two inputs, two predicates, the verdict
-frame=512           # stack besides kStackBytes: registers that are saved, what is computed in between
+frame=512           # stack besides kStackBytes: saved registers, intermediate results
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
@@ -52,8 +52,11 @@ runs=
 while read -r name steps formula; do
     sliding=
     [[ $name != s_* ]] || sliding=sliding
-    printf 'spec %s;\ninput x, y : f32 in [-4, 4];\npredicate p = x >= 0.5;\npredicate q = y < 0.25;\n%s monitor m = %s;\n' \
-        "$name" "$sliding" "$formula" >"$name.etl"
+    {
+        printf 'spec %s;\ninput x, y : f32 in [-4, 4];\n' "$name"
+        printf 'predicate p = x >= 0.5;\npredicate q = y < 0.25;\n'
+        printf '%s monitor m = %s;\n' "$sliding" "$formula"
+    } >"$name.etl"
     "$etlc" "$name.etl" -o "$name.hpp" 2>"$name.log" || { cat "$name.log"; exit 1; }
     echo "#include \"$name.hpp\"" >>main.cpp
     runs+="  worst_step::run<$name::Monitor, $name::Inputs>(\"$name\", $steps);"$'\n'
@@ -66,8 +69,8 @@ valgrind --tool=callgrind --combine-dumps=yes --callgrind-out-file=counts ./main
 
 # The class lies in an inline namespace that is named after the flags.
 class='([A-Za-z0-9_]+)::[A-Za-z0-9_]+::Monitor'
-sed -nE "s/.*with Monitor = $class.*\t([0-9]+)\t.*/\1 \2/p; s/.* $class::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p" \
-    ./*.su >frames
+sed -nE "s/.*with Monitor = $class.*\t([0-9]+)\t.*/\1 \2/p
+    s/.* $class::[a-z_]+\(.*\t([0-9]+)\t.*/\1 \2/p" ./*.su >frames
 awk -v frame="$frame" '
 NR == FNR { stated[$1] = $7; next }
 { taken[$1] += $2 }
@@ -84,11 +87,16 @@ END {
 awk '$3 != $5 { print "FAILED: " $0; bad = 1 } END { exit bad }' states
 awk -v per="$per_operation" -v fixed="$fixed" '
 /^desc: Trigger: Client Request: / { name = $5; operations = $6 }
-/^(summary|totals): / && name != "" { if ($2 > worst[name]) worst[name] = $2; stated[name] = operations; name = "" }
+/^(summary|totals): / && name != "" {
+    if ($2 > worst[name]) worst[name] = $2
+    stated[name] = operations
+    name = ""
+}
 END {
     for (name in worst) {
         ++classes
-        line = sprintf("%-18s %9d operations stated, worst step %9d instructions", name, stated[name], worst[name])
+        line = sprintf("%-18s %9d operations stated, worst step %9d instructions", name,
+            stated[name], worst[name])
         good = worst[name] <= fixed + per * stated[name]
         print (good ? "" : "FAILED: ") line
         bad = bad || !good

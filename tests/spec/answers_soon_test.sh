@@ -22,7 +22,12 @@ fail() {
 # times N TEXT: the TEXT N times, with i for 0, 1, ... and j for the number after i
 times() {
   awk -v n="$1" -v text="$2" 'BEGIN {
-    for (i = 0; i < n; ++i) { t = text; gsub(/@i/, i, t); gsub(/@j/, i + 1, t); gsub(/@m/, i % 3, t); printf "%s", t } }'
+    for (i = 0; i < n; ++i) {
+      t = text
+      gsub(/@i/, i, t); gsub(/@j/, i + 1, t); gsub(/@m/, i % 3, t)
+      printf "%s", t
+    }
+  }'
 }
 
 # answers STATUS NAME: etlc's answer to the declarations on standard input

@@ -13,11 +13,12 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-headers="assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal stdalign stdarg
-  stdbool stddef stdint stdio stdlib string time uchar wchar wctype
-  aio arpa/inet cpio dirent dlfcn fcntl fmtmsg fnmatch ftw glob grp iconv langinfo libgen monetary mqueue net/if netdb
-  netinet/in netinet/tcp nl_types poll pthread pwd regex sched search semaphore spawn strings sys/ipc sys/mman sys/msg
-  sys/resource sys/select sys/sem sys/shm sys/socket sys/stat sys/statvfs sys/time sys/times sys/types sys/uio sys/un
+headers="assert complex ctype errno fenv float inttypes iso646 limits locale math setjmp signal
+  stdalign stdarg stdbool stddef stdint stdio stdlib string time uchar wchar wctype aio
+  arpa/inet cpio dirent dlfcn fcntl fmtmsg fnmatch ftw glob grp iconv langinfo libgen
+  monetary mqueue net/if netdb netinet/in netinet/tcp nl_types poll pthread pwd regex sched
+  search semaphore spawn strings sys/ipc sys/mman sys/msg sys/resource sys/select sys/sem
+  sys/shm sys/socket sys/stat sys/statvfs sys/time sys/times sys/types sys/uio sys/un
   sys/utsname sys/wait syslog tar termios ulimit unistd utime utmpx wordexp"
 # Without an update only what the standards have is asked for: a later C library may add names.
 compile=("$cxx" -std=c++17 -w)

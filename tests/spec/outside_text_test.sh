@@ -56,11 +56,11 @@ thresholds() {  # METHOD ETLC SPEC TRUTH
     python3 - "$@" <<'END'
 import json, os, sys
 method, etlc, spec, truth = [os.fsencode(a).decode("utf-8", "replace") for a in sys.argv[1:5]]
-entry = {"method": method, "alpha": 0.5, "epsilon": 1, "n": 3, "k": 2, "scores": [0.5, 0.99999997, 1.5], "predicate": "x < ",
-         "truth": truth, "targets": {}}
+entry = {"method": method, "alpha": 0.5, "epsilon": 1, "n": 3, "k": 2,
+         "scores": [0.5, 0.99999997, 1.5], "predicate": "x < ", "truth": truth, "targets": {}}
 episodes = ["%016x" % i for i in range(3)]
-print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monitors": {}, "episodes": episodes,
-                  "etlc": etlc}))
+print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monitors": {},
+                  "episodes": episodes, "etlc": etlc}))
 END
 }
 
@@ -98,7 +98,8 @@ mkdir -p episodes
 for e in 1 2 3; do printf 'x,y,z[0],z[1]\n0.5,1,1,2\n1.25,-1,0,%s\n' $e >episodes/$e.csv; done
 python3 -c "
 head = b\"{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }\".ljust(117) + b'\\n'
-open('o.npy', 'wb').write(b'\\x93NUMPY\\x01\\x00' + bytes([118, 0]) + head + bytes([0, 0, 128, 62, 0, 0, 128, 63]))"
+row = bytes([0, 0, 128, 62, 0, 0, 128, 63])
+open('o.npy', 'wb').write(b'\\x93NUMPY\\x01\\x00' + bytes([118, 0]) + head + row)"
 given=(--thresholds plain.json)
 everything plain.etl plain "nothing hostile" "${given[@]}"
 header "nothing hostile, standalone" standalone plain.etl "${given[@]}" --standalone
@@ -185,12 +186,14 @@ done
 
 python3 - <<'END' || failed=1
 import glob, json, re, sys
-hidden = re.compile("[\0-\t\v-\x1f\x7f-\x9f\xad\u061c\u200b-\u200f\u2028-\u202e\u2060-\u206f\ufeff]")
+hidden = re.compile("[\0-\t\v-\x1f\x7f-\x9f\xad\u061c\u200b-\u200f\u2028-\u202e"
+                    "\u2060-\u206f\ufeff]")
 problems, codes, looked = 0, {}, {"text": 0, "json": 0, "code": 0}
 def fail(path, why):
     global problems
     problems += 1
-    if problems < 20: print("FAILED:", open(path + ".what").read().strip() + ":", why, file=sys.stderr)
+    if problems < 20:
+        print("FAILED:", open(path + ".what").read().strip() + ":", why, file=sys.stderr)
 for path in sorted(glob.glob("*/*.what"), key=lambda p: int(p.split("/")[1][:-5])):
     path = path[:-5]
     kind = path.split("/")[0]
@@ -204,10 +207,14 @@ for path in sorted(glob.glob("*/*.what"), key=lambda p: int(p.split("/")[1][:-5]
     try: text = content.decode()
     except UnicodeDecodeError as error: fail(path, f"not UTF-8: {error}"); continue
     if kind == "text":  # an echoed line of the spec keeps its tabs
-        text = "\n".join(l.replace("\t", " ") if re.match(" *[0-9]* \\| ", l) else l for l in text.split("\n"))
-    if found := hidden.search(text): fail(path, f"hidden character {found[0]!r} in ...{text[max(0, found.start() - 40):found.end()]!r}")
+        text = "\n".join(l.replace("\t", " ") if re.match(" *[0-9]* \\| ", l) else l
+                         for l in text.split("\n"))
+    if found := hidden.search(text):
+        before = text[max(0, found.start() - 40):found.end()]
+        fail(path, f"hidden character {found[0]!r} in ...{before!r}")
     if kind == "code":
-        if re.search(r"//.*(\\|[?][?]/)[ \t]*$", text, re.M): fail(path, "a comment that is continued")
+        if re.search(r"//.*(\\|[?][?]/)[ \t]*$", text, re.M):
+            fail(path, "a comment that is continued")
         code = [l for l in (re.sub("//.*", "", l).rstrip() for l in text.split("\n")) if l]
         if codes.setdefault(open(path + ".of").read(), code) != code: fail(path, "live text")
 print(looked)
@@ -230,7 +237,8 @@ rebuilds() {  # NAME: of the spec, of what it loads, of the header
         cd .. && return 1
     fi
     # As in a build, the target is a plain one; the prerequisites are the hostile ones.
-    printf '"%s" "$SPEC" --thresholds ../plain.json -o out.hpp --depfile out.d\necho made >>log.txt\n' "$etlc" >make.sh
+    printf '"%s" "$SPEC" --thresholds ../plain.json -o out.hpp --depfile out.d\n' "$etlc" >make.sh
+    echo 'echo made >>log.txt' >>make.sh
     printf 'out.hpp:\n\tbash make.sh\n-include out.d\n' >Makefile
     printf 'rule etlc\n  command = bash make.sh\n  depfile = out.d\nbuild out.hpp: etlc\n' \
         >build.ninja

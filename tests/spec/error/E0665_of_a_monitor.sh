@@ -11,7 +11,8 @@ printf 'z[0],z[1],truth.a\n0.4,0.3,0\n0.123456,0.654321,1\n' > a.csv
 printf 'z[0],z[1],truth.a\n0.2,0.6,1\n0.7,0.75,1\n' > b.csv
 "$ETLC" calibrate leak.etl --data a.csv b.csv
 echo "exit status $?"
-printf 'spec leak;\ninput x, y : f32;\ntarget t = load("t.npy");\npredicate a = min l2([x, y], t) <= 0.3;\n' > leak.etl
+printf 'spec leak;\ninput x, y : f32;\ntarget t = load("t.npy");\n' > leak.etl
+echo 'predicate a = min l2([x, y], t) <= 0.3;' >> leak.etl
 printf 'monitor m = F a calibrated(conformal, alpha = 0.5, against = missed_success);\n' >> leak.etl
 printf '\223NUMPY\001\000\166\000%-117s\n\000\000\000\077\000\000\200\076' \
     "{'descr': '<f4', 'fortran_order': False, 'shape': (1, 2), }" > t.npy
