@@ -1,23 +1,29 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
 #                  [INLINE_TARGETS bytes] [STANDALONE])
 #
-# Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of TARGET then include by that name.
-#   TARGET      an executable or a library made in this directory; it may have several monitors
-#   SPEC        the .etl file
-#   THRESHOLDS  the thresholds file (default: SPEC.thresholds.json beside the spec, where it exists)
-#   VALUES      what the monitors compute with (default: robustness); boolean: truth values, and only the distances that matter
-#   NAMESPACE   of the generated code (default: the name after `spec`)
-#   STANDALONE  the header holds the runtime that it needs; otherwise TARGET is linked with etlmon::etlmon. No source includes both kinds.
-#   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header (default: 262144); the monitor is given that
-#               file at run time. It is empty where no set is larger. The target's property ETLC_TARGETS_FILES lists these files.
-# Relative paths are relative to the current source directory. The header lies in the build folder and is made anew when the spec,
-# a file that the spec loads, the thresholds or etlc itself change. Of a library, the header and the runtime are public.
-# Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for the others).
+# Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
+# TARGET then include by that name.
+#   TARGET          an executable or a library made in this directory; it may have several monitors
+#   SPEC            the .etl file
+#   THRESHOLDS      the thresholds file; default: SPEC.thresholds.json beside the spec, if it exists
+#   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
+#                   only the distances that matter
+#   NAMESPACE       of the generated code; default: the name after `spec`
+#   STANDALONE      the header holds the runtime that it needs; without it TARGET is linked with
+#                   etlmon::etlmon. No source includes both kinds.
+#   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header; default:
+#                   262144. The program gives the monitor that file, which is empty where no set is
+#                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
+# Relative paths are relative to the current source directory. The header lies in the build folder
+# and is made anew when the spec, a file that the spec loads, the thresholds or etlc itself change.
+# Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
+# generators (3.21 for the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE" "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS" "")
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
+    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS" "")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -31,7 +37,8 @@ function(etlc_add_monitor target)
   if(NOT arg_SPEC)
     message(FATAL_ERROR "${call}: SPEC is missing")
   endif()
-  if(arg_NAMESPACE AND NOT arg_NAMESPACE MATCHES "^[A-Za-z_][A-Za-z0-9_]*(::[A-Za-z_][A-Za-z0-9_]*)*$")
+  set(name "[A-Za-z_][A-Za-z0-9_]*")
+  if(arg_NAMESPACE AND NOT arg_NAMESPACE MATCHES "^${name}(::${name})*$")
     message(FATAL_ERROR "${call}: NAMESPACE ${arg_NAMESPACE} is not a C++ namespace")
   endif()
   if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
@@ -49,7 +56,8 @@ function(etlc_add_monitor target)
   set(targets_file "${folder}/${stem}.targets.bin")
   get_target_property(monitors ${target} ETLC_MONITORS)
   if("${stem}" IN_LIST monitors)
-    message(FATAL_ERROR "${call}: there is a monitor ${stem}.hpp already: name one of the two specs otherwise")
+    message(FATAL_ERROR
+      "${call}: there is a monitor ${stem}.hpp already: name one of the two specs otherwise")
   endif()
   set_property(TARGET ${target} APPEND PROPERTY ETLC_MONITORS "${stem}")
   set_property(TARGET ${target} APPEND PROPERTY ETLC_TARGETS_FILES "${targets_file}")
@@ -77,7 +85,8 @@ function(etlc_add_monitor target)
   file(MAKE_DIRECTORY "${folder}")
   add_custom_command(
     OUTPUT "${header}" "${targets_file}"
-    COMMAND etlc::etlc "${spec}" -o "${header}" --targets-file "${targets_file}" --depfile "${header}.d" ${options}
+    COMMAND etlc::etlc "${spec}" -o "${header}" --targets-file "${targets_file}"
+            --depfile "${header}.d" ${options}
     DEPENDS ${depends} etlc::etlc
     DEPFILE "${header}.d"
     COMMENT "Compiling ${stem}.etl to ${stem}.hpp"
@@ -101,17 +110,21 @@ endfunction()
 # Stops unless `target` is one that sources can be added to.
 function(__etlc_check_target call target)
   if(NOT TARGET ${target})
-    message(FATAL_ERROR "${call}: there is no target ${target}: call add_executable or add_library first")
+    message(FATAL_ERROR
+      "${call}: there is no target ${target}: call add_executable or add_library first")
   endif()
   get_target_property(aliased ${target} ALIASED_TARGET)
   get_target_property(imported ${target} IMPORTED)
   get_target_property(type ${target} TYPE)
   if(aliased OR imported OR NOT type MATCHES "^(EXECUTABLE|(STATIC|SHARED|MODULE|OBJECT)_LIBRARY)$")
-    message(FATAL_ERROR "${call}: ${target} is neither an executable nor a library that compiles sources")
+    message(FATAL_ERROR
+      "${call}: ${target} is neither an executable nor a library that compiles sources")
   endif()
   get_target_property(home ${target} SOURCE_DIR)
   if(NOT home STREQUAL CMAKE_CURRENT_SOURCE_DIR)
-    message(FATAL_ERROR "${call}: ${target} was made in ${home}: call this there, since a build rule belongs to its directory")
+    message(FATAL_ERROR
+      "${call}: ${target} was made in ${home}: call this there, "
+      "since a build rule belongs to its directory")
   endif()
 endfunction()
 

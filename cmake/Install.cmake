@@ -4,24 +4,31 @@ include(CMakePackageConfigHelpers)
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
-install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)  # where etlc looks for it, from bin/
+# Where etlc looks for it, from bin/.
+install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)
 install(TARGETS etlmon EXPORT etlmonTargets)
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon" DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon"
+  DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"
   FILES_MATCHING PATTERN "*.hpp" PATTERN "*.inc" PATTERN "*.def")
 
 install(EXPORT etlcTargets NAMESPACE etlc:: DESTINATION "${package_dir}")
 install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
-configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in" "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
+configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in"
+  "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")
 # etlc runs where the build runs and the runtime is headers, so a cross
 # build may use the package of the build machine.
-write_basic_package_version_file("${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake" COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
-install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake" "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
+write_basic_package_version_file("${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
+  COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
+install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
+  "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
-install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}" RENAME copyright)
+install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+  RENAME copyright)
 install(FILES "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}" FILES_MATCHING PATTERN "*.md")
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
+  FILES_MATCHING PATTERN "*.md")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME etlc)
@@ -37,6 +44,7 @@ mark_as_advanced(ETLC_SHLIBDEPS)
 if(ETLC_SHLIBDEPS)
   set(CPACK_DEBIAN_PACKAGE_SHLIBDEPS ON)
 else()
-  message(STATUS "dpkg-shlibdeps (package dpkg-dev) is missing: a .deb made here would not list the libraries that etlc needs")
+  message(STATUS "dpkg-shlibdeps (package dpkg-dev) is missing: a .deb made here would not list "
+    "the libraries that etlc needs")
 endif()
 include(CPack)

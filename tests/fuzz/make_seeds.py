@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the seeds of the data targets and of fuzz_compile under corpus/, from the files of tests/unit/data and from
-here."""
+"""Writes the seeds of the data targets and of fuzz_compile under corpus/, from the files of
+tests/unit/data and from here."""
 import pathlib
 import random
 import struct
@@ -54,31 +54,41 @@ for name, text in {
 }.items():
     seed("fuzz_csv", name, text.encode())
 
-ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, "scores": [0.1, "inf"],
+ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, \
+"scores": [0.1, "inf"],
  "predicate": "min l2(z, goal) <= ", "truth": "array", "targets": {"goal": "0123456789abcdef"}"""
 for name, text in {
-    "whole.json": f"""{{"format": 1, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, "monitors": {{}},
+    "whole.json": f"""{{"format": 1, "spec": "s", "predicates": {{"p": {{{ENTRY}}}}}, \
+"monitors": {{}},
  "episodes": ["0123456789abcdef"], "etlc": "0.1.0"}}""",
-    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": {{{ENTRY.replace('"predicate"', '"formula"')}, "against": "missed_alarm", "episodes": []}}}},
+    "monitor.json": f"""{{"format": 1, "spec": "s", "predicates": {{}}, "monitors": {{"m": \
+{{{ENTRY.replace('"predicate"', '"formula"')}, "against": "missed_alarm", "episodes": []}}}},
  "etlc": "0.1.0"}}""",
-    "f1.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "f1", "epsilon": -0.0, "n": 1, "k": 0,
+    "f1.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "f1", \
+"epsilon": -0.0, "n": 1, "k": 0,
  "scores": [], "predicate": "g > ", "truth": "g > 0.5", "targets": {}}}, "etlc": "0.1.0"}""",
-    "consistent.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "conformal", "alpha": 0.5, "epsilon": 1, "n": 2,
- "k": 2, "scores": [0.5, 0.99999998], "predicate": "g <= ", "truth": "g > 0.5", "targets": {}}}, "monitors": {},
+    "consistent.json": """{"format": 1, "spec": "s", "predicates": {"p": {"method": "conformal", \
+"alpha": 0.5, "epsilon": 1, "n": 2,
+ "k": 2, "scores": [0.5, 0.99999998], "predicate": "g <= ", "truth": "g > 0.5", "targets": {}}}, \
+"monitors": {},
  "episodes": ["0000000000000001", "0000000000000002"], "etlc": "0.1.0"}""",
     "format2.json": '{"format": 2}',
     "nested.json": "[" * 40,
-    "escapes.json": '{"format": 1, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "etlc": ""}',
+    "escapes.json":
+        '{"format": 1, "spec": "\\u00fc\\ud83d\\ude00\\n", "predicates": {}, "etlc": ""}',
 }.items():
     seed("fuzz_thresholds", name, text.encode())
 
-# Of fuzz_compile: specs that are long as trees or large as state machines, and bytes that decide on deep ones.
+# Of fuzz_compile: specs that are long as trees or large as state
+# machines, and bytes that decide on deep ones.
 HEAD = "spec s;\ninput x : f32 in [-1, 1];\npredicate p = x > 0;\npredicate q = x < 0.5;\n"
 for name, text in {
-    "shared_since.etl": "let a0 = p;\n" + "".join(f"let a{i + 1} = a{i} S !a{i};\n" for i in range(40))
+    "shared_since.etl": "let a0 = p;\n"
+    + "".join(f"let a{i + 1} = a{i} S !a{i};\n" for i in range(40))
     + "sliding monitor m = a40;\n",
     "iff_chain.etl": "monitor m = " + " <-> ".join(f"x > {i}" for i in range(100)) + ";\n",
-    "nested_refusals.etl": "let a0 = p;\n" + "".join(f"let a{i + 1} = F a{i} && !(G a{i});\n" for i in range(40))
+    "nested_refusals.etl": "let a0 = p;\n"
+    + "".join(f"let a{i + 1} = F a{i} && !(G a{i});\n" for i in range(40))
     + "monitor m = a40;\n",
     "long_windows.etl": "monitor m = G F[1000, 100000] (p U q);\n",
 }.items():

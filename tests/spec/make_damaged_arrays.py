@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the damaged .npy and .npz files that the E04 and E08 cases of error/ load. Needs nothing but Python."""
+"""Writes the damaged .npy and .npz files that the E04 and E08 cases of error/ load. Needs only
+Python."""
 import pathlib
 import struct
 import zipfile
@@ -39,9 +40,11 @@ write("E0403_header.npy", raw("{'descr': '<f4', 'shape': (1, 2)}"))
 write("E0404_cut_short.npy", npy(shape="(3, 2)"))
 write("E0404_left_over.npy", npy(shape="(1, 1)"))
 write("E0404_huge.npy", npy(shape="(100000000, 512)"))
-write("E0404_disagrees.npz", zipped([("goal.npy", npy(shape="(100000000, 2)"))], zipfile.ZIP_DEFLATED))
+write("E0404_disagrees.npz",
+      zipped([("goal.npy", npy(shape="(100000000, 2)"))], zipfile.ZIP_DEFLATED))
 write("E0405_big_endian.npy", npy(">f4"))
-write("E0405_records.npy", raw("{'descr': [('x', '<f4'), ('y', '<f4')], 'fortran_order': False, 'shape': (1,)}"))
+write("E0405_records.npy",
+      raw("{'descr': [('x', '<f4'), ('y', '<f4')], 'fortran_order': False, 'shape': (1,)}"))
 write("E0405_objects.npy", npy("|O"))
 write("E0405_complex.npy", npy("<c8"))
 write("E0406_overflow.npy", npy(shape="(4294967296, 4294967297)"))
@@ -50,7 +53,8 @@ write("E0407_cut_short.npz", whole[:100])
 write("E0407_checksum.npz", whole.replace(TWO, struct.pack("<2f", 1, 3)))
 write("E0407_bzip2.npz", zipped([("goal.npy", npy())], zipfile.ZIP_BZIP2))
 write("E0408_two.npz", zipped([("goal_a.npy", npy()), ("goal_b.npy", npy())]))
-write("E0408_twice.npz", zipped([("goal_a.npy", npy()), ("goal_b.npy", npy())]).replace(b"goal_b", b"goal_a"))
+write("E0408_twice.npz",
+      zipped([("goal_a.npy", npy()), ("goal_b.npy", npy())]).replace(b"goal_b", b"goal_a"))
 write("E0409_plain.npy", npy())
 
 STEPS = npy(shape="(2, 2)", data=struct.pack("<4f", 1, 2, 3, 4))

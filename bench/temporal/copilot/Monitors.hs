@@ -1,5 +1,5 @@
--- What a user of Copilot would write for some of the formulas, on robustness in floats. Writes NAME.c, NAME.h and
--- NAME_types.h for each into the folder that it is given.
+-- What a user of Copilot would write for some of the formulas, on robustness in floats. Writes
+-- NAME.c, NAME.h and NAME_types.h for each into the folder that it is given.
 {-# LANGUAGE RebindableSyntax #-}
 module Main where
 
@@ -37,7 +37,8 @@ eventually s = best where best = larger s ([P.negate infinity] ++ best)
 response :: Stream Float
 response = smaller settled pending
   where
-    settled = always (mux (steps < 50) (constant infinity) (larger (before 50 infinity (negate p)) (greatestOf 50 q)))
+    settled = always (mux (steps < 50) (constant infinity) passed)
+    passed = larger (before 50 infinity (negate p)) (greatestOf 50 q)
     pending = larger (smaller ([infinity] ++ pending) (negate p)) q
     steps = [0] ++ mux (steps < 50) (steps + 1) steps :: Stream Word32
 
@@ -45,7 +46,7 @@ monitors :: [(String, Stream Float)]
 monitors =
   [ ("invariant", always p)
   , ("eventually_50", greatestOf 50 p)
-  , ("sequence", let first = eventually p; second = eventually (smaller first q) in eventually (smaller second r))
+  , ("sequence", eventually (smaller (eventually (smaller (eventually p) q)) r))
   , ("response_50", response)
   ]
 
@@ -55,7 +56,9 @@ main = do
   mapM_ (write folder) monitors
 
 write :: P.FilePath -> (String, Stream Float) -> IO ()
-write folder (name, s) = reify (trigger ("copilot_" P.++ name P.++ "_rho") true [arg s]) P.>>= compileWith settings file
+write folder (name, s) =
+  reify (trigger (file P.++ "_rho") true [arg s]) P.>>= compileWith settings file
   where
     file = "copilot_" P.++ name
-    settings = mkDefaultCSettings {cSettingsStepFunctionName = file P.++ "_step", cSettingsOutputDirectory = folder}
+    settings = mkDefaultCSettings
+      {cSettingsStepFunctionName = file P.++ "_step", cSettingsOutputDirectory = folder}

@@ -4,7 +4,8 @@ find_program(ETLC_RUNGHC runghc)
 mark_as_advanced(ETLC_RUNGHC)
 set(has_copilot FALSE)
 if(ETLC_RUNGHC AND CMAKE_OBJCOPY)
-  execute_process(COMMAND ghc-pkg list --simple-output copilot-c99 OUTPUT_VARIABLE copilot_c99 ERROR_QUIET)
+  execute_process(COMMAND ghc-pkg list --simple-output copilot-c99
+    OUTPUT_VARIABLE copilot_c99 ERROR_QUIET)
   if(copilot_c99)
     set(has_copilot TRUE)
   endif()
@@ -23,7 +24,8 @@ foreach(name IN LISTS names)
 endforeach()
 add_custom_command(OUTPUT ${sources}
   COMMAND ${ETLC_RUNGHC} ${CMAKE_CURRENT_SOURCE_DIR}/copilot/Monitors.hs ${folder}
-  DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/copilot/Monitors.hs COMMENT "Writing Copilot's monitors" VERBATIM)
+  DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/copilot/Monitors.hs
+  COMMENT "Writing Copilot's monitors" VERBATIM)
 foreach(name IN LISTS names)
   set(object ${folder}/copilot_${name}.o)
   add_custom_command(OUTPUT ${object}

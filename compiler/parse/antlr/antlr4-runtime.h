@@ -1,6 +1,7 @@
 // What the generated lexer and parser, and parse/, use of ANTLR's C++ runtime.
-// Takes the place of the runtime's own umbrella header, which clang rejects (misc/InterpreterDataReader.h holds members
-// of types that are incomplete there). Keeps true: this folder comes before the runtime's on the include path.
+// Takes the place of the runtime's own umbrella header, which clang rejects
+// (misc/InterpreterDataReader.h holds members of types that are incomplete there). Keeps true: this
+// folder comes before the runtime's on the include path.
 #pragma once
 
 // clang-format off: antlr4-common.h has to be first.

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""Writes the .npy and .npz files beside it, as numpy writes them. Needs numpy; run it in any folder.
+"""Writes the .npy and .npz files beside it, as numpy writes them. Needs numpy; runs in any folder.
 
-Element (i, j) of every 3 x 4 array is 4 i + j, minus 2 where the type has a sign, halved where it has fractions:
-exact in float16, so that every file holds the same numbers.
+Element (i, j) of every 3 x 4 array is 4 i + j, minus 2 where the type has a sign, halved where it
+has fractions: exact in float16, so that every file holds the same numbers.
 """
 import io
 import pathlib
@@ -55,7 +55,8 @@ npy("complex.npy", np.zeros(3, "<c8"))
 npy("text.npy", np.array(["goal", "corner"]))
 npy("time.npy", np.zeros(3, "<M8[s]"))
 
-ARRAYS = {"goal": NUMBERS.astype("<f4"), "half": NUMBERS.astype("<f2"), "turned": np.asfortranarray(NUMBERS)}
+ARRAYS = {"goal": NUMBERS.astype("<f4"), "half": NUMBERS.astype("<f2"),
+          "turned": np.asfortranarray(NUMBERS)}
 npz("stored.npz", zipfile.ZIP_STORED, **ARRAYS)
 npz("deflated.npz", zipfile.ZIP_DEFLATED, **ARRAYS)
 npz("single.npz", zipfile.ZIP_DEFLATED, goal=ARRAYS["goal"])

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Writes trace.h5 (h5py) beside this file: datasets of every kind that a trace may hold, and of those it may not."""
+"""Writes trace.h5 (h5py) beside this file: datasets of every kind that a trace may hold, and of
+those it may not."""
 import pathlib
 
 import h5py
@@ -26,7 +27,8 @@ with h5py.File(pathlib.Path(__file__).resolve().parent / "trace.h5", "w", libver
     f["none"] = np.zeros((0, 3), np.float32)
     f["soft"] = h5py.SoftLink("/z")
     f["external"] = h5py.ExternalLink("other.h5", "/z")
-    f.create_dataset("elsewhere", shape=(STEPS,), dtype="f4", external=[("other.bin", 0, 4 * STEPS)])
+    f.create_dataset("elsewhere", shape=(STEPS,), dtype="f4",
+                     external=[("other.bin", 0, 4 * STEPS)])
     layout = h5py.VirtualLayout(shape=(STEPS,), dtype="f4")
     layout[:] = h5py.VirtualSource("other.h5", "q", shape=(STEPS,))
     f.create_virtual_dataset("virtual", layout)
