@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cctype>
+#include <map>
 #include <regex>
+#include <set>
 #include <string>
 
 #include "tree.hpp"
@@ -26,9 +28,25 @@ TEST(Tree, SourcesAreShort) {
     for (const char* folder : {"compiler", "runtime", "tests", "examples", "bench"}) {
         for (const auto& file : cpp_files(folder)) {
             const std::string text = content(file);
-            EXPECT_LT(std::count(text.begin(), text.end(), '\n'), 500)
+            EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400)
                 << file << " is perhaps two things";
         }
+    }
+}
+
+/// Folders that are too large and are to be split; none is to be added.
+const std::set<std::string> kYetToBeSplit = {"compiler/calibrate", "compiler/check",
+                                             "compiler/data", "compiler/plan",
+                                             "runtime/include/etlmon"};
+
+TEST(Tree, FoldersAreSmall) {
+    std::map<std::string, int> sizes;
+    for (const char* folder : {"compiler", "runtime"}) {
+        for (const auto& file : files(folder)) ++sizes[file.parent_path()];
+    }
+    for (const auto& [folder, size] : sizes) {
+        if (kYetToBeSplit.contains(folder)) continue;
+        EXPECT_LE(size, 25) << folder << " is perhaps two rooms";
     }
 }
 

@@ -30,29 +30,28 @@ std::string_view group_title(std::string_view code) {
 }
 
 std::string table() {
-    std::string text =
-        "# Diagnostics\n\n"
-        "Every error and warning of `etlc` bears a code. This table is made from "
-        "compiler/diag/codes.def (a test keeps "
-        "the two\n"
-        "equal; `ETLC_UPDATE=1` rewrites it); tests/spec/error holds at least one example of each, "
-        "with the exact "
-        "message.\n"
-        "Errors come out with exit status 1; warnings do not, unless `-Werror` is given.\n"
-        "\n"
-        "| exit status | |\n"
-        "| --- | --- |\n"
-        "| 0 | all that was asked for is there |\n"
-        "| 1 | it is not: the spec or its data are wrong, memory is too short, or not all of the "
-        "output or of the "
-        "diagnostics could be written |\n"
-        "| 2 | the call is wrong |\n"
-        "| 3 | etlc itself is at fault |\n"
-        "\n"
-        "Whoever closes standard error (`2>&-`) wants no diagnostics, and gets none. When nobody "
-        "reads standard output "
-        "any more\n"
-        "(`etlc run ... | head`), SIGPIPE ends etlc, as it ends other tools: the shell says 141.\n";
+    std::string text = R"(# Diagnostics
+
+Every error and warning of `etlc` has a code.
+This table is made from compiler/diag/codes.def; a test keeps the two equal, and `ETLC_UPDATE=1`
+rewrites it.
+tests/spec/error holds at least one example of each code, with the exact message.
+
+| exit status | |
+| --- | --- |
+| 0 | all that was asked for is there |
+| 1 | something is missing: see the diagnostics |
+| 2 | the call is wrong |
+| 3 | etlc itself is at fault |
+
+Status 1 means that the spec or its data are wrong, that memory is too short, or that some of the
+output or of the diagnostics could not be written.
+Warnings leave it at 0, unless `-Werror` is given.
+
+Close standard error (`2>&-`) to get no diagnostics.
+When nobody reads standard output any more (`etlc run ... | head`), SIGPIPE ends etlc as it ends
+other tools: the shell says 141.
+)";
     std::string_view group;
     for (const diag::CodeInfo& info : diag::all_codes()) {
         if (group_title(info.code) != group) {
