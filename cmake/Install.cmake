@@ -24,11 +24,15 @@ install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
+# The pages, and all that their links lead to.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
   RENAME copyright)
-install(FILES "${PROJECT_SOURCE_DIR}/README.md" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
-install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
-  FILES_MATCHING PATTERN "*.md")
+foreach(page README.md CONTRIBUTING.md LICENSE cmake/packages.txt)
+  cmake_path(GET page PARENT_PATH folder)
+  install(FILES "${PROJECT_SOURCE_DIR}/${page}" DESTINATION "${CMAKE_INSTALL_DOCDIR}/${folder}")
+endforeach()
+install(DIRECTORY "${PROJECT_SOURCE_DIR}/docs" "${PROJECT_SOURCE_DIR}/examples"
+  "${PROJECT_SOURCE_DIR}/generated" DESTINATION "${CMAKE_INSTALL_DOCDIR}")
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME etlc)

@@ -18,6 +18,16 @@ change() { sleep 1.1; "$@"; }
 
 "$cmake" --install "$build_dir" --prefix "$box/prefix" >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "cmake --install"; }
+# Every link of an installed page leads to an installed file.
+pages=$box/prefix/share/doc/etlc
+find "$pages" -name '*.md' | while read -r page; do
+    sed '/^```/,/^```/d' "$page" | grep -oP '\]\(\K[^)#\s]+|^\[[^]]+\]: \K\S+' | grep -v '://' |
+        while read -r link; do
+            [ -e "$(dirname "$page")/$link" ] || echo "${page#"$pages"/} links to $link"
+        done || true
+done >"$box/dead"
+[ ! -s "$box/dead" ] || fail "installed pages: $(cat "$box/dead")"
+
 cp -r "$here/consumer" "$box/consumer"
 cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
 
