@@ -1,6 +1,5 @@
 #include "encoder.hpp"
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
@@ -29,7 +28,8 @@ const Frame& gaussian() {
     return weights;
 }
 
-/// Ink (1 where the image is black) averaged over 2 x 2 pixels and blurred, row by row.
+}  // namespace
+
 Eigen::VectorXf blurred(const Image& image) {
     using Pixels = Eigen::Matrix<std::uint8_t, kImageSide, kImageSide, Eigen::RowMajor>;
     const Eigen::Map<const Pixels> grey(image.data());
@@ -42,25 +42,6 @@ Eigen::VectorXf blurred(const Image& image) {
     }
     const Frame soft = gaussian() * ink * gaussian();
     return Eigen::Map<const Eigen::VectorXf>(soft.data(), kPixels);
-}
-
-}  // namespace
-
-Encoder Encoder::fit(const std::vector<Image>& images) {
-    Eigen::MatrixXf rows(static_cast<Eigen::Index>(images.size()), kPixels);
-    for (std::size_t i = 0; i < images.size(); ++i)
-        rows.row(static_cast<Eigen::Index>(i)) = blurred(images[i]);
-
-    Encoder encoder;
-    encoder.mean_ = rows.colwise().mean();
-    rows.rowwise() -= encoder.mean_.transpose();
-    const Eigen::MatrixXd covariance =
-        (rows.transpose() * rows).cast<double>() / static_cast<double>(images.size());
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(covariance);  // eigenvalues ascend
-    encoder.components_ =
-        solver.eigenvectors().rightCols(kDimension).rowwise().reverse().transpose().cast<float>();
-    encoder.kept_ = solver.eigenvalues().tail(kDimension).sum() / solver.eigenvalues().sum();
-    return encoder;
 }
 
 Encoder Encoder::load(const std::string& folder) {

@@ -16,6 +16,9 @@ namespace demo {
 inline constexpr int kDimension = 32;
 using Embedding = std::array<float, kDimension>;
 
+/// Ink (1 where the image is black) averaged over 2 x 2 pixels and blurred, row by row.
+Eigen::VectorXf blurred(const Image& image);
+
 class Encoder {
 public:
     /// Principal components of the blurred images (PCA by the eigenvectors of their covariance).
