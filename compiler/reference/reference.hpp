@@ -47,8 +47,8 @@ struct Run {
     std::uint32_t missing_steps = 0;
 };
 
-/// thresholds[step][predicate]: the epsilon that each adaptive predicate has at each step; of other
-/// predicates it is not looked at, and of none for no thresholds at all.
+/// thresholds[step][predicate]: the epsilon that each adaptive predicate has at each step. Entries
+/// of other predicates are ignored; without any, adaptive thresholds stay where they start.
 using Thresholds = std::vector<std::vector<double>>;
 
 /// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest

@@ -1,7 +1,7 @@
 // Text from outside - names of files, words of the spec, of data and of thresholds - made fit for
-// what it is printed to. Takes: any bytes. Gives: text that stays one piece where it stands, and
-// shows a reader what it is. Keeps true: what is printed of an outside text goes through one of
-// these; none of them changes plain words.
+// what it is printed to. Takes: any bytes. Gives: text that cannot break out of its place, and shows
+// a reader what it is. Keeps true: every outside text is printed through one of these, and none of
+// them changes plain words.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace etlc::source {
 
-/// For terminals and messages: what a reader would not see as it is (is_hidden) as \u{202E}, or as
-/// \x1b where it is one byte, as bytes that are not UTF-8. One line.
+/// For terminals and messages, in one line: hidden characters (is_hidden) become \u{202E}, single
+/// bytes such as those that are not UTF-8 \x1b.
 std::string visible(std::string_view text);
 
 /// The same for reports of many lines, which keep their line ends.
@@ -27,8 +27,8 @@ std::string json_string(std::string_view text);
 /// For DOT: in double quotes.
 std::string dot_string(std::string_view text);
 
-/// For a dependency file: a path as make and ninja both read it; none where they cannot, since of
-/// such names each has others.
+/// For a dependency file: a path as make and ninja both read it; nothing where one of them cannot
+/// (each has names that the other takes).
 enum class InRule { target, prerequisite };
 std::optional<std::string> depfile_path(std::string_view path, InRule place);
 

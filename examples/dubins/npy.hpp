@@ -1,6 +1,6 @@
 // Float matrices in .npy files: the encoder and the target sets.
 // Takes: a path. Gives: rows x columns float32, written row by row in little-endian order.
-// Keeps true: a file that is not what was asked for is an exception that names it.
+// Keeps true: a file of another form throws an exception that names the file.
 #pragma once
 
 #include <Eigen/Core>

@@ -25,7 +25,7 @@ struct Score {
     double agreement() const { return share(true_positives + true_negatives, total()); }
 
 private:
-    /// 0 where there is nothing to take a share of.
+    /// 0 where it would divide by zero.
     static double share(long part, long whole) {
         return whole == 0 ? 0 : static_cast<double>(part) / static_cast<double>(whole);
     }

@@ -21,7 +21,7 @@ public:
     TimeField(const std::function<bool(const Car&)>& reached,
               const std::function<bool(Point)>& free);
 
-    /// Seconds to the goal, at most kNever; beside what is not free the grid blurs the two.
+    /// Seconds to the goal, at most kNever; the grid blurs the two next to forbidden places.
     double at(const Car& car) const;
     bool reachable(const Car& car) const { return at(car) < 0.5 * kNever; }
 

@@ -15,8 +15,8 @@
 
 namespace {
 
-/// One monitor over all drives: drives with some verdict that says satisfied where that is not
-/// true, or fails to.
+/// One monitor over all drives: in how many some verdict says satisfied where that is false, or does
+/// not where it is true.
 struct Score {
     int unfounded = 0;  // satisfied is said, and is not true
     int missing = 0;    // it is true, and is not said
@@ -84,8 +84,8 @@ bool watch(const std::filesystem::path& path, Scores& scores, Truth& truth) {
 }
 
 void print(const char* by, int drives, int successes, int alarms, const Scores& scores) {
-    // Of `sequential` a success is missed where it is not said, of `in_order` an alarm where
-    // satisfied is said.
+    // `sequential` misses a success where it does not say satisfied, `in_order` an alarm where it
+    // does.
     std::printf("%s,sequential,%d,%d,%d,%d\n", by, drives, successes, scores.sequential.missing,
                 scores.sequential.unfounded);
     std::printf("%s,in_order,%d,%d,%d,%d\n", by, drives, alarms, scores.in_order.unfounded,

@@ -1,7 +1,7 @@
 // Two ways to share a monitor, or its input, with an interrupt, where the interrupt comes at any
 // instruction of a step. Writes a line for each: how many steps there were, how many interrupts
-// came while the monitor was at work, and in how many steps a verdict was another than that of the
-// same monitor stepped plainly. docs/firmware.md explains the two.
+// came while the monitor was at work, and in how many steps a verdict differed from that of the
+// same monitor without interrupts. docs/firmware.md explains the two.
 #include <stdint.h>
 
 #include "board.hpp"
