@@ -1,7 +1,7 @@
 // Text from outside - names of files, words of the spec, of data and of thresholds - made fit for
-// what it is printed to. Takes: any bytes. Gives: text that cannot break out of its place, and shows
-// a reader what it is. Keeps true: every outside text is printed through one of these, and none of
-// them changes plain words.
+// what it is printed to. Takes: any bytes. Gives: text that cannot break out of its place, and
+// shows a reader what it is. Keeps true: every outside text is printed through one of these, and
+// none of them changes plain words.
 #pragma once
 
 #include <optional>

@@ -15,8 +15,8 @@
 
 namespace {
 
-/// One monitor over all drives: in how many some verdict says satisfied where that is false, or does
-/// not where it is true.
+/// One monitor over all drives: in how many some verdict says satisfied where that is false, or
+/// does not where it is true.
 struct Score {
     int unfounded = 0;  // satisfied is said, and is not true
     int missing = 0;    // it is true, and is not said

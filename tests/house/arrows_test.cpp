@@ -13,8 +13,8 @@ namespace {
 
 using Names = std::set<std::string>;
 
-/// The arrows of docs/architecture.md: what a folder of compiler/ builds on. They are transitive;
-/// everyone also sees source and diag.
+/// The arrows of docs/contributing/architecture.md: what a folder of compiler/ builds on. They are
+/// transitive; everyone also sees source and diag.
 const std::map<std::string, Names> kArrows = {
     {"source", {}},
     {"diag", {"source"}},
