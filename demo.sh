@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # ./demo.sh: installs what is missing, builds what the demo needs, then goes from two specs to
-# running monitors. What it makes is below build/; nothing of the repository changes.
+# running monitors. All its output is below build/.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
@@ -37,7 +37,7 @@ show etlc examples/dubins/dubins.etl -o "$out/dubins.hpp"
 echo
 echo "The head of $out/dubins.hpp, without most of the numbers:"
 echo
-# Up to the private part of the class; of each table of numbers the first line.
+# Up to the private part of the class, with the first line of each table of numbers.
 awk '/^ private:/ { exit }
      /^  -?[0-9]/ { if (rows++ == 1) print "  ..."; if (rows > 1) next }
      /^}/ { rows = 0 }

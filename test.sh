@@ -5,9 +5,9 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 
-# The folders of tests/ that a preset builds and runs. The release build runs all, in one go, so
-# that the longest begin first. The tests of the runtime and of generated code compile what they
-# test themselves, with g++ and clang++ and with sanitizers; so the other build runs those of etlc.
+# The folders of tests/ that a preset builds and runs. The release build runs all at once, so that
+# the longest start first. The tests of the runtime and of generated code compile what they test
+# themselves, with g++, clang++ and sanitizers, so the sanitized build runs only those of etlc.
 declare -A folders=(
     [release]="."
     [sanitized]="unit spec calibrate fuzz"

@@ -16,8 +16,8 @@ install(EXPORT etlmonTargets NAMESPACE etlmon:: DESTINATION "${package_dir}")
 configure_package_config_file("${CMAKE_CURRENT_LIST_DIR}/etlcConfig.cmake.in"
   "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   INSTALL_DESTINATION "${package_dir}")
-# etlc runs where the build runs and the runtime is headers, so a cross
-# build may use the package of the build machine.
+# etlc runs on the build machine and the runtime is only headers, so a cross build may use this
+# package.
 write_basic_package_version_file("${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   COMPATIBILITY SameMinorVersion ARCH_INDEPENDENT)
 install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"

@@ -1,6 +1,6 @@
 # For demo.sh and test.sh, which source it from the top folder.
 
-# configure PRESET [ARGUMENT...]: makes build/PRESET ready; its log is shown only where it fails.
+# configure PRESET [ARGUMENT...]: configures build/PRESET; shows the log only if that fails.
 configure() {
     local preset=$1 log=build/$1/configure.log
     shift
@@ -11,7 +11,7 @@ configure() {
     cmake --preset "$preset" "$@" >"$log" 2>&1 || { cat "$log"; return 1; }
 }
 
-# build PRESET TARGET...: on a terminal with its progress, elsewhere silent unless it fails.
+# build PRESET TARGET...: shows progress on a terminal; elsewhere it is silent unless it fails.
 build() {
     local preset=$1 log=build/$1/build.log
     shift

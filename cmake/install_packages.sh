@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# install_packages.sh GROUP...: makes sure that the packages of these groups of
-# packages.txt are installed; says nothing where they are. Installs through apt as root or
-# with sudo; elsewhere names what is missing and fails.
+# install_packages.sh GROUP...: installs the packages of these groups of packages.txt that are
+# missing, through apt, as root or with sudo. Without apt it names what is missing and fails; if
+# nothing is missing it prints nothing.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, and what
-# becomes of a threshold that stays and of one that follows labels. Both are calibrated on
-# 120 drives with the camera as new; then 300 other drives go past the compiled class, with
-# labels two seconds late. What it makes stays in FOLDER.
+# drift.sh ETLC DUBINS_RECORD FOLDER [SEED]: a camera whose mount gives way, watched by a threshold
+# that stays and by one that follows labels. Both are calibrated on 120 drives with the camera as
+# new. Then the compiled class sees 300 other drives, with labels two seconds late. All files stay
+# in FOLDER.
 set -euo pipefail
 etlc=$1 record=$2 folder=$3 seed=${4:-1}
 here=$(dirname "${BASH_SOURCE[0]}")

@@ -14,8 +14,7 @@ for side in calibration:120 test:180; do
     [ "$(find "drives/7/${side%:*}" -name '*.csv' | wc -l)" = "${side#*:}" ] ||
         fail "not ${side#*:} drives for ${side%:*}"
 done
-# The table: a row of ours has no figure below that of the paper in the
-# next row, but for what a drive in 180 may do.
+# The table: no figure of ours is below that of the paper in the next row, up to one drive in 180.
 awk '/^(Reach A|Avoid C|Reach-avoid|Sequential)/ {
          gsub(/\([0-9.]+\)|%/, ""); n = split($0, ours)
          getline; gsub(/%/, ""); split($0, paper)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed;
-# calibrated as wholes the monitors miss about as often as they may, and are wrong the
-# other way no more often than by the union bound.
+# dubins_whole_test.sh RECORD ETLC SOURCE COMPILER: whole.sh runs for one seed. Calibrated as
+# wholes, the monitors miss about as often as they may, and err the other way no more often than by
+# the union bound.
 set -euo pipefail
 record=$1 etlc=$2 source=$3 compiler=$4
 folder=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# generated_is_fresh_test.sh ETLC SPEC HEADER: the committed HEADER is what etlc makes of SPEC, byte
-# for byte. With ETLC_UPDATE=1 in the environment HEADER is written anew.
+# generated_is_fresh_test.sh ETLC SPEC HEADER: the committed HEADER is what etlc makes of SPEC,
+# byte for byte. ETLC_UPDATE=1 rewrites it.
 set -euo pipefail
 etlc=$1 spec=$2 header=$3
 folder=$(mktemp -d)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# paper_example_test.sh PROGRAM EXPECTED: prints the paper's
-# numbers. With ETLC_UPDATE=1 EXPECTED is written anew.
+# paper_example_test.sh PROGRAM EXPECTED: prints the paper's numbers. ETLC_UPDATE=1 rewrites
+# EXPECTED.
 set -euo pipefail
 program=$1 expected=$2
 if [ "${ETLC_UPDATE:-}" = 1 ]; then "$program" >"$expected"; fi

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# tutorial_test.sh ETLC RUNTIME DOCUMENT: DOCUMENT's commands print what it says they print. In
-# it, a fence "NAME file=PATH" is a file, made in an empty folder; in a "console" fence each
-# line after "$ " is run there and the lines up to the next are its output. With ETLC_UPDATE=1
-# in the environment the outputs are written anew.
+# tutorial_test.sh ETLC RUNTIME DOCUMENT: the commands of DOCUMENT print what it says they print. A
+# fence "NAME file=PATH" becomes a file in an empty folder. In a "console" fence each line that
+# begins with "$ " runs there, and the lines up to the next are its output. ETLC_UPDATE=1 rewrites
+# the outputs.
 set -euo pipefail
 PATH=$(dirname "$1"):$PATH
 export ETLC_RUNTIME=$2

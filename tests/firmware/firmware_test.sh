@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and
-# an RV32IMAFC in QEMU answer as on the host: to the bit as a host that adds in the same
-# order, within the stated bounds as any other. And what they are made of: no library symbol
-# that is not allowed, no exception tables, no data that needs initialising, code within its
-# limit. And interrupts at any instruction of a step.
+# firmware_test.sh ETLC SOURCE CXX: the monitors of examples/firmware_loop on a Cortex-M4F and an
+# RV32IMAFC in QEMU answer as on the host: to the bit if the host adds in the same order, else
+# within the stated bounds. Their objects have no library symbol that is not allowed, no exception
+# tables, no data that needs initialising, and code within its limit. Interrupts at any instruction
+# of a step change nothing.
 set -euo pipefail
 etlc=$1 source=$2 cxx=$3
 loop=$source/examples/firmware_loop
@@ -33,8 +33,8 @@ if [ "$(uname -m)" = x86_64 ] &&
         fail "the boards and a host without vectors differ"
 fi
 
-# A timer's interrupt judges what the loop measures, and fills what the
-# loop reads: no verdict is another than without.
+# A timer's interrupt judges what the loop measures, and fills what the loop reads. Every verdict
+# is that of a run without interrupts.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" interrupts
     awk '$2 == "000007d0" && $3 > "00000064" && $4 == "00000000" { good++ }

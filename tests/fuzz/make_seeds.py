@@ -79,8 +79,8 @@ for name, text in {
 }.items():
     seed("fuzz_thresholds", name, text.encode())
 
-# Of fuzz_compile: specs that are long as trees or large as state
-# machines, and bytes that decide on deep ones.
+# For fuzz_compile: specs that are long as trees or large as state machines, and bytes that choose
+# deep ones.
 HEAD = "spec s;\ninput x : f32 in [-1, 1];\npredicate p = x > 0;\npredicate q = x < 0.5;\n"
 for name, text in {
     "shared_since.etl": "let a0 = p;\n"

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# packages_test.sh CMAKE_FOLDER: install_packages.sh with every command that it could change the
-# system by replaced by one that notes the call.
+# packages_test.sh CMAKE_FOLDER: runs install_packages.sh with stubs for every command that could
+# change the system; the stubs log their calls.
 set -euo pipefail
 script=$1/install_packages.sh
 box=$(mktemp -d)
@@ -18,8 +18,7 @@ stub dpkg-query 'for p in "${@:4}"; do
     case " $ABSENT " in *" $p "*) ;; *) echo "installed $p" ;; esac
 done'
 
-# try USER_ID ABSENT: runs the script for the group `build`; its output, exit status
-# and calls are then in $output, $status, $calls.
+# try USER_ID ABSENT: runs the script for the group `build` and sets $output, $status and $calls.
 try() {
     rm -f "$box/calls"
     status=0

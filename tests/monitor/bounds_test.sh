@@ -1,10 +1,9 @@
 #!/usr/bin/env bash
-# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation, as those
-# who trust a final verdict rely on. At each step lower <= robustness <= upper, and no later
-# step leaves [lower, upper]: robustness, lower, upper. For every distance, aggregation, type
-# of input and storage of targets, with and without declared ranges, in `etlc run` and in
-# generated classes, on points where distances end: a target, its negative, what is
-# orthogonal to it, zero, what is tiny and what is huge.
+# bounds_test.sh ETLC CXX: the bounds of prefix monitors hold on every continuation; who trusts a
+# final verdict relies on that. At each step lower <= robustness <= upper, and no number of a later
+# step leaves [lower, upper]. This holds for every distance, aggregation, type of input and storage
+# of targets, with and without declared ranges, in `etlc run` and in generated classes. The points
+# are where distances end: a target, its negative, an orthogonal one, zero, tiny and huge ones.
 set -euo pipefail
 etlc=$1 cxx=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # flags_test.sh ETLC GXX CLANGXX: headers and the runtime under many flags. Each set of flags
-# compiles. Objects of two sets share no inline function of ours, unless the flags leave the code as
-# it is; then it is the same to the byte. A unit answers the same bits alone and linked with
-# another, in either order, also where that one is made for a CPU that this machine is not.
+# compiles. Objects of two sets share no inline function of ours, unless the flags leave all code
+# the same to the byte. A unit answers the same bits alone and linked with another, in either
+# order, even if that one is compiled for a CPU that this machine does not have.
 set -euo pipefail
 etlc=$1 gxx=$2 clangxx=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -86,8 +86,8 @@ int main() {
 }
 END
 
-# name, compiler, flags. What is named as_NAME leaves the code of NAME as it is. Without
-# optimisation what has to be inlined is inlined too.
+# name, compiler, flags. The flags of as_NAME leave the code of NAME unchanged. Functions that must
+# be inlined are inlined without optimisation too.
 sets() {
   cat <<'END'
 base g++ -O2
@@ -133,7 +133,7 @@ while read -r name cxx flags; do
     fail "$name: $cxx $flags does not compile: $(head -n 3 errors)"
 done < <(sets)
 
-# Code that the linker keeps one copy of, of a name.
+# Functions of which the linker keeps one copy for each name.
 for object in *.o; do
   nm --defined-only "$object" |
     awk -v object="${object%.o}" '$2 ~ /^[WwVuv]$/ && $3 ~ /etlmon|flags/ { print $3, object }'

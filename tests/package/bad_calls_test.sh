@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: what etlc_add_monitor says to a wrong call.
+# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: the errors of etlc_add_monitor.
 set -euo pipefail
 folder=$1 cmake=$2 cxx=$3
 box=$(mktemp -d)

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc below a new prefix; a project
-# outside the source tree then finds it, builds monitors with it and runs them, and a changed
-# target makes the header anew, and that one only.
+# consumer_test.sh BUILD_DIR CMAKE CXX GENERATOR: installs etlc below a new prefix. A project
+# outside the source tree then finds it, builds monitors with it and runs them. A changed target
+# rebuilds its header, and no other.
 set -euo pipefail
 build_dir=$1 cmake=$2 cxx=$3 generator=$4
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -12,8 +12,8 @@ fail() { echo "FAILED: $*"; exit 1; }
 expect() { [ "$1" = "$2" ] || fail "expected '$2', found '$1'"; }
 compile() { "$cmake" --build "$box/build" >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "the consumer does not build"; }; }
-# Ninja compares whole time stamps, make those of a second or finer: a changed
-# file must be newer than what was made from it.
+# Make may compare time stamps in whole seconds: a changed file must be newer than what was made
+# from it.
 change() { sleep 1.1; "$@"; }
 
 "$cmake" --install "$build_dir" --prefix "$box/prefix" >"$box/log" 2>&1 ||

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc answers specs of 10 KB soon, with a header or
-# with an error: within SECONDS of the processor and KILOBYTES of memory (0: any), in texts that are
-# in proportion. Each spec below takes hours or all memory in a compiler that walks formulas as
-# trees, or that builds a state machine however large.
+# with an error, within SECONDS of processor time and KILOBYTES of memory (0: any), in texts of
+# reasonable length. Each spec below would take hours or all memory in a compiler that walks
+# formulas as trees, or that builds state machines of any size.
 set -euo pipefail
 etlc=$1
 seconds=$2

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# library_names_test.sh CHECK_NAMES CXX: what the headers of C and POSIX declare at global scope is
-# refused as a spec's name, and what they define as a macro as any name. CHECK_NAMES names the names
-# that it is given and that may be declared. The compiler says which names clash: a namespace, or a
-# field, of each name is put behind all headers. ETLC_UPDATE=1 adds what this machine's headers
-# declare beyond the standards to compiler/check/library_names.inc.
+# library_names_test.sh CHECK_NAMES CXX: names that the headers of C and POSIX declare at global
+# scope are refused for specs, and their macros for everything. CHECK_NAMES prints those of its
+# names that etlc allows. The compiler finds the clashes: a namespace, or a field, of each name is
+# declared after all headers. ETLC_UPDATE=1 adds what this machine's headers declare beyond the
+# standards to compiler/check/library_names.inc.
 set -euo pipefail
 check_names=$1
 cxx=$2

@@ -1,9 +1,8 @@
 #!/usr/bin/env bash
-# outside_text_test.sh ETLC CXX: whatever the names of files, the spec's comments and strings,
-# the thresholds file and the data say, it stays text in every output. A header compiles, and
-# holds nothing that was planted; JSON can be read; what goes to a terminal has no control
-# characters, none that are hidden and none that are not UTF-8; make and ninja rebuild when a
-# file of the depfile changes, or etlc refuses the name.
+# outside_text_test.sh ETLC CXX: names of files, comments and strings of specs, thresholds files
+# and data stay text in every output, whatever they say. A header compiles and contains no planted
+# code; JSON parses; a terminal gets no control characters, no hidden ones and only UTF-8; make and
+# ninja rebuild when a file of the depfile changes, or etlc refuses the name.
 set -euo pipefail
 etlc=$1
 cxx=$2
@@ -29,8 +28,8 @@ hostile=(
     "$(printf 'long %.0s' {1..40})"
 )
 
-# Outputs are kept, each with what it is of, and looked at together
-# in the end. keep KIND WHAT names the next file.
+# Outputs are kept, each with its origin, and checked together at the end. keep KIND WHAT names the
+# next file.
 kept=0
 mkdir text json code
 keep() { out=$1/$((++kept)); printf '%s\n' "$2" >"$out.what"; }
@@ -64,8 +63,8 @@ print(json.dumps({"format": 1, "spec": spec, "predicates": {"p": entry}, "monito
 END
 }
 
-# header WHAT OF ARGUMENT...: a header, where there is one, whose
-# code has to be that of the first that is OF this.
+# header WHAT OF ARGUMENT...: a header, if etlc makes one; its code must equal that of the first
+# header OF the same thing.
 header() {
     local what=$1 of=$2
     shift 2
