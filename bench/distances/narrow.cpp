@@ -1,8 +1,8 @@
 // min l2 over targets in float32, float16 and int8, in one program and by turns: what --targets-as
-// gains, with the bounds that it needs, int8 both widened and in integers (bytes.hpp); and what
-// limits widening: the time to do nothing with the rows but widen them to float32, in the registers
-// of AVX-512. At the end, how long narrow embeddings take to widen. Prints ns per call, medians,
-// and the ratio to float32. Usage: bench_narrow [ROUNDS]
+// gains, with the bounds that it needs; and what limits widening: the time to do nothing with the
+// rows but widen them to float32, in the registers of AVX-512. At the end, how long narrow
+// embeddings take to widen. Prints ns per call, medians, and the ratio to float32.
+// Usage: bench_narrow [ROUNDS]
 #include <time.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "aligned.hpp"
-#include "etlmon/bytes.hpp"
+#include "etlmon/enclosed.hpp"
 #include "etlmon/widen.hpp"
 #include "median.hpp"
 
@@ -80,14 +80,11 @@ void compare(int rounds) {
     bench::AlignedVector<float> z(kPoints * D), wide(std::size_t{K} * D);
     bench::AlignedVector<std::uint16_t> halves(wide.size());
     bench::AlignedVector<std::int8_t> bytes(wide.size());
-    bench::AlignedVector<std::int32_t> sums(2 * std::size_t{K});
     for (float& x : z) x = normal(random);
     for (std::size_t i = 0; i < wide.size(); ++i) {
         bytes[i] = static_cast<std::int8_t>(static_cast<int>(random() % 255) - 127);
         halves[i] = static_cast<std::uint16_t>(0x3800 + random() % 0x400 + (random() % 2) * 0x8000);
         wide[i] = detail::element(halves.data(), i);
-        sums[i / D] += bytes[i] * bytes[i];
-        sums[K + i / D] += bytes[i];
     }
     const auto point = [&](std::uint32_t call) { return z.data() + call % kPoints * D; };
     const auto f32 = [&](std::uint32_t call) {
@@ -103,16 +100,6 @@ void compare(int rounds) {
         return enclosed<D>(
             detail::best<L2, Min, Fixed<K, D>, false>(point(call), rows, nullptr, {}, {}));
     };
-#if defined(ETLMON_X86_64)
-    const auto integers = [&](std::uint32_t call) {
-        alignas(64) std::uint8_t scratch[detail::bytes_scratch(D)];
-        const auto measured = detail::best_in_integers<L2, Min, Fixed<K, D>>(
-            point(call), {bytes.data(), 0.01F}, sums.data(), scratch, {}, {});
-        return doubtful(detail::enclose_integers<L2>(measured, 0.01F, D, 0));
-    };
-#else
-    const auto& integers = i8;
-#endif
     volatile float sink = 0;
     const auto f16_only = [&](std::uint32_t) {
         return widened_only(static_cast<const std::uint16_t*>(halves.data()), halves.size());
@@ -120,7 +107,7 @@ void compare(int rounds) {
     const auto i8_only = [&](std::uint32_t) {
         return widened_only(detail::ScaledRows{bytes.data(), 0.01F}, bytes.size());
     };
-    std::vector<double> times[6];
+    std::vector<double> times[5];
     const std::uint32_t calls = std::max(1U, 40000000U / (K * D));
     const auto time = [&](const auto& kernel, std::vector<double>& into) {
         const double start = processor_seconds();
@@ -128,15 +115,13 @@ void compare(int rounds) {
         into.push_back((processor_seconds() - start) * 1e9 / calls);
     };
     for (int round = 0; round < rounds; ++round) {
-        time(f32, times[0]), time(f16, times[1]), time(i8, times[2]), time(integers, times[5]);
+        time(f32, times[0]), time(f16, times[1]), time(i8, times[2]);
         if (can_widen()) time(f16_only, times[3]), time(i8_only, times[4]);
     }
     static_cast<void>(sink);
     const double of_f32 = median(times[0]), of_f16 = median(times[1]), of_i8 = median(times[2]);
-    const double of_integers = median(times[5]);
-    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K,
-                of_f32, of_f16, of_f32 / of_f16, of_i8, of_f32 / of_i8, of_integers,
-                of_f32 / of_integers, median(times[3]), median(times[4]));
+    std::printf("%6u x %-6u %12.1f %12.1f %6.2f %12.1f %6.2f %12.1f %12.1f\n", D, K, of_f32, of_f16,
+                of_f32 / of_f16, of_i8, of_f32 / of_i8, median(times[3]), median(times[4]));
     std::fflush(stdout);
 }
 
@@ -168,8 +153,8 @@ void widen_embeddings(int rounds) {
 
 int main(int argc, char** argv) {
     const int rounds = argc > 1 ? std::max(1, std::atoi(argv[1])) : 25;
-    std::printf("%-15s %12s %12s %6s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16",
-                "ratio", "int8 widened", "ratio", "in integers", "ratio", "widen f16", "widen i8");
+    std::printf("%-15s %12s %12s %6s %12s %6s %12s %12s\n", "D x K", "float32", "float16", "ratio",
+                "int8", "ratio", "widen f16", "widen i8");
     compare<4, 384>(rounds);
     compare<16, 384>(rounds);
     compare<64, 384>(rounds);

@@ -72,12 +72,6 @@ std::string only_call(const Context& context, Index d, const std::string& z) {
 std::string enclosing_call(const Context& context, const plan::NarrowSet& set,
                            const std::string& z) {
     const check::Distance& distance = context.model.distances[set.distance];
-    const std::string& rows = context.names.narrow_array.at(set.distance);
-    if (plan::in_integers(set))
-        return fmt::format("etlmon::measure_bytes<{}, targets::{}, targets::{}>({}, {}, {})",
-                           kernel_parameters(context, set.distance), rows,
-                           context.names.sums_array.at(set.distance), z, float_literal(set.scale),
-                           float_literal(set.moved));
     const std::string averaged =
         distance.aggregation == check::Aggregation::mean ? fmt::format(", {}", set.rows) : "";
     return fmt::format("etlmon::enclose<etlmon::{}>({}, {}, {}{})", plan::metric_name(distance),

@@ -30,8 +30,7 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
 
 /// What measures a distance.
 const char* header_of(const Context& context, Index d) {
-    if (context.enclosed(d))
-        return plan::in_integers(*plan::narrow_set(context.plan, d)) ? "bytes" : "enclosed";
+    if (context.enclosed(d)) return "enclosed";
     if (plan::stored_set(context.plan, d) == nullptr) return "kernel";
     return plan::searches(context.plan, d) ? "search" : "targets";
 }

@@ -99,16 +99,6 @@ void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowS
                     [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
-void print_sums(Printer& out, const Context& context, const plan::NarrowSet& set) {
-    out.line(
-        "/// of each row of {} the sum of the integers' squares, then of each the sum of the "
-        "integers",
-        context.names.narrow_array.at(set.distance));
-    print_array(out, "int32_t " + context.names.sums_array.at(set.distance),
-                fmt::format("2 * {}", set.rows), set.sums,
-                [](std::int32_t x) { return fmt::format("{}", x); });
-}
-
 }  // namespace
 
 void print_inputs_and_verdicts(Printer& out, const Context& context) {
@@ -159,9 +149,6 @@ void print_constants(Printer& out, const Context& context) {
         const plan::NarrowSet* narrow = plan::narrow_set(context.plan, d);
         if (narrow != nullptr && done.insert(context.names.narrow_array.at(d)).second)
             print_narrow_rows(out, context, *narrow);
-        if (narrow != nullptr && plan::in_integers(*narrow) &&
-            done.insert(context.names.sums_array.at(d)).second)
-            print_sums(out, context, *narrow);
         if (!context.lossless(d) && done.insert(context.names.target_array.at(d)).second)
             print_rows(out, context, d);
         const auto weights = context.names.weight_array.find(d);

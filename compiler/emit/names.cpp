@@ -306,7 +306,6 @@ private:
     void name_constants() {
         std::map<std::pair<check::Index, bool>, std::string> arrays;
         std::map<std::string, std::string> narrow_arrays;
-        std::map<std::string, std::string> sums_arrays;
         for (check::Index d : plan_.distances) {
             const check::Distance& distance = model_.distances[d];
             const bool as_given = plan::rows_as_given(distance);
@@ -322,11 +321,6 @@ private:
                     narrow->second =
                         constants_.claim(entry->second + "_" + plan::word(set->storage));
                 names_.narrow_array[d] = narrow->second;
-                if (plan::in_integers(*set)) {
-                    auto [sums, first_sums] = sums_arrays.try_emplace(narrow->second);
-                    if (first_sums) sums->second = constants_.claim(narrow->second + "_sums");
-                    names_.sums_array[d] = sums->second;
-                }
             }
             if (!distance.weights.empty())
                 names_.weight_array[d] = constants_.claim(target + "_weights");

@@ -94,8 +94,6 @@ struct Names {
     std::map<check::Index, std::string> target_array;  ///< per distance: its rows
     std::map<check::Index, std::string>
         narrow_array;  ///< per distance: its rows in float16 or int8
-    std::map<check::Index, std::string>
-        sums_array;  ///< per distance measured in integers: the sums of its rows
     std::map<check::Index, std::string> weight_array;  ///< per distance
 };
 

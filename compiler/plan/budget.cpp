@@ -223,16 +223,13 @@ private:
         std::set<Index> wide;
         std::uint64_t bytes = 0;
         std::set<std::pair<Index, bool>> narrow;
-        std::set<std::pair<Index, bool>> summed;
         for (Index d : distances_) {
             const check::Distance& distance = plan_.model->distances[d];
             const NarrowSet* set = narrow_set(plan_, d);
             if (set == nullptr || !set->lossless) wide.insert(distance.target);
             if (set == nullptr) continue;
             const std::pair rows{distance.target, rows_as_given(distance)};
-            if (narrow.insert(rows).second) bytes += bytes_of_rows(*set);
-            if (in_integers(*set) && summed.insert(rows).second)
-                bytes += bytes_of(*set) - bytes_of_rows(*set);
+            if (narrow.insert(rows).second) bytes += bytes_of(*set);
         }
         for (Index t : wide) bytes += plan_.model->targets[t].values.size() * sizeof(float);
         return bytes;

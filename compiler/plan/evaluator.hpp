@@ -111,7 +111,6 @@ private:
         enclosed_;  ///< per distance: the same, with what narrow targets leave open
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
-    std::vector<std::uint8_t> integers_;  ///< scratch for an embedding as integers
     std::vector<float> thresholds_;       ///< per predicate
     std::vector<Value> literals_;         ///< per predicate
     Literal literal_;

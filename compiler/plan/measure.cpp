@@ -39,21 +39,16 @@ void Evaluator::prepare_distances() {
     widened_.resize(model_.distances.size());
     points_.resize(model_.distances.size());
     std::size_t scratch = 0;
-    std::uint32_t integers = 0;
     for (Index d : plan_.distances) {
         const check::Distance& distance = model_.distances[d];
         prepared_[d] = prepared_rows(model_, distance);
         if (const NarrowSet* set = narrow_set(plan_, d)) {
-            if (in_integers(*set))
-                integers = std::max(integers, etlmon::detail::bytes_scratch(set->dimension));
-            else
-                widened_[d] = widened_rows(*set);
+            widened_[d] = widened_rows(*set);
         }
         points_[d].resize(distance.point_is_vector ? distance.point.size() : 0);
         scratch = std::max<std::size_t>(scratch, distance.kth);
     }
     scratch_.resize(scratch);
-    integers_.resize(integers);
 }
 
 void Evaluator::measure_distances() {
@@ -90,17 +85,9 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     const NarrowSet* set = narrow_set(plan_, d);
     if (set == nullptr) return etlmon::exactly(measured_on(prepared_[d]));
     if (set->lossless) return etlmon::exactly(measured_on(widened_[d]));
-    const auto in_bytes = [&] {
-        const etlmon::ByteRows rows{set->bytes.data(), set->sums.data(), set->scale,
-                                    set->moved,        set->rows,        set->dimension};
-        return etlmon::measure_bytes(metric, aggregation, distance.kth, z, rows, integers_.data(),
-                                     scratch_.data());
-    };
-    const auto widened = [&] {
-        return etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows,
-                               set->dimension);
-    };
-    const etlmon::Enclosed enclosed = in_integers(*set) ? in_bytes() : widened();
+    const etlmon::Enclosed enclosed =
+        etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows,
+                        set->dimension);
     return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;
 }
 

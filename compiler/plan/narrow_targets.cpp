@@ -6,9 +6,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
-#include "etlmon/bytes.hpp"
 #include "etlmon/widen.hpp"
 #include "plan/kernels.hpp"
 #include "plan/stored.hpp"
@@ -123,30 +121,7 @@ private:
                 static_cast<double>(set_.scale * static_cast<float>(set_.bytes.back())));
         }
         set_move(narrow);
-        if (pays_in_integers()) set_sums();
         return target_.rows;
-    }
-
-    /// What etlmon/bytes.hpp measures. It has no use for directions of which a row moved by 1/5 (z
-    /// moves as well), and leaves scales to float32 of which squares would overflow or vanish.
-    bool pays_in_integers() const {
-        using enum check::Metric;
-        constexpr float kLeastScale = 1e-11F;
-        constexpr float kGreatestScale = 1e8F;
-        constexpr float kGreatestTurn = 0.15F;
-        const bool of_directions = distance_.metric == cosine || distance_.metric == angular;
-        const bool of_squares = distance_.metric == l2 || distance_.metric == l2sq;
-        return !set_.lossless && (of_squares || (of_directions && set_.moved < kGreatestTurn)) &&
-               set_.scale > kLeastScale && set_.scale < kGreatestScale &&
-               etlmon::in_integers(set_.rows, set_.dimension);
-    }
-    void set_sums() {
-        std::vector<std::int32_t> plain;
-        for (auto row = set_.bytes.begin(); row != set_.bytes.end(); row += set_.dimension) {
-            set_.sums.push_back(std::inner_product(row, row + set_.dimension, row, 0));
-            plain.push_back(std::accumulate(row, row + set_.dimension, 0));
-        }
-        set_.sums.insert(set_.sums.end(), plain.begin(), plain.end());
     }
 
     void set_move(const std::vector<double>& narrow) {
@@ -287,16 +262,8 @@ std::vector<float> widened_rows(const NarrowSet& set) {
     return rows;
 }
 
-bool in_integers(const NarrowSet& set) {
-    return !set.sums.empty();
-}
-
-std::uint64_t bytes_of_rows(const NarrowSet& set) {
-    return set.halves.size() * sizeof(std::uint16_t) + set.bytes.size();
-}
-
 std::uint64_t bytes_of(const NarrowSet& set) {
-    return bytes_of_rows(set) + set.sums.size() * sizeof(std::int32_t);
+    return set.halves.size() * sizeof(std::uint16_t) + set.bytes.size();
 }
 
 const char* word(Storage storage) {

@@ -27,11 +27,7 @@ const NarrowSet* narrow_set(const Plan& plan, Index distance);
 /// Its rows as the kernels widen them: float32, one rounding an element of int8.
 std::vector<float> widened_rows(const NarrowSet& set);
 
-/// Measured by etlmon/bytes.hpp, on int8 as it is, and not by widening it.
-bool in_integers(const NarrowSet& set);
-
-/// Bytes of its rows; and of its rows and their sums.
-std::uint64_t bytes_of_rows(const NarrowSet& set);
+/// Bytes of its rows.
 std::uint64_t bytes_of(const NarrowSet& set);
 
 /// "f16", "i8", "f32"

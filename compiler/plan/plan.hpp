@@ -214,8 +214,6 @@ struct NarrowSet {
     std::uint32_t dimension = 0;
     std::vector<std::uint16_t> halves;  ///< f16: IEEE bits
     std::vector<std::int8_t> bytes;     ///< i8
-    std::vector<std::int32_t>
-        sums;         ///< i8 measured in integers: per row the sum of squares, then per row the sum
     float scale = 1;  ///< i8: value = scale x integer
     float moved = 0;  ///< no row is farther from its float32 row, in the distance's norm
     bool lossless = false;  ///< every element widens to the float32 it was: no other copy is kept

@@ -11,9 +11,8 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# The distances to float32 targets are not known here: the trace walks through every threshold, in
-# steps that shrink to roundings of it. z is measured on few short rows, which are widened; y on
-# rows that are measured in integers where they are int8.
+# The distances to float32 targets are not known here: the trace walks through every threshold, in steps that shrink to roundings of it. z is measured on few short rows,
+# y on more and longer ones.
 awk 'BEGIN {
   srand(7); D = 37; K = 5; steps = 900; E = 70; L = 9
   for (k = 0; k < K; ++k) for (i = 0; i < D; ++i) g[k, i] = sprintf("%.6f", 2 * rand() - 1)
@@ -203,7 +202,7 @@ for storage in f16 i8; do
     -o $storage.boolean.csv
   cmp boolean.csv $storage.boolean.csv
   "$etlc" narrow.etl --targets-as $storage -o narrow.hpp
-  [[ $storage != i8 ]] || grep -q 'measure_bytes<etlmon::Angular' narrow.hpp
+  [[ $storage != i8 ]] || grep -q 'measure_scaled<etlmon::Angular' narrow.hpp
   for compiler in "$@"; do
     "$compiler" -std=c++17 -O2 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic \
       -Werror -I "$runtime" -I . source/main.cpp -o compiled \

@@ -1,7 +1,7 @@
 // Everything of the distance side that generated code may call, instantiated once: what does its
 // object refer to?
 #include "etlmon/adaptation.hpp"
-#include "etlmon/bytes.hpp"
+#include "etlmon/enclosed.hpp"
 #include "etlmon/expression.hpp"
 #include "etlmon/kernel.hpp"
 #include "etlmon/version.hpp"
@@ -17,7 +17,6 @@ namespace {
 constexpr uint32_t kK = 5, kD = 35;
 constexpr uint32_t kManyK = 9, kLongD = 70;
 constexpr int8_t kBytes[kManyK * kLongD] = {1};
-constexpr int32_t kSums[2 * kManyK] = {1};
 const float kTargets[kK * kD] = {1.0f, 2.0f};
 const float kDiagonal[kD] = {1.0f};
 const float kFull[kD * kD] = {1.0f};
@@ -44,7 +43,7 @@ struct Inputs {
 
 etlmon::Measured distances(const float* z, int which);
 bool usable(const Inputs& in);
-etlmon::Enclosed in_integers(const float* z);
+etlmon::Enclosed on_bytes(const float* z);
 void widen(const Inputs& in, float* to);
 void observe(float& threshold, const float& distance, bool truth, const etlmon::Adaptation& by);
 
@@ -65,12 +64,14 @@ etlmon::Measured distances(const float* z, int which) {
     }
 }
 
-etlmon::Enclosed in_integers(const float* z) {
+etlmon::Enclosed on_bytes(const float* z) {
     using namespace etlmon;
-    const Enclosed a = measure_bytes<L2, Min, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
-    const Enclosed b = measure_bytes<L2Sq, Mean, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.25f);
-    const Enclosed c =
-        measure_bytes<Cosine, Kth<3>, kManyK, kLongD, kBytes, kSums>(z, 0.5f, 0.125f);
+    const Enclosed a =
+        enclose<L2>(measure_scaled<L2, Min, kManyK, kLongD, kBytes>(z, 0.5f), 0.25f, kLongD);
+    const Enclosed b = enclose<L2Sq>(measure_scaled<L2Sq, Mean, kManyK, kLongD, kBytes>(z, 0.5f),
+                                     0.25f, kLongD, kManyK);
+    const Enclosed c = enclose<Cosine>(
+        measure_scaled<Cosine, Kth<3>, kManyK, kLongD, kBytes>(z, 0.5f), 0.125f, kLongD);
     return a.doubtful({1.0f}) ? b.doubtful({1.0f}) ? c : b : a;
 }
 

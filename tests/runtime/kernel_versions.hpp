@@ -5,7 +5,6 @@
 #pragma once
 
 #include <functional>
-#include <type_traits>
 #include <vector>
 
 #include "etlmon/kernel.hpp"
@@ -32,12 +31,8 @@ std::vector<Version<Metric, Aggregation, Size, InColumns, G>> versions() {
     if (level >= 3)
         found.push_back({"v3", true, x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>});
 #endif
-    if (level >= 4) {
-        found.push_back({"v4", true, x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 1>});
-        if constexpr (!InColumns && std::is_same_v<Aggregation, etlmon::Min>)
-            found.push_back({"v4, four streams", true,
-                             x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>});
-    }
+    if (level >= 4)
+        found.push_back({"v4", true, x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>});
 #endif
     return found;
 }

@@ -1,6 +1,6 @@
 # Distances, aggregates, views and expressions: as the project is built, then where flags or another compiler could change them.
 find_package(Eigen3 REQUIRED)
-set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_narrow_integers.cpp test_not_finite.cpp
+set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_not_finite.cpp
   test_views.cpp)
 set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp test_narrow_bytes.cpp)
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)

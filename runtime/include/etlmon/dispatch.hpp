@@ -39,17 +39,6 @@ ETLMON_COLD inline uint32_t x86_64_level() noexcept {
   return (has & kAvx512) == kAvx512 && (kept & kZmm) == kZmm ? 4 : 3;
 }
 
-/// How many rows of a set beyond the first-level cache a CPU of level 4 best reads at once. Four
-/// share the loads of z, which on an Intel Xeon is 1.25 times as fast from the second-level cache;
-/// an AMD EPYC (Zen 5) reads one stream at the speed of that cache, and eight at 0.7 of it.
-inline uint32_t best_streams() noexcept {
-  constexpr uint32_t kAuth = 0x68747541;  // of "AuthenticAMD"
-  return cpu_id(0).b == kAuth ? 1 : 4;
-}
-
-/// Whether a CPU of level 4 has AVX512_VNNI, which multiplies bytes.
-inline bool multiplies_bytes() noexcept { return (cpu_id(7).c & 1u << 11) != 0; }
-
 #endif
 
 /// A function of which there is a version per instruction set. Versions::choice() gives the best
@@ -83,11 +72,7 @@ struct KernelVersions {
 #if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
     if constexpr (!Size::is_small(Metric::kDirection)) {
-      if constexpr (Size::has_streams(!Same<G, const float*>::value)) {
-        if (level >= 4 && best_streams() == 4)
-          return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 4>;
-      }
-      if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G, 1>;
+      if (level >= 4) return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>;
     }
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>;

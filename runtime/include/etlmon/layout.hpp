@@ -21,7 +21,7 @@ enum class Order : uint8_t {
   two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an
                ///< addition's latency
   four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, which
-               ///< some CPUs best read in one stream
+               ///< are read in one stream
 };
 
 /// Rows of a column, with vectors: K, and copies of the last row up to whole vectors.
@@ -101,12 +101,6 @@ struct Fixed {
   static constexpr bool is_small(bool of_directions) noexcept {
     return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
   }
-  /// Whether it depends on the CPU how many of its rows are best read at once. Rows that are
-  /// widened: not beyond the second-level cache, where one stream is mostly the faster.
-  static constexpr bool has_streams(bool widened) noexcept {
-    constexpr uint32_t kCached = 1u << 20;  // 2 MiB of float16
-    return order(K, D) == Order::four_chunks && K >= 4 && (!widened || K <= kCached / D);
-  }
   /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
   static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept {
     return R == most ? K >= R : (K & R) != 0;
@@ -131,7 +125,6 @@ struct Sizes {
   static constexpr bool may_be(Order) noexcept { return true; }
   static constexpr bool is_short() noexcept { return false; }
   static constexpr bool is_small(bool) noexcept { return false; }
-  static constexpr bool has_streams(bool) noexcept { return false; }
   static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
   static constexpr bool has_blocks(uint32_t) noexcept { return true; }
   static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return C - 1; }

@@ -27,10 +27,7 @@ struct SearchVersions {
   ETLMON_INLINE static auto choice() noexcept {
 #if defined(ETLMON_DISPATCH)
     const uint32_t level = x86_64_level();
-    if constexpr (Size::has_streams(false)) {
-      if (level >= 4 && best_streams() == 4) return x86_64_v4::search<Metric, Size, 4>;
-    }
-    if (level >= 4) return x86_64_v4::search<Metric, Size, 1>;
+    if (level >= 4) return x86_64_v4::search<Metric, Size>;
 #if ETLMON_X86_64 < 3
     if (level >= 3) return x86_64_v3::search<Metric, Size>;
 #endif
