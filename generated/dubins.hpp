@@ -19,12 +19,12 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#include "etlmon/kernel.hpp"
-#include "etlmon/predicate.hpp"
-#include "etlmon/reading.hpp"
-#include "etlmon/verdict.hpp"
+#include "etlmon/distance/kernel.hpp"
+#include "etlmon/scalars.hpp"
+#include "etlmon/temporal/predicate.hpp"
+#include "etlmon/temporal/reading.hpp"
+#include "etlmon/temporal/verdict.hpp"
 #include "etlmon/version.hpp"
-#include "etlmon/views.hpp"
 
 #if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
 #error "made by etlc 0.2: run etlc again, or use the etlmon 0.2 that it was made for"

@@ -2,7 +2,7 @@
 // ETLC_BENCH_NAME is the function, and -Detlmon=... gives each its own namespace, so that the
 // linker keeps them apart.
 #include "cells.hpp"
-#include "etlmon/kernel.hpp"
+#include "etlmon/distance/kernel.hpp"
 
 #define ETLC_TEXT_(x) #x
 #define ETLC_TEXT(x) ETLC_TEXT_(x)

@@ -13,8 +13,9 @@
 #include <vector>
 
 #include "aligned.hpp"
-#include "etlmon/enclosed.hpp"
-#include "etlmon/widen.hpp"
+#include "etlmon/distance/enclosed.hpp"
+#include "etlmon/distance/kernel.hpp"
+#include "etlmon/distance/widen.hpp"
 #include "median.hpp"
 
 namespace {

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/search.hpp"
+#include "etlmon/distance/search.hpp"
 #include "median.hpp"
 
 namespace {

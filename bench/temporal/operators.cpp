@@ -5,7 +5,7 @@
 #include <cstdio>
 #include <memory>
 
-#include "etlmon/window.hpp"
+#include "etlmon/temporal/window.hpp"
 #include "signals.hpp"
 
 namespace bench {

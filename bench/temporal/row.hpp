@@ -16,7 +16,7 @@
 
 #include "cases.hpp"
 #include "copilot/copilot.hpp"
-#include "etlmon/verdict.hpp"
+#include "etlmon/temporal/verdict.hpp"
 #include "timing.hpp"
 
 namespace bench {

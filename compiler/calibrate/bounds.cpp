@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "check/range_arithmetic.hpp"
-#include "etlmon/error_bounds.hpp"
-#include "etlmon/expression.hpp"
+#include "etlmon/distance/error_bounds.hpp"
+#include "etlmon/temporal/expression.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::calibrate {
@@ -73,7 +73,7 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
-/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/error_bounds.hpp.
+/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/distance/error_bounds.hpp.
 double magnitude_of(const Distance& distance, const float* z, const float* g,
                     std::uint32_t dimension) {
     std::vector<double> d(dimension);
@@ -111,10 +111,7 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     std::vector<double> highs;
     for (std::uint32_t k = 0; k < target.rows; ++k) {
         const float* g = target.values.data() + static_cast<std::size_t>(k) * target.dimension;
-        const float delta =
-            etlmon::measure(etlmon::MetricId::mahalanobis, etlmon::AggregationId::min, 1, z, g, 1,
-                            target.dimension, distance.weights.data(), nullptr)
-                .delta;
+        const float delta = plan::measure(row, z, g, 1, target.dimension, nullptr).delta;
         const Interval one = spread(row, 1, target.dimension, static_cast<double>(delta),
                                     magnitude_of(distance, z, g, target.dimension));
         lows.push_back(one.low);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "etlmon/distances.hpp"
+#include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "data/array.hpp"
-#include "etlmon/checksum.hpp"
+#include "etlmon/distance/checksum.hpp"
 
 namespace etlc::data {
 namespace {

@@ -19,7 +19,7 @@ struct Request : pipeline::Options {
     check::Options check;
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
-    bool standalone = false;   ///< the header with the runtime in it
+    std::string standalone;    ///< the header with the runtime in it: emit::Options::standalone
     std::string targets_file;  ///< name of the file beside the header, without folders
 };
 

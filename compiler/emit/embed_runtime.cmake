@@ -1,6 +1,7 @@
-# Writes OUTPUT, a C++ source that holds the files of RUNTIME (its
-# include folder) as text: what --standalone pastes.
-file(GLOB headers RELATIVE "${RUNTIME}" "${RUNTIME}/etlmon/*.hpp" "${RUNTIME}/etlmon/*.inc")
+# Writes OUTPUT, a C++ source that holds the files of RUNTIME (its include folder) as text: what
+# --standalone pastes.
+file(GLOB_RECURSE headers
+  RELATIVE "${RUNTIME}" "${RUNTIME}/etlmon/*.hpp" "${RUNTIME}/etlmon/*.inc")
 set(source "#include \"emit/standalone.hpp\"\n\nnamespace etlc::emit {\n\n")
 string(APPEND source
   "const std::vector<RuntimeFile>& runtime_files() {\n"

@@ -14,7 +14,7 @@ namespace etlc::emit {
 struct Options {
     std::string name_space;    ///< of the generated code; empty: the spec's name
     std::string version;       ///< of etlc, for the head of the file
-    bool standalone = false;   ///< the runtime pasted in
+    std::string standalone;    ///< the runtime pasted in: "portable" or "host"; empty: included
     std::string targets_file;  ///< where target sets lie that are not spelled out, without folders
 };
 

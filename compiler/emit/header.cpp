@@ -30,36 +30,40 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
 
 /// What measures a distance.
 const char* header_of(const Context& context, Index d) {
-    if (context.enclosed(d)) return "enclosed";
-    if (plan::stored_set(context.plan, d) == nullptr) return "kernel";
-    return plan::searches(context.plan, d) ? "search" : "targets";
+    if (plan::stored_set(context.plan, d) == nullptr) return "distance/kernel";
+    return plan::searches(context.plan, d) ? "distance/search" : "distance/targets";
 }
 
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool boolean = context.boolean();
-    std::set<std::string> headers{boolean ? "demand" : "predicate", "reading", "verdict", "version",
-                                  "views"};
-    for (Index d : plan.distances) headers.insert(header_of(context, d));
+    std::set<std::string> headers{"scalars", "temporal/reading", "version"};
+    headers.insert(boolean ? "temporal/demand" : "temporal/predicate");
+    headers.insert(boolean ? "temporal/boolean_verdict" : "temporal/verdict");
+    for (Index d : plan.distances) {
+        headers.insert(header_of(context, d));
+        if (context.enclosed(d)) headers.insert("distance/enclosed");
+    }
     for (Index p : plan.predicates)
-        if (!context.model.predicates[p].plain_distance()) headers.insert("expression");
-    if (!context.names.threshold_member.empty()) headers.insert("adaptation");
+        if (!context.model.predicates[p].plain_distance()) headers.insert("temporal/expression");
+    if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];
-        if (input.type == InputType::f16 || input.type == InputType::i8) headers.insert("widen");
-        if (input.hold > 0) headers.insert("hold");
+        if (input.type == InputType::f16 || input.type == InputType::i8)
+            headers.insert("distance/widen");
+        if (input.hold > 0) headers.insert("temporal/hold");
     }
     if (any_stream(plan, {StreamOp::delay, StreamOp::shift}))
-        headers.insert(boolean ? "boolean_window" : "delay");
+        headers.insert(boolean ? "temporal/boolean_window" : "temporal/delay");
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(),
                     [](const plan::Monitor& m) { return m.shifted; }))
-        headers.insert("shift");
+        headers.insert("temporal/shift");
     if (any_stream(plan,
                    {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since,
                     StreamOp::window_trigger, StreamOp::window_until, StreamOp::window_release}))
-        headers.insert(boolean ? "boolean_window" : "window");
-    if (!context.names.table_locals.empty()) headers.insert("machine");
-    if (!context.names.pending.empty()) headers.insert("pending");
+        headers.insert(boolean ? "temporal/boolean_window" : "temporal/window");
+    if (!context.names.table_locals.empty()) headers.insert("temporal/machine");
+    if (!context.names.pending.empty()) headers.insert("temporal/pending");
     return headers;
 }
 
@@ -75,7 +79,7 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
     if (standalone && context.stores_targets()) {
         out.line("#if defined(ETLMON_MAPPED_TARGETS)  // on a POSIX host, to map {}",
                  context.targets_file);
-        out.line("#include \"etlmon/mapped_targets.hpp\"");
+        out.line("#include \"etlmon/distance/mapped_targets.hpp\"");
         out.line("#endif");
     }
     const std::size_t dot = version.find('.');
@@ -375,7 +379,7 @@ std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options
     out.line("// Made by etlc {} from {}: change that, and run etlc again.", options.version,
              context.spec_file);
     print_summary(out, context);
-    print_includes(out, context, options.version, options.standalone);
+    print_includes(out, context, options.version, !options.standalone.empty());
     out.line("namespace {} {{", context.name_space);
     out.line(
         "inline namespace ETLMON_BUILD {  // units compiled with other flags have a class of their "
@@ -387,7 +391,7 @@ std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options
     print_class(out, context);
     out.line("}  // namespace ETLMON_BUILD");
     out.line("}}  // namespace {}", context.name_space);
-    return options.standalone ? standalone(out.take()) : out.take();
+    return options.standalone.empty() ? out.take() : standalone(out.take(), options.standalone);
 }
 
 }  // namespace etlc::emit

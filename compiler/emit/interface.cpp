@@ -134,7 +134,8 @@ void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
     if (context.stores_targets()) {
         out.line(
-            "/// The bytes of {}: mapped by etlmon/mapped_targets.hpp, or linked in at a multiple "
+            "/// The bytes of {}: mapped by etlmon/distance/mapped_targets.hpp, or linked in at a "
+            "multiple "
             "of 64.",
             context.targets_file);
         out.line("/// The type holds their size and their XXH64: it is ready with no others.");

@@ -1,6 +1,6 @@
 // measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
 // the same samples and predicates, each found out when a verdict first depends on it
-// (etlmon/demand.hpp).
+// (etlmon/temporal/demand.hpp).
 #include "emit/measurements.hpp"
 #include "plan/literals.hpp"
 

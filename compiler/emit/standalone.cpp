@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cassert>
 #include <cctype>
+#include <optional>
 #include <set>
 
 namespace etlc::emit {
@@ -12,7 +13,8 @@ namespace {
 constexpr std::string_view kInclude = "#include \"";
 constexpr std::string_view kOnce = "#pragma once";
 
-/// "etlmon/window.hpp" of `#include "etlmon/window.hpp"`; empty for any other line.
+/// "etlmon/temporal/window.hpp" of `#include "etlmon/temporal/window.hpp"`; empty for any other
+/// line.
 std::string_view included(std::string_view line) {
     if (!line.starts_with(kInclude)) return {};
     line.remove_prefix(kInclude.size());
@@ -29,14 +31,61 @@ std::string guard_of(std::string_view name) {
     return guard;
 }
 
+/// What a condition of `#if` comes to in portable text, where ETLMON_PORTABLE is defined and
+/// gnu.hpp is not included; nothing where the compiler has to say.
+std::optional<bool> portable_value(std::string_view condition) {
+    const auto has = [&](std::string_view part) {
+        return condition.find(part) != std::string_view::npos;
+    };
+    if (has("!defined(ETLMON_GNU)") || has("!defined(ETLMON_VECTORS)")) return true;
+    if (has("!defined(ETLMON_PORTABLE)") || has("defined(ETLMON_VECTORS)")) return false;
+    if (has("defined(ETLMON_PORTABLE)")) return true;
+    return std::nullopt;
+}
+
+/// The conditions around a line. Leaves out what portable text does not have.
+class Conditions {
+public:
+    /// Whether a line of a runtime file is pasted.
+    bool keeps(std::string_view line) {
+        if (line.starts_with("#if")) {
+            open_.push_back(portable_value(line));
+            taken_.push_back(open_.back().value_or(true));
+            return !open_.back() && all_taken();
+        }
+        const bool known = !open_.empty() && open_.back();
+        if (line.starts_with("#el") && known) {
+            taken_.back() = line.starts_with("#else") && !*open_.back();
+            return false;
+        }
+        const bool kept = all_taken();
+        if (!line.starts_with("#endif")) return kept;
+        open_.pop_back();
+        taken_.pop_back();
+        return kept && !known;
+    }
+
+private:
+    bool all_taken() const {
+        return std::find(taken_.begin(), taken_.end(), false) == taken_.end();
+    }
+
+    std::vector<std::optional<bool>> open_;  ///< what each of them comes to
+    std::vector<bool> taken_;                ///< and whether its lines are pasted
+};
+
 class Pasting {
 public:
+    explicit Pasting(bool portable) : portable_(portable) {}
+
     std::string paste(std::string_view text) {
         std::string result;
+        Conditions conditions;
         while (!text.empty()) {
             const std::size_t end = std::min(text.find('\n'), text.size() - 1);
             const std::string_view line = text.substr(0, end);
             text.remove_prefix(end + 1);
+            if (portable_ && !conditions.keeps(line)) continue;
             if (const std::string_view name = included(line); !name.empty())
                 result += file(name);
             else
@@ -64,13 +113,14 @@ private:
                "\n" + body + "#endif  // " + guard + "\n";
     }
 
+    bool portable_;
     std::set<std::string> done_;
 };
 
 }  // namespace
 
-std::string standalone(const std::string& header) {
-    return Pasting().paste(header);
+std::string standalone(const std::string& header, std::string_view target) {
+    return Pasting(target == "portable").paste(header);
 }
 
 }  // namespace etlc::emit

@@ -3,12 +3,13 @@
 #include <algorithm>
 #include <set>
 
-#include "etlmon/boolean_window.hpp"
-#include "etlmon/delay.hpp"
-#include "etlmon/machine.hpp"
-#include "etlmon/reading.hpp"
-#include "etlmon/verdict.hpp"
-#include "etlmon/window.hpp"
+#include "etlmon/temporal/boolean_verdict.hpp"
+#include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/machine.hpp"
+#include "etlmon/temporal/reading.hpp"
+#include "etlmon/temporal/verdict.hpp"
+#include "etlmon/temporal/window.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/register_program.hpp"
@@ -99,7 +100,7 @@ Cost response_cost(const Footprint& of, const Response& response) {
 }
 
 /// Operations on values or readings at one position, in units of the temporal loops of
-/// etlmon/pending.hpp.
+/// etlmon/temporal/pending.hpp.
 std::uint64_t pending_steps(const Pending& pending) {
     std::uint64_t steps = 0;
     for (const Pending::Part& part : pending.parts) {

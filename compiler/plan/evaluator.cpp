@@ -4,11 +4,11 @@
 #include <cmath>
 #include <limits>
 
-#include "etlmon/delay.hpp"
-#include "etlmon/predicate.hpp"
-#include "etlmon/shift.hpp"
+#include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/predicate.hpp"
+#include "etlmon/temporal/shift.hpp"
+#include "etlmon/temporal/window.hpp"
 #include "etlmon/views.hpp"
-#include "etlmon/window.hpp"
 #include "plan/literals.hpp"
 
 namespace etlc::plan {

@@ -9,10 +9,10 @@
 #include <optional>
 #include <vector>
 
-#include "etlmon/enclosed.hpp"
-#include "etlmon/monoid.hpp"
-#include "etlmon/reading.hpp"
-#include "etlmon/verdict.hpp"
+#include "etlmon/distance/enclosed.hpp"
+#include "etlmon/temporal/monoid.hpp"
+#include "etlmon/temporal/reading.hpp"
+#include "etlmon/temporal/verdict.hpp"
 #include "plan/inputs.hpp"
 #include "plan/pending_evaluator.hpp"
 #include "plan/plan.hpp"
@@ -111,8 +111,8 @@ private:
         enclosed_;  ///< per distance: the same, with what narrow targets leave open
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
-    std::vector<float> thresholds_;       ///< per predicate
-    std::vector<Value> literals_;         ///< per predicate
+    std::vector<float> thresholds_;  ///< per predicate
+    std::vector<Value> literals_;    ///< per predicate
     Literal literal_;
     std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;

@@ -3,7 +3,7 @@
 // continuation of it, say.
 #include <algorithm>
 
-#include "etlmon/predicate.hpp"
+#include "etlmon/temporal/predicate.hpp"
 #include "plan/evaluator.hpp"
 
 namespace etlc::plan {

@@ -1,5 +1,7 @@
 #include "plan/kernels.hpp"
 
+#include "etlmon/distance/dynamic.hpp"
+
 namespace etlc::plan {
 
 etlmon::MetricId metric_id(const check::Distance& distance) {
@@ -17,6 +19,17 @@ etlmon::MetricId metric_id(const check::Distance& distance) {
                                      : etlmon::MetricId::mahalanobis;
 }
 
+etlmon::AggregationId aggregation_id(const check::Distance& distance) {
+    using enum check::Aggregation;
+    switch (distance.aggregation) {
+        case min: return etlmon::AggregationId::min;
+        case max: return etlmon::AggregationId::max;
+        case mean: return etlmon::AggregationId::mean;
+        case kth: break;
+    }
+    return etlmon::AggregationId::kth;
+}
+
 std::vector<float> prepared_rows(const check::Model& model, const check::Distance& distance) {
     const check::Target& target = model.targets[distance.target];
     std::vector<float> rows = target.values;
@@ -30,6 +43,12 @@ bool rows_as_given(const check::Distance& distance) {
 
 std::string metric_name(const check::Distance& distance) {
     return etlmon::distance(metric_id(distance)).name;
+}
+
+etlmon::Measured measure(const check::Distance& distance, const float* z, const float* targets,
+                         std::uint32_t rows, std::uint32_t dimension, float* scratch) {
+    return etlmon::measure(metric_id(distance), aggregation_id(distance), distance.kth, z, targets,
+                           rows, dimension, distance.weights.data(), scratch);
 }
 
 }  // namespace etlc::plan

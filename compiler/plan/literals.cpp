@@ -1,7 +1,7 @@
 #include "plan/literals.hpp"
 
-#include "etlmon/predicate.hpp"
-#include "etlmon/truth.hpp"
+#include "etlmon/temporal/predicate.hpp"
+#include "etlmon/temporal/truth.hpp"
 
 namespace etlc::plan {
 

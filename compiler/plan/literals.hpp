@@ -5,8 +5,8 @@
 #pragma once
 
 #include "check/model.hpp"
-#include "etlmon/adaptation.hpp"
-#include "etlmon/enclosed.hpp"
+#include "etlmon/distance/enclosed.hpp"
+#include "etlmon/temporal/adaptation.hpp"
 
 namespace etlc::plan {
 

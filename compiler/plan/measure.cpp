@@ -2,8 +2,8 @@
 // own kernels.
 #include <algorithm>
 
-#include "etlmon/dynamic_enclosed.hpp"
-#include "etlmon/expression.hpp"
+#include "etlmon/distance/dynamic_enclosed.hpp"
+#include "etlmon/temporal/expression.hpp"
 #include "plan/evaluator.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -13,17 +13,6 @@ namespace etlc::plan {
 namespace {
 
 using check::Expr;
-
-etlmon::AggregationId aggregation_id(check::Aggregation aggregation) {
-    using enum check::Aggregation;
-    switch (aggregation) {
-        case min: return etlmon::AggregationId::min;
-        case max: return etlmon::AggregationId::max;
-        case mean: return etlmon::AggregationId::mean;
-        case kth: break;
-    }
-    return etlmon::AggregationId::kth;
-}
 
 bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
     return std::any_of(cuts.begin(), cuts.end(), [&](const Cut& cut) {
@@ -76,18 +65,16 @@ void Evaluator::measure_distances() {
 etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
     const check::Distance& distance = model_.distances[d];
     const check::Target& target = model_.targets[distance.target];
-    const etlmon::MetricId metric = metric_id(distance);
-    const etlmon::AggregationId aggregation = aggregation_id(distance.aggregation);
     const auto measured_on = [&](const std::vector<float>& rows) {
-        return etlmon::measure(metric, aggregation, distance.kth, z, rows.data(), target.rows,
-                               target.dimension, distance.weights.data(), scratch_.data());
+        return plan::measure(distance, z, rows.data(), target.rows, target.dimension,
+                             scratch_.data());
     };
     const NarrowSet* set = narrow_set(plan_, d);
     if (set == nullptr) return etlmon::exactly(measured_on(prepared_[d]));
     if (set->lossless) return etlmon::exactly(measured_on(widened_[d]));
     const etlmon::Enclosed enclosed =
-        etlmon::enclose(metric, aggregation, measured_on(widened_[d]), set->moved, set->rows,
-                        set->dimension);
+        etlmon::enclose(metric_id(distance), aggregation_id(distance), measured_on(widened_[d]),
+                        set->moved, set->rows, set->dimension);
     return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;
 }
 

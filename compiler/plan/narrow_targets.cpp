@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "etlmon/widen.hpp"
+#include "etlmon/distance/widen.hpp"
 #include "plan/kernels.hpp"
 #include "plan/stored.hpp"
 

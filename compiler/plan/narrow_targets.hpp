@@ -2,7 +2,7 @@
 // Takes: a plan, and the storage asked for. Gives: per distance the narrow rows, how far the
 // narrowing moved a row, and the numbers at which a comparison turns. Keeps true: `moved` is never
 // below the true distance between a float32 row and its narrow copy, in the norm that
-// etlmon/enclosed.hpp reckons with; where no row moved, nothing else is kept.
+// etlmon/distance/enclosed.hpp reckons with; where no row moved, nothing else is kept.
 #pragma once
 
 #include <cstdint>

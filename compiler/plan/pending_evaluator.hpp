@@ -6,7 +6,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "etlmon/pending.hpp"
+#include "etlmon/temporal/pending.hpp"
 #include "plan/plan.hpp"
 #include "plan/table.hpp"
 

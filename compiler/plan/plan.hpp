@@ -12,7 +12,7 @@
 
 #include "check/model.hpp"
 #include "diag/diag.hpp"
-#include "etlmon/value.hpp"
+#include "etlmon/temporal/value.hpp"
 #include "ir/lower.hpp"
 #include "plan/automaton.hpp"
 
@@ -122,8 +122,8 @@ struct Machine {
 
 /// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled
 /// `horizon` steps late; at the positions since, they are evaluated anew at every step on the
-/// prefix as it ends now (etlmon/pending.hpp), and the registers, which stand where everything is
-/// settled, are carried over them.
+/// prefix as it ends now (etlmon/temporal/pending.hpp), and the registers, which stand where
+/// everything is settled, are carried over them.
 struct Pending {
     struct Part {
         NodeId node = kNone;
@@ -214,8 +214,8 @@ struct NarrowSet {
     std::uint32_t dimension = 0;
     std::vector<std::uint16_t> halves;  ///< f16: IEEE bits
     std::vector<std::int8_t> bytes;     ///< i8
-    float scale = 1;  ///< i8: value = scale x integer
-    float moved = 0;  ///< no row is farther from its float32 row, in the distance's norm
+    float scale = 1;                    ///< i8: value = scale x integer
+    float moved = 0;        ///< no row is farther from its float32 row, in the distance's norm
     bool lossless = false;  ///< every element widens to the float32 it was: no other copy is kept
     std::vector<Cut> cuts;  ///< of the distance: where some predicate's comparison turns
 };

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <bit>
 
-#include "etlmon/checksum.hpp"
-#include "etlmon/layout.hpp"
-#include "etlmon/search.hpp"
+#include "etlmon/distance/checksum.hpp"
+#include "etlmon/distance/layout.hpp"
+#include "etlmon/distance/search.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::plan {
@@ -72,7 +72,7 @@ bool searches(const Plan& plan, Index d) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \
     case etlmon::MetricId::id:                        \
         return etlmon::searches<etlmon::Type>(rows);
-#include "etlmon/distances.def"
+#include "etlmon/distance/distances.def"
 #undef DISTANCE
     }
     return false;

@@ -20,8 +20,8 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
 /// Where the distance's set lies in the file; null where it stands in the header.
 const StoredSet* stored_set(const Plan& plan, Index distance);
 
-/// The monitor searches the distance's set, which takes state (etlmon/search.hpp), and does not
-/// measure all of it.
+/// The monitor searches the distance's set, which takes state (etlmon/distance/search.hpp), and
+/// does not measure all of it.
 bool searches(const Plan& plan, Index distance);
 
 /// What such a search remembers.

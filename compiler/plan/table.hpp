@@ -1,11 +1,11 @@
-// A state machine as the constant tables of etlmon/machine.hpp.
+// A state machine as the constant tables of etlmon/temporal/machine.hpp.
 // Takes: a machine of the plan. Gives: its tables, and which streams fill the lists of keys at each
 // step. Keeps true: the evaluator and the generated code run the same tables.
 #pragma once
 
 #include <vector>
 
-#include "etlmon/machine.hpp"
+#include "etlmon/temporal/machine.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::plan {

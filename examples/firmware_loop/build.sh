@@ -1,14 +1,14 @@
 #!/bin/sh
 # build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and both programs for
-# each board, into the folder OUT. RUNTIME: the folder that holds etlmon/. BOARD: cortex_m4,
-# rv32 (QEMU's mps2-an386 and virt machines), host.
+# each board, into the folder OUT. RUNTIME: the folder that holds etlmon/, unless ETLC_OPTIONS is
+# --standalone. BOARD: cortex_m4, rv32 (QEMU's mps2-an386 and virt machines), host.
 set -eu
 etlc=$1 runtime=$2 out=$3
 shift 3
 here=$(cd "$(dirname "$0")" && pwd)
 mkdir -p "$out"
 for spec in grasp dock hover belt gauge; do
-    "$etlc" "$here/$spec.etl" -o "$out/$spec.hpp"
+    "$etlc" "$here/$spec.etl" ${ETLC_OPTIONS:-} -o "$out/$spec.hpp"
 done
 includes="-I$here -I$out -I$runtime"
 firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti

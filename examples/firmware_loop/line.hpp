@@ -6,7 +6,6 @@
 #include <stdint.h>
 
 #include "board.hpp"
-#include "etlmon/verdict.hpp"
 
 class Line {
 public:
@@ -17,7 +16,8 @@ public:
         put(' ');
         for (int shift = 28; shift >= 0; shift -= 4) put("0123456789abcdef"[(x >> shift) & 15]);
     }
-    void verdict(const etlmon::Verdict& verdict) noexcept {
+    template <class Verdict>
+    void verdict(const Verdict& verdict) noexcept {
         number(verdict.status);
         number(bits(verdict.lower));
         number(bits(verdict.robustness));

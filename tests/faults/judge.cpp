@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "etlmon/checksum.hpp"
+#include "etlmon/distance/checksum.hpp"
 
 namespace etlc::faults {
 

@@ -27,11 +27,21 @@ cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/rv32_loop.txt") ||
     fail "the boards differ"
 if [ "$(uname -m)" = x86_64 ] &&
     grep -qw fma /proc/cpuinfo; then  # scalars, one sum a row, fused: what the boards do
-    CXX=$cxx HOST_FLAGS="-DETLMON_NO_PACKS -mfma" sh "$loop/build.sh" "$etlc" "$runtime" "$box" host
+    CXX=$cxx HOST_FLAGS="-DETLMON_PORTABLE -mfma" \
+        sh "$loop/build.sh" "$etlc" "$runtime" "$box" host
     sh "$loop/run.sh" "$box" host >/dev/null
     cmp <(verdicts "$box/cortex_m4_loop.txt") <(verdicts "$box/host_loop.txt") ||
         fail "the boards and a host without vectors differ"
 fi
+
+# The same monitors as files that hold the portable runtime: the same verdicts, to the bit.
+ETLC_OPTIONS=--standalone sh "$loop/build.sh" "$etlc" "$box/none" "$box/alone" cortex_m4 rv32
+for board in cortex_m4 rv32; do
+    timeout 120 sh "$loop/run.sh" "$box/alone" "$board" >/dev/null
+    cmp <(verdicts "$box/alone/${board}_loop.txt") <(verdicts "$box/${board}_loop.txt") ||
+        fail "$board: the portable runtime answers otherwise"
+    grep instructions "$box/alone/${board}_loop.txt" | sed 's/^/standalone: /' || true
+done
 
 # A timer's interrupt judges what the loop measures, and fills what the loop reads. Every verdict
 # is that of a run without interrupts.

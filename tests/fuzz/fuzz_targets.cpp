@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
-#include "etlmon/targets.hpp"
+#include "etlmon/distance/targets.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

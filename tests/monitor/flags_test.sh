@@ -96,7 +96,7 @@ fast g++ -O2 -ffast-math
 finite g++ -O2 -ffinite-math-only
 tiny_fast g++ -Os -ffast-math
 plain g++ -O2 -DETLMON_NO_DISPATCH
-scalar g++ -O2 -DETLMON_NO_PACKS
+scalar g++ -O2 -DETLMON_PORTABLE
 v2 g++ -O0 -march=x86-64-v2
 v3 g++ -O2 -march=x86-64-v3
 v4 g++ -O1 -march=x86-64-v4

@@ -209,7 +209,7 @@ for storage in f16 i8; do
       2>errors || { cat errors >&2; exit 1; }
     ./compiled <narrow.csv >compiled.csv
     cmp $storage.csv compiled.csv
-    for flags in "-O2 -ffast-math -DETLMON_NO_DISPATCH" "-Os -DETLMON_NO_PACKS"; do
+    for flags in "-O2 -ffast-math -DETLMON_NO_DISPATCH" "-Os -DETLMON_PORTABLE"; do
       rounded=$([[ $flags != *-ffast-math* ]] || echo rounded)
       for which in . wide; do
         "$compiler" -std=c++17 $flags -I "$runtime" -I $which source/main.cpp -o compiled

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# standalone_test.sh ETLC CXX...: a header made with --standalone needs no include path,
-# compiles without a warning and freestanding, may stand beside another one in a program, and
-# answers as the header that includes the runtime does.
+# standalone_test.sh ETLC CXX...: a header made with --standalone needs no include path, compiles
+# without a warning and freestanding, may stand next to another one in a program, and answers as the
+# header that includes the runtime does. The portable one has nothing of any machine in it, and is
+# short enough to be read.
 set -euo pipefail
 etlc=$1
 shift
@@ -46,20 +47,58 @@ int main() {
 }
 END
 flags=(-std=c++17 -O1 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
-mkdir pasted included
+mkdir pasted host included
 for spec in responses pending; do
     "$etlc" "$here/cases/$spec.etl" --standalone -o "pasted/$spec.hpp"
+    "$etlc" "$here/cases/$spec.etl" --standalone=host -o "host/$spec.hpp"
     "$etlc" "$here/cases/$spec.etl" -o "included/$spec.hpp"
 done
-if grep -n '#include "' pasted/*.hpp; then
+
+# Limits: a distance; none; every distance and storage, machines and windows.
+cat >reach.etl <<'END'
+spec reach;
+input z : f32[3];
+target goal = [[1, 0, 0], [0, 1, 0]];
+predicate near = min l2(z, goal) <= 0.5;
+monitor arrives = F near;
+END
+cat >level.etl <<'END'
+spec level;
+input x : f32 in [0, 9];
+predicate low = x <= 3;
+monitor stays = G low;
+END
+"$etlc" reach.etl --standalone -o reach.hpp
+"$etlc" reach.etl --standalone=portable -o same.hpp
+"$etlc" level.etl --standalone -o level.hpp
+cmp reach.hpp same.hpp
+for limit in reach.hpp:2700 level.hpp:1200; do
+    lines=$(wc -l <"${limit%:*}")
+    echo "${limit%:*}: $lines lines"
+    if [ "$lines" -ge "${limit#*:}" ]; then
+        echo "FAILED: ${limit%:*} has $lines lines, expected less than ${limit#*:}"
+        exit 1
+    fi
+done
+for example in "$here"/../../examples/firmware_loop/*.etl; do
+    "$etlc" "$example" --standalone -o "pasted/example_$(basename "$example" .etl).hpp"
+done
+if grep -n '#include "' pasted/*.hpp host/*.hpp reach.hpp level.hpp; then
     echo "FAILED: a standalone header includes a file that its user does not have"
+    exit 1
+fi
+if grep -n -E 'asm|cpuid|__builtin_(ia32|cpu)|vector_size|ETLMON_(GNU|VECTORS|PORTABLE)' \
+    pasted/*.hpp reach.hpp level.hpp; then
+    echo "FAILED: a portable header has something of one machine in it"
     exit 1
 fi
 for cxx in "$@"; do
     for spec in responses pending; do
         echo "#include \"$spec.hpp\"" >alone.cpp
-        "$cxx" "${flags[@]}" -ffreestanding -fno-exceptions -fno-rtti -I pasted -c alone.cpp \
-          -o alone.o
+        for folder in pasted host; do
+            "$cxx" "${flags[@]}" -ffreestanding -fno-exceptions -fno-rtti -I $folder -c alone.cpp \
+                -o alone.o
+        done
     done
     "$cxx" "${flags[@]}" -I pasted main.cpp -o with_pasted
     "$cxx" "${flags[@]}" -I included -I "$runtime" main.cpp -o with_included
@@ -67,4 +106,6 @@ for cxx in "$@"; do
     ./with_included >included.txt
     [ "$(wc -l <pasted.txt)" -eq 2200 ]
     cmp pasted.txt included.txt
+    "$cxx" "${flags[@]}" -I host main.cpp -o with_host
+    ./with_host | cmp - included.txt
 done

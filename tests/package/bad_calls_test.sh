@@ -1,5 +1,6 @@
 #!/usr/bin/env bash
-# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: the errors of etlc_add_monitor.
+# bad_calls_test.sh CMAKE_FOLDER CMAKE CXX: what etlc_add_monitor says to a wrong call, and the
+# runtime to a wrong program.
 set -euo pipefail
 folder=$1 cmake=$2 cxx=$3
 box=$(mktemp -d)
@@ -57,4 +58,39 @@ if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box
     >"$box/log" 2>&1; then
     echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
 fi
+
+# not_compiled WORDS ERRORS FLAG... : the program on standard input must not compile, with these
+# words, and as many errors where ERRORS is a number.
+runtime=$folder/../runtime/include
+not_compiled() {
+    local words=$1 errors=$2 compiler
+    shift 2
+    cat >"$box/wrong.cpp"
+    for compiler in "$cxx" g++ clang++; do
+        command -v "$compiler" >/dev/null || continue
+        if "$compiler" "$@" -fsyntax-only -I "$runtime" "$box/wrong.cpp" 2>"$box/log"; then
+            echo "FAILED: $compiler $* accepts:"; cat "$box/wrong.cpp"; failures=1
+        elif ! grep -qF -- "$words" "$box/log" ||
+            { [ "$errors" != any ] && [ "$(grep -c 'error:' "$box/log")" -ne "$errors" ]; }; then
+            echo "FAILED: $compiler $*: expected '$words'"; cat "$box/log"; failures=1
+        fi
+    done
+}
+for header in views distance/layout distance/kernel temporal/machine temporal/window vectors/pack; do
+    echo "#include \"etlmon/$header.hpp\"" |
+        not_compiled "etlmon needs C++17: compile with -std=c++17 or later" 1 -std=c++14
+done
+for given in "std::vector<float>& z" "std::array<float, 4>& z"; do
+    not_compiled "not D elements by its type: Vector::unchecked(x.data())" any -std=c++17 <<END
+#include <array>
+#include <vector>
+
+#include "etlmon/views.hpp"
+void give(etlmon::Vector<float, 3>& to, const $given) { to = z; }
+END
+done
+not_compiled "not D elements" any -std=c++17 <<END
+#include "etlmon/views.hpp"
+void give(etlmon::Vector<float, 3>& to, const float (&z)[4]) { to = z; }
+END
 exit $failures

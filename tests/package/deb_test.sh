@@ -18,7 +18,7 @@ done
 dpkg-deb -x "$deb" "$box/root"
 [[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] ||
     fail "etlc --version does not say $version"
-for file in include/etlmon/value.hpp share/cmake/etlc/etlcConfig.cmake \
+for file in include/etlmon/temporal/value.hpp share/cmake/etlc/etlcConfig.cmake \
     share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright; do
     [ -f "$box/root/usr/$file" ] || fail "it lacks /usr/$file"
 done

@@ -1,4 +1,5 @@
-# The tests of the kernels on AArch64 with NEON: cross-compiled, run by qemu-user. Static, so that no foreign libraries have to be found.
+# The tests of the kernels on AArch64 with NEON: cross-compiled, run by qemu-user. Static, so that
+# no foreign libraries have to be found.
 find_program(ETLC_AARCH64 aarch64-linux-gnu-g++)
 find_program(ETLC_QEMU_AARCH64 qemu-aarch64)
 find_path(ETLC_GTEST_SOURCES src/gtest-all.cc PATHS /usr/src/googletest/googletest)
@@ -8,14 +9,15 @@ if(NOT ETLC_AARCH64 OR NOT ETLC_QEMU_AARCH64 OR NOT ETLC_GTEST_SOURCES)
   return()
 endif()
 
-file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/* ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
+file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS
+  ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/* ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
 set(objects)
 # etlc_aarch64_object(SOURCE option...): one object of the program.
 function(etlc_aarch64_object source)
   get_filename_component(name ${source} NAME)
   add_custom_command(OUTPUT aarch64_${name}.o
-    COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_AARCH64} -std=c++17 -O2 -isystem ${ETLC_GTEST_SOURCES}/include ${ARGN}
-            -c ${source} -o aarch64_${name}.o
+    COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_AARCH64} -std=c++17 -O2
+            -isystem ${ETLC_GTEST_SOURCES}/include ${ARGN} -c ${source} -o aarch64_${name}.o
     DEPENDS ${source} ${kernel_headers} VERBATIM)
   set(objects ${objects} aarch64_${name}.o PARENT_SCOPE)
 endfunction()
@@ -23,8 +25,8 @@ etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest-all.cc -I${ETLC_GTEST_SOURCE
 etlc_aarch64_object(${ETLC_GTEST_SOURCES}/src/gtest_main.cc -I${ETLC_GTEST_SOURCES} -w)
 get_target_property(eigen_headers Eigen3::Eigen INTERFACE_INCLUDE_DIRECTORIES)
 foreach(source exact.cpp ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
-  etlc_aarch64_object(${CMAKE_CURRENT_SOURCE_DIR}/${source} -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers}
-    ${kernel_warnings})
+  etlc_aarch64_object(${CMAKE_CURRENT_SOURCE_DIR}/${source}
+    -I${PROJECT_SOURCE_DIR}/runtime/include -isystem ${eigen_headers} ${kernel_warnings})
 endforeach()
 add_custom_command(OUTPUT test_kernels_aarch64
   # ld warns that gtest's getaddrinfo would need the C library at run time; no test asks for it.

@@ -1,8 +1,8 @@
 // What bounds on distances are held to: distances in double, and how far narrow rows are from the
 // rows. Takes: a case, its narrow rows widened to float32. Gives: the aggregated distance by its
-// definition; the greatest move of a row in the norm that etlmon/enclosed.hpp asks for, rounded up.
-// Keeps true: shares no arithmetic with the kernels; cosine and angular by the chord and Kahan's
-// formula, which lose nothing near 0.
+// definition; the greatest move of a row in the norm that etlmon/distance/enclosed.hpp asks for,
+// rounded up. Keeps true: shares no arithmetic with the kernels; cosine and angular by the chord
+// and Kahan's formula, which lose nothing near 0.
 #pragma once
 
 #include <algorithm>

@@ -1,12 +1,12 @@
 // Everything of the distance side that generated code may call, instantiated once: what does its
 // object refer to?
-#include "etlmon/adaptation.hpp"
-#include "etlmon/enclosed.hpp"
-#include "etlmon/expression.hpp"
-#include "etlmon/kernel.hpp"
+#include "etlmon/distance/enclosed.hpp"
+#include "etlmon/distance/kernel.hpp"
+#include "etlmon/distance/widen.hpp"
+#include "etlmon/temporal/adaptation.hpp"
+#include "etlmon/temporal/expression.hpp"
 #include "etlmon/version.hpp"
 #include "etlmon/views.hpp"
-#include "etlmon/widen.hpp"
 
 #if ETLMON_VERSION_MAJOR != 0 || ETLMON_VERSION_MINOR != 2
 #error "this test was written for another version"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/dynamic.hpp"
+#include "etlmon/distance/dynamic.hpp"
 #include "exact.hpp"
 
 namespace kernel_cases {

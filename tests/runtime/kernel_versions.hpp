@@ -7,7 +7,7 @@
 #include <functional>
 #include <vector>
 
-#include "etlmon/kernel.hpp"
+#include "etlmon/distance/kernel.hpp"
 #include "kernel_cases.hpp"
 
 namespace kernel_cases {
@@ -49,6 +49,6 @@ struct RowVersion {
 
 /// G: const float*, const std::uint16_t* or etlmon::detail::ScaledRows.
 template <class G>
-std::vector<RowVersion<G>> row_versions(etlmon::MetricId metric, etlmon::AggregationId aggregation);
+std::vector<RowVersion<G>> row_versions(etlmon::MetricId metric);
 
 }  // namespace kernel_cases

@@ -1,8 +1,10 @@
-# Distances, aggregates, views and expressions: as the project is built, then where flags or another compiler could change them.
+# Distances, aggregates, views and expressions: as the project is built, then where flags or another
+# compiler could change them.
 find_package(Eigen3 REQUIRED)
-set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp test_kernel_twins.cpp test_not_finite.cpp
-  test_views.cpp)
-set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp test_narrow_bytes.cpp)
+set(kernel_sources row_kernels_f32.cpp test_distances.cpp test_enclosed.cpp test_expression.cpp
+  test_kernel_twins.cpp test_not_finite.cpp test_views.cpp)
+set(narrow_sources row_kernels_f16.cpp row_kernels_i8.cpp test_narrow_halves.cpp
+  test_narrow_bytes.cpp)
 set(kernel_warnings -Wall -Wextra -Wconversion -Wno-sign-conversion -Wshadow -Wpedantic -Werror)
 
 # The judge is built once, without the flags under test.
@@ -33,12 +35,13 @@ if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   return()
 endif()
 etlc_kernel_variant(test_kernels_native -O2 -march=native)
+etlc_kernel_variant(test_kernels_portable -O2 -DETLMON_PORTABLE)
 set(only_kernel_sources ${kernel_sources})
 list(APPEND kernel_sources ${narrow_sources} test_kernel_versions.cpp)
-etlc_kernel_variant(test_kernels_scalar -O2 -DETLMON_NO_PACKS)
-etlc_kernel_variant(test_kernels_small -Os -DETLMON_NO_PACKS)
+etlc_kernel_variant(test_kernels_small -Os -DETLMON_PORTABLE)
 list(REMOVE_ITEM kernel_sources test_kernel_twins.cpp)
-# The baseline alone: in the others, loads past the end of a row meet a page without access (guarded.hpp).
+# The baseline alone: in the others, loads past the end of a row meet a page without access
+# (guarded.hpp).
 etlc_kernel_variant(test_kernels_sanitized ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
 set(kernel_sources ${only_kernel_sources})
 
@@ -50,21 +53,22 @@ if(NOT ETLC_CLANG)
   etlc_missing_tool(clang++ clang)
 else()
   list(APPEND kernel_compilers ${ETLC_CLANG})
-  file(GLOB kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/*)
+  file(GLOB_RECURSE kernel_headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/*
+    ${CMAKE_CURRENT_SOURCE_DIR}/*.hpp)
   set(objects)
   foreach(source ${kernel_sources})
     add_custom_command(OUTPUT clang_${source}.o
-      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math -DETLMON_NO_DISPATCH ${kernel_warnings}
-              -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
-      DEPENDS ${source} ${kernel_headers} ${CMAKE_CURRENT_SOURCE_DIR}/exact.hpp ${CMAKE_CURRENT_SOURCE_DIR}/kernel_cases.hpp
-              ${CMAKE_CURRENT_SOURCE_DIR}/kernel_versions.hpp ${CMAKE_CURRENT_SOURCE_DIR}/row_kernels.hpp
-              ${CMAKE_CURRENT_SOURCE_DIR}/guarded.hpp
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_CLANG} -std=c++17 -O2 -ffast-math
+              -DETLMON_NO_DISPATCH ${kernel_warnings} -I${PROJECT_SOURCE_DIR}/runtime/include
+              -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o clang_${source}.o
+      DEPENDS ${source} ${kernel_headers}
       VERBATIM)
     list(APPEND objects clang_${source}.o)
   endforeach()
   add_custom_command(OUTPUT test_kernels_clang_fast_math
     COMMAND ${ETLC_CLANG} -ffast-math ${objects} $<TARGET_FILE:exact_distances>
-            $<TARGET_FILE:GTest::gtest_main> $<TARGET_FILE:GTest::gtest> -lpthread -o test_kernels_clang_fast_math
+            $<TARGET_FILE:GTest::gtest_main> $<TARGET_FILE:GTest::gtest> -lpthread
+            -o test_kernels_clang_fast_math
     DEPENDS ${objects} exact_distances VERBATIM)
   add_custom_target(kernels_clang_fast_math ALL DEPENDS test_kernels_clang_fast_math)
   add_test(NAME test_kernels_clang_fast_math

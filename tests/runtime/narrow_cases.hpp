@@ -8,7 +8,7 @@
 
 #include <cmath>
 
-#include "etlmon/widen.hpp"
+#include "etlmon/distance/widen.hpp"
 #include "kernel_versions.hpp"
 
 namespace narrow_cases {
@@ -75,8 +75,10 @@ inline Narrow make_narrow(Storage storage, MetricId metric, std::uint32_t rows,
 /// The versions that widen whole embeddings.
 template <class G>
 std::vector<void (*)(G, float*, std::uint32_t) noexcept> widenings() {
-    std::vector<void (*)(G, float*, std::uint32_t) noexcept> all{
-        etlmon::detail::baseline::widen<G>};
+    std::vector<void (*)(G, float*, std::uint32_t) noexcept> all{etlmon::detail::widen<G>};
+#if defined(ETLMON_VECTORS)
+    all.push_back(etlmon::detail::baseline::widen<G>);
+#endif
 #if defined(ETLMON_DISPATCH)
     const std::uint32_t level = etlmon::detail::x86_64_level();
 #if ETLMON_X86_64 < 3
@@ -122,8 +124,8 @@ void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Ag
                       const char* kind) {
     const exact::Case& c = narrow.wide;
     const bool judged = etlmon::distance(c.metric).prepared == etlmon::Prepared::as_given;
-    const auto direct = row_versions<G>(c.metric, aggregate.id);
-    const auto wide = row_versions<const float*>(c.metric, aggregate.id);
+    const auto direct = row_versions<G>(c.metric);
+    const auto wide = row_versions<const float*>(c.metric);
     for (std::size_t v = 0; v < direct.size(); ++v) {
         const Measured measured = direct[v].measure(c, rows_in(narrow, G{}), aggregate);
         const Measured of_wide = wide[v].measure(c, c.targets.data(), aggregate);

@@ -2,8 +2,7 @@
 // kernels: one a storage, as all kernels together take too long.
 #pragma once
 
-#include <type_traits>
-
+#include "etlmon/distance/dynamic.hpp"
 #include "guarded.hpp"
 #include "kernel_versions.hpp"
 
@@ -28,47 +27,40 @@ private:
     Guarded z_, weights_, rows_;
 };
 
-template <class Metric, class Aggregation, class G>
+/// The versions that were compiled and that the CPU has. Only what the values of rows are is
+/// compiled in each.
+template <class Metric, class G>
 std::vector<RowVersion<G>> row_versions_of() {
+    using namespace etlmon::detail;
     std::vector<RowVersion<G>> found;
-    for (const auto& version : versions<Metric, Aggregation, etlmon::detail::Sizes, false, G>()) {
-        const auto measure = [run = version.run](const exact::Case& c, G rows,
-                                                 exact::Aggregate aggregate) {
-            std::vector<float> smallest(aggregate.n);
-            Aggregation aggregation{};
-            if constexpr (std::is_same_v<Aggregation, etlmon::KthOf>)
-                aggregation = {smallest.data(), aggregate.n, 0};
-            static GuardedCase guarded;
-            const std::size_t elements = std::size_t{c.rows} * c.dimension;
-            return etlmon::detail::unpacked(run(guarded.z(c), guarded.rows(rows, elements),
-                                                guarded.weights(c), {c.rows, c.dimension},
-                                                aggregation));
-        };
-        found.push_back({version.name, version.fused, measure});
-    }
+    const auto add = [&](const char* name, bool fused, auto row_values) {
+        found.push_back({name, fused, [=](const exact::Case& c, G rows, exact::Aggregate a) {
+                             std::vector<float> smallest(a.n);
+                             static GuardedCase guarded;
+                             const std::size_t elements = std::size_t{c.rows} * c.dimension;
+                             return aggregate_rows<Metric>(
+                                 row_values, a.id, a.n, guarded.z(c), guarded.rows(rows, elements),
+                                 c.rows, c.dimension, guarded.weights(c), smallest.data());
+                         }});
+    };
+    add("baseline", false, baseline::row_values<Metric, G>);
+#if defined(ETLMON_DISPATCH)
+    const std::uint32_t level = x86_64_level();
+#if ETLMON_X86_64 < 3
+    if (level >= 3) add("v3", true, x86_64_v3::row_values<Metric, G>);
+#endif
+    if (level >= 4) add("v4", true, x86_64_v4::row_values<Metric, G>);
+#endif
     return found;
 }
 
-template <class Metric, class G>
-std::vector<RowVersion<G>> row_versions_of(etlmon::AggregationId aggregation) {
-    using Id = etlmon::AggregationId;
-    switch (aggregation) {
-        case Id::min: return row_versions_of<Metric, etlmon::Min, G>();
-        case Id::max: return row_versions_of<Metric, etlmon::Max, G>();
-        case Id::mean: return row_versions_of<Metric, etlmon::Mean, G>();
-        case Id::kth: break;
-    }
-    return row_versions_of<Metric, etlmon::KthOf, G>();
-}
-
 template <class G>
-std::vector<RowVersion<G>> row_versions(etlmon::MetricId metric,
-                                        etlmon::AggregationId aggregation) {
+std::vector<RowVersion<G>> row_versions(etlmon::MetricId metric) {
     switch (metric) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \
     case etlmon::MetricId::id:                        \
-        return row_versions_of<etlmon::Type, G>(aggregation);
-#include "etlmon/distances.def"
+        return row_versions_of<etlmon::Type, G>();
+#include "etlmon/distance/distances.def"
 #undef DISTANCE
     }
     return {};

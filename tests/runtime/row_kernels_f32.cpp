@@ -3,8 +3,7 @@
 
 namespace kernel_cases {
 
-template std::vector<RowVersion<const float*>> row_versions(etlmon::MetricId,
-                                                            etlmon::AggregationId);
+template std::vector<RowVersion<const float*>> row_versions(etlmon::MetricId);
 
 etlmon::Measured run(const exact::Case& c, exact::Aggregate aggregate) {
     std::vector<float> prepared = c.targets;

@@ -2,6 +2,5 @@
 #include "row_kernels.hpp"
 
 namespace kernel_cases {
-template std::vector<RowVersion<etlmon::detail::ScaledRows>> row_versions(etlmon::MetricId,
-                                                                          etlmon::AggregationId);
+template std::vector<RowVersion<etlmon::detail::ScaledRows>> row_versions(etlmon::MetricId);
 }  // namespace kernel_cases

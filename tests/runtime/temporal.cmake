@@ -1,5 +1,7 @@
-# The temporal operators, and thresholds that move: as the project is built, then where flags or another compiler could change what they mean.
-set(temporal_sources test_adaptation.cpp test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_truth.cpp test_temporal_values.cpp test_temporal_windows.cpp)
+# The temporal operators, and thresholds that move: as the project is built, then where flags or
+# another compiler could change what they mean.
+set(temporal_sources test_adaptation.cpp test_temporal_costs.cpp test_temporal_formulas.cpp
+  test_temporal_truth.cpp test_temporal_values.cpp test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 
 etlc_test(test_temporal RUNTIME SOURCES ${temporal_sources} LIBRARIES etlmon::etlmon)
@@ -30,20 +32,20 @@ if(NOT ETLC_TEMPORAL_OTHER)
   etlc_missing_tool(${temporal_other} ${temporal_package})
 else()
   set(temporal_headers ${CMAKE_CURRENT_SOURCE_DIR}/temporal_streams.hpp)
-  foreach(header adaptation value truth verdict delay monoid window boolean_window)
-    list(APPEND temporal_headers ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/${header}.hpp)
-  endforeach()
+  file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/runtime/include/etlmon/temporal/*)
+  list(APPEND temporal_headers ${headers})
   set(objects)
   foreach(source ${temporal_sources})
     add_custom_command(OUTPUT other_${source}.o
-      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_TEMPORAL_OTHER} -std=c++17 -O3 -ffast-math ${temporal_warnings}
-              -I${PROJECT_SOURCE_DIR}/runtime/include -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o other_${source}.o
+      COMMAND ${CMAKE_CXX_COMPILER_LAUNCHER} ${ETLC_TEMPORAL_OTHER} -std=c++17 -O3 -ffast-math
+              ${temporal_warnings} -I${PROJECT_SOURCE_DIR}/runtime/include
+              -c ${CMAKE_CURRENT_SOURCE_DIR}/${source} -o other_${source}.o
       DEPENDS ${source} ${temporal_headers} VERBATIM)
     list(APPEND objects other_${source}.o)
   endforeach()
   add_custom_command(OUTPUT test_temporal_other_compiler
-    COMMAND ${ETLC_TEMPORAL_OTHER} -ffast-math ${objects} $<TARGET_FILE:GTest::gtest_main> $<TARGET_FILE:GTest::gtest>
-            -lpthread -o test_temporal_other_compiler
+    COMMAND ${ETLC_TEMPORAL_OTHER} -ffast-math ${objects} $<TARGET_FILE:GTest::gtest_main>
+            $<TARGET_FILE:GTest::gtest> -lpthread -o test_temporal_other_compiler
     DEPENDS ${objects} VERBATIM)
   add_custom_target(temporal_other_compiler ALL DEPENDS test_temporal_other_compiler)
   add_test(NAME test_temporal_other_compiler

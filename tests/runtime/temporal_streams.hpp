@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/boolean_window.hpp"
-#include "etlmon/window.hpp"
+#include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/window.hpp"
 
 namespace temporal {
 

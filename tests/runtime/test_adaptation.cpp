@@ -11,7 +11,7 @@
 #include <random>
 #include <vector>
 
-#include "etlmon/adaptation.hpp"
+#include "etlmon/temporal/adaptation.hpp"
 
 namespace {
 

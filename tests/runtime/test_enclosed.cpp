@@ -1,7 +1,7 @@
 // What narrow copies of targets say about the targets: the interval holds the distance in real
 // arithmetic and what every version of the kernel measures on the float32 rows, and a comparison
 // that it leaves open is doubtful.
-#include "etlmon/enclosed.hpp"
+#include "etlmon/distance/enclosed.hpp"
 
 #include <gtest/gtest.h>
 
@@ -58,7 +58,7 @@ void expect_enclosed(const exact::Case& c, const std::vector<float>& rows,
                      const std::string& what) {
     const std::uint32_t averaged = aggregate.id == etlmon::AggregationId::mean ? c.rows : 0;
     const double exact = aggregated(c, aggregate);
-    const auto all = row_versions<const float*>(c.metric, aggregate.id);
+    const auto all = row_versions<const float*>(c.metric);
     for (const auto& narrow : all) {
         const Measured m = narrow.measure(c, narrow_rows.data(), aggregate);
         const Enclosed e = etlmon::enclose<Metric>(m, moved, c.dimension, averaged);

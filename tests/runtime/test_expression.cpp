@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "etlmon/expression.hpp"
+#include "etlmon/temporal/expression.hpp"
 
 namespace {
 

@@ -62,7 +62,7 @@ TEST(KernelTwins, EveryDistanceAndAggregation) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown)       \
     expect_twins<etlmon::Type, 3, 7>(etlmon::MetricId::id); \
     expect_twins<etlmon::Type, 4, 33>(etlmon::MetricId::id);
-#include "etlmon/distances.def"
+#include "etlmon/distance/distances.def"
 #undef DISTANCE
 }
 

@@ -15,7 +15,7 @@ TEST(Bytes, WidenWhateverTheirNumber) {
     TEST(Bytes, SameAsWidened_##id) {                         \
         expect_metric<ScaledRows>(Storage::i8, MetricId::id); \
     }
-#include "etlmon/distances.def"
+#include "etlmon/distance/distances.def"
 #undef DISTANCE
 
 inline constexpr std::int8_t kBytes[64 * 5] = {1, -128, 127, 0, 5, -7};

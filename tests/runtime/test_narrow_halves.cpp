@@ -38,7 +38,7 @@ TEST(Halves, WidenWhateverTheirNumber) {
     TEST(Halves, SameAsWidened_##id) {                                   \
         expect_metric<const std::uint16_t*>(Storage::f16, MetricId::id); \
     }
-#include "etlmon/distances.def"
+#include "etlmon/distance/distances.def"
 #undef DISTANCE
 
 inline constexpr std::uint16_t kHalves[64 * 5] = {0x3c00, 0x4001, 0x8001, 0x3555,

@@ -27,7 +27,7 @@ void expect_unmeasured(Measured m, const exact::Case& c, exact::Aggregate aggreg
 
 void expect_row_versions(const exact::Case& c, const float* rows) {
     for (const exact::Aggregate aggregate : aggregates(c.rows, true))
-        for (const auto& version : row_versions<const float*>(c.metric, aggregate.id))
+        for (const auto& version : row_versions<const float*>(c.metric))
             expect_unmeasured(version.measure(c, rows, aggregate), c, aggregate, version.name);
 }
 

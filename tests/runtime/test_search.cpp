@@ -9,7 +9,7 @@
 #include <random>
 #include <vector>
 
-#include "etlmon/search.hpp"
+#include "etlmon/distance/search.hpp"
 
 namespace {
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "etlmon/mapped_targets.hpp"
+#include "etlmon/distance/mapped_targets.hpp"
 
 namespace {
 

@@ -7,9 +7,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "etlmon/predicate.hpp"
-#include "etlmon/reading.hpp"
-#include "etlmon/verdict.hpp"
+#include "etlmon/temporal/predicate.hpp"
+#include "etlmon/temporal/reading.hpp"
+#include "etlmon/temporal/verdict.hpp"
 #include "temporal_streams.hpp"
 
 namespace {

@@ -9,8 +9,8 @@
 #include <type_traits>
 #include <vector>
 
+#include "etlmon/distance/widen.hpp"
 #include "etlmon/views.hpp"
-#include "etlmon/widen.hpp"
 
 namespace {
 

@@ -19,20 +19,9 @@
 #include <string.h>
 #endif
 
-#if defined(__GNUC__)
-#define ETLMON_INLINE inline __attribute__((always_inline))
-#define ETLMON_COLD __attribute__((noinline, cold))
-#else
-#define ETLMON_INLINE inline
-#define ETLMON_COLD
-#endif
-
-// What each step calls: where speed counts, part of the caller; where size counts, there once for
-// all callers.
-#if defined(__OPTIMIZE_SIZE__)
-#define ETLMON_STEP inline
-#else
-#define ETLMON_STEP ETLMON_INLINE
+// What g++ and clang offer beyond the standard; everything below does without.
+#if defined(__GNUC__) && !defined(ETLMON_PORTABLE)
+#include "etlmon/gnu.hpp"
 #endif
 
 namespace etlmon {
@@ -78,6 +67,22 @@ ETLMON_INLINE void copy_bytes(void* to, const void* from, size_t bytes) noexcept
 #pragma GCC diagnostic pop
 #endif
 
+#if !defined(ETLMON_GNU)
+/// The same value, of which the optimiser knows nothing: read back from memory that it must not
+/// look through.
+template <class T>
+ETLMON_INLINE T opaque(T x) noexcept {
+  const volatile T kept = x;
+  return kept;
+}
+/// The same value. Where gnu.hpp is included, a hint how to keep it, for speed.
+template <class T>
+ETLMON_INLINE T in_register(T x) noexcept {
+  return x;
+}
+ETLMON_INLINE void keep_apart(uint32_t&, uint32_t&, uint32_t&, uint32_t&) noexcept {}
+#endif
+
 /// The bits of a float that arithmetic made. Where NaN and infinity are assumed away, the compiler
 /// is kept from seeing where the bits come from: it must not conclude from the arithmetic what they
 /// cannot be.
@@ -88,22 +93,10 @@ ETLMON_INLINE uint32_t observe(const float& x) noexcept {
   uint32_t bits = 0;
   copy_bytes(&bits, &x, sizeof bits);
 #endif
-#if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-  __asm__("" : "+r"(bits));
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+  bits = opaque(bits);
 #endif
   return bits;
-}
-
-/// The same of a sum that a loop made. On RISC-V g++ would else keep it in an integer register from
-/// the start, and move it to and fro with every addition.
-ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
-#if defined(__GNUC__) && defined(__riscv_flen)
-  uint32_t bits = 0;
-  __asm__("fmv.x.w %0, %1" : "=r"(bits) : "f"(x));
-  return bits;
-#else
-  return observe(x);
-#endif
 }
 
 ETLMON_INLINE float from_bits(uint32_t bits) noexcept {
@@ -126,70 +119,35 @@ ETLMON_INLINE constexpr int32_t ordered(uint32_t bits) noexcept {
 
 /// x, rounded to float32 here: not fused with what follows, not reassociated with it, not assumed
 /// finite.
-ETLMON_INLINE float rounded(float x) noexcept {
-#if defined(__GNUC__) && defined(__SSE__)
-  __asm__("" : "+x"(x));
-#elif defined(__GNUC__) && defined(__aarch64__)
-  __asm__("" : "+w"(x));
-#elif defined(__GNUC__) && defined(__arm__) && defined(__ARM_FP)
-  __asm__("" : "+t"(x));
-#elif defined(__GNUC__) && defined(__riscv_flen)
-  __asm__("" : "+f"(x));
-#elif defined(__GNUC__)
-  __asm__("" : "+m"(x));
+ETLMON_INLINE float rounded(float x) noexcept { return opaque(x); }
+
+/// The bits of a sum that a loop made. It has to be a float until here: g++ for RISC-V would else
+/// keep it in an integer register from the start, and move it to and fro with every addition.
+ETLMON_INLINE uint32_t observe_sum(const float& x) noexcept {
+#if !defined(ETLMON_GNU) || defined(__riscv_flen)
+  return observe(opaque(x));
 #else
-  volatile float kept = x;
-  x = kept;
+  return observe(x);
 #endif
-  return x;
 }
 
+#if !defined(ETLMON_GNU)
 /// Two floats as two that nothing is known of, not even whether they are the same: under
 /// -ffast-math x - x is 0 and x / x is 1, whatever x is.
 ETLMON_INLINE void part(float& x, float& y) noexcept {
-#if defined(__GNUC__) && defined(__SSE__)
-  __asm__("" : "+x"(x), "+x"(y));
-#elif defined(__GNUC__) && defined(__aarch64__)
-  __asm__("" : "+w"(x), "+w"(y));
-#elif defined(__GNUC__) && defined(__arm__) && defined(__ARM_FP)
-  __asm__("" : "+t"(x), "+t"(y));
-#elif defined(__GNUC__) && defined(__riscv_flen)
-  __asm__("" : "+f"(x), "+f"(y));
-#elif defined(__GNUC__)
-  __asm__("" : "+m"(x), "+m"(y));
-#else
-  volatile float kept_x = x, kept_y = y;
-  x = kept_x;
-  y = kept_y;
-#endif
+  x = opaque(x);
+  y = opaque(y);
 }
 
-#if defined(__SSE__) && defined(__has_builtin)
-#if __has_builtin(__builtin_ia32_sqrtss)
-#define ETLMON_HAS_SQRTSS 1
-#endif
-#endif
-
-/// sqrt of a float that is not negative, rounded once. By the instruction on x86, where a compiler
-/// would add a call of the library's for the sake of errno, and with -ffast-math an approximation;
-/// clang does under any name but this.
+/// sqrt of a float that is not negative.
 ETLMON_INLINE float square_root(float x) noexcept {
-#if defined(__clang__) && defined(__SSE__) && defined(__FAST_MATH__)
-#if defined(__AVX__)
-  __asm__("vsqrtss %0, %0, %0" : "+x"(x));
-#else
-  __asm__("sqrtss %0, %0" : "+x"(x));
-#endif
-  return x;
-#elif defined(ETLMON_HAS_SQRTSS)
-  using Four = float __attribute__((vector_size(16)));
-  return __builtin_ia32_sqrtss(Four{x})[0];
-#elif defined(__GNUC__)
+#if defined(__GNUC__)
   return __builtin_sqrtf(x);
 #else
   return sqrtf(x);
 #endif
 }
+#endif
 
 /// atan of a finite float; the library's.
 ETLMON_INLINE float arc_tangent(float x) noexcept {

@@ -12,7 +12,8 @@
 #include "etlmon/version.hpp"
 
 #if !(__cplusplus >= 201703L || (defined(_MSVC_LANG) && _MSVC_LANG >= 201703L))
-#error "etlmon needs C++17: compile with -std=c++17 or later"
+// There is no such file. Of all errors this is the one after which compilers stop.
+#include <etlmon needs C++17: compile with -std=c++17 or later>
 #endif
 
 // 1 where a macro stands for 1, or for version 1.0 of an extension of RISC-V, else 0; four of them
@@ -140,8 +141,8 @@
 #else
 #define ETLMON_BUILD_MATH
 #endif
-#if defined(ETLMON_NO_PACKS)
-#define ETLMON_BUILD_KERNELS _no_packs
+#if defined(ETLMON_PORTABLE)
+#define ETLMON_BUILD_KERNELS _portable
 #elif defined(ETLMON_NO_DISPATCH) || !__STDC_HOSTED__
 #define ETLMON_BUILD_KERNELS _no_dispatch
 #else
@@ -152,3 +153,19 @@
   ETLMON_JOIN(ETLMON_JOIN(v, ETLMON_VERSION_MAJOR, _, ETLMON_VERSION_MINOR, , ),                  \
               ETLMON_BUILD_COMPILER, ETLMON_BUILD_MACHINE, ETLMON_BUILD_SPEED, ETLMON_BUILD_MATH, \
               ETLMON_BUILD_KERNELS)
+
+// ---- How its functions are compiled.
+#if defined(__GNUC__)
+#define ETLMON_INLINE inline __attribute__((always_inline))
+#define ETLMON_COLD __attribute__((noinline, cold))
+#else
+#define ETLMON_INLINE inline
+#define ETLMON_COLD
+#endif
+// What each step calls: where speed counts, part of the caller; where size counts, there once for
+// all callers.
+#if defined(__OPTIMIZE_SIZE__)
+#define ETLMON_STEP inline
+#else
+#define ETLMON_STEP ETLMON_INLINE
+#endif

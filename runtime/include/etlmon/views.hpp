@@ -1,33 +1,21 @@
 // SPDX-License-Identifier: MIT
-// What a user hands to Monitor::step: views of embeddings, flags, and the test of what counts as
-// present. Takes: arrays whose size the compiler checks, bools, floats. Gives: Vector, Flag,
-// kMissing, present(...). Keeps true: a default-constructed input is missing; a sample with an
-// element that is not finite, or a scalar outside its range, counts as missing, decided by bits; a
-// view owns nothing and must not outlive what it views.
+// What a user hands to Monitor::step: views of embeddings, and the test of what counts as present.
+// Takes: arrays whose size the compiler checks. Gives: Vector, Point, finite(...), present(...).
+// Keeps true: a default-constructed view is a missing sample; one with an element that is not
+// finite counts as missing, decided by bits; a view owns nothing and must not outlive what it
+// views.
 #pragma once
 
-#include "etlmon/bits.hpp"
-#include "etlmon/pack.hpp"
+#include "etlmon/scalars.hpp"
+#if defined(ETLMON_VECTORS)
+#include "etlmon/vectors/pack.hpp"
+#endif
 
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
 namespace detail {
 
-template <class A, class B>
-struct Same {
-  static constexpr bool value = false;
-};
-template <class A>
-struct Same<A, A> {
-  static constexpr bool value = true;
-};
-template <bool Condition>
-struct If {};
-template <>
-struct If<true> {
-  using type = int;
-};
 template <class A>
 const A& some() noexcept;
 
@@ -40,6 +28,16 @@ constexpr size_t fixed_size(int, int) noexcept {
 template <class A, size_t N = A::extent>
 constexpr size_t fixed_size(int, long) noexcept {
   return N;
+}
+
+// Whether it is D.
+template <class A, size_t D, typename If<fixed_size<A>(0, 0) == D>::type = 0>
+constexpr bool holds(int) noexcept {
+  return true;
+}
+template <class A, size_t D>
+constexpr bool holds(long) noexcept {
+  return false;
 }
 
 template <class T>
@@ -60,8 +58,15 @@ class Vector {
   /// std::array<T, D>, std::span<T, D> and their like: data() and a size known to the compiler,
   /// which must be D.
   template <class A, class = detail::ReadsAs<T, A>,
-            typename detail::If<detail::fixed_size<A>(0, 0) == D>::type = 0>
+            typename detail::If<detail::holds<A, D>(0)>::type = 0>
   constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
+  // What compilers quote where a std::vector, or another number of elements, is given.
+  // clang-format off
+  template <class A, class = detail::ReadsAs<T, A>, typename detail::If<!detail::holds<A, D>(0)>::type = 0>
+  Vector(const A&) = delete;  // not D elements by its type: Vector::unchecked(x.data()), if x.size() is D
+  template <size_t N, typename detail::If<N != D>::type = 0>
+  Vector(const T (&)[N]) = delete;  // not D elements
+  // clang-format on
   /// A temporary array would be gone before step() reads it.
   template <class A, class = detail::ReadsAs<T, A>, class = decltype(A{}.size())>
   Vector(const A&&) = delete;
@@ -86,66 +91,27 @@ struct Point {
   float elements[D];
 };
 
-/// A bool that may be missing. Only a bool converts to it: an int or a pointer is more often a
-/// mistake than a flag.
-class Flag {
- public:
-  constexpr Flag() noexcept = default;
-  template <class B, typename detail::If<detail::Same<B, bool>::value>::type = 0>
-  constexpr Flag(B on) noexcept : state_(on ? kOn : kOff) {}
-
-  constexpr bool present() const noexcept { return state_ != kNone; }
-  constexpr bool value() const noexcept { return state_ == kOn; }  ///< false where it is missing
-
- private:
-  static constexpr uint8_t kOff = 0, kOn = 1, kNone = 2;
-  uint8_t state_ = kNone;
-};
-
 namespace detail {
 /// Elements of which the compiler does not know where they come from. Where NaN is assumed away it
 /// must not conclude from a choice between a number and a NaN that it was the number.
 ETLMON_INLINE const float* unforeseen(const float* elements) noexcept {
-#if defined(__GNUC__) && defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
-  __asm__("" : "+r"(elements) : : "memory");
+#if defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__
+  elements = opaque(elements);
 #endif
   return elements;
 }
 }  // namespace detail
 
-#if defined(ETLMON_HAS_PACKS)
-namespace detail {
-/// Bits that have their sign set where one of four floats is not finite: one more carries an
-/// exponent of ones into it.
-ETLMON_INLINE PackBits not_finite(const float* x) noexcept {
-  typedef uint32_t PackExponents __attribute__((vector_size(16)));
-  PackExponents bits;
-  copy_bytes(&bits, x, sizeof bits);
-  return reinterpret_cast<PackBits>((bits & kInfinityBits) + 0x00800000u);
-}
-}  // namespace detail
-#endif
-
 /// Every one of n floats is finite.
 ETLMON_INLINE bool finite(const float* x, size_t n) noexcept {
   size_t i = 0;
-  bool all = true;
-#if defined(ETLMON_HAS_PACKS)
-  detail::PackBits a{}, b{}, c{}, d{};
-  for (; i + 16 <= n; i += 16) {
-    a |= detail::not_finite(x + i);
-    b |= detail::not_finite(x + i + 4);
-    c |= detail::not_finite(x + i + 8);
-    d |= detail::not_finite(x + i + 12);
-  }
-  for (; i + 4 <= n; i += 4) a |= detail::not_finite(x + i);
-  a |= b | c | d;
-  all = (a[0] | a[1] | a[2] | a[3]) >= 0;
+#if defined(ETLMON_VECTORS)
+  if (!detail::finite_packs(x, n, i)) return false;
 #endif
   for (; i < n; ++i) {
     if (!is_finite(x[i])) return false;
   }
-  return all;
+  return true;
 }
 
 /// Every one of n float16, given as their IEEE bits, is finite.
@@ -164,23 +130,6 @@ ETLMON_INLINE constexpr bool finite(const int8_t*, size_t) noexcept { return tru
 template <class T, size_t D>
 ETLMON_INLINE bool present(const Vector<T, D>& x) noexcept {
   return x.present() && finite(x.data(), D);
-}
-
-ETLMON_INLINE constexpr bool present(const Flag& x) noexcept { return x.present(); }
-
-/// The scalar; kMissing unless it is finite.
-ETLMON_INLINE float accept(const float& x) noexcept {
-  return detail::from_bits(is_finite(x) ? detail::observe(x) : detail::kMissingBits);
-}
-
-/// The scalar; kMissing unless it is finite and in [low, high]. Either bound may be infinite.
-ETLMON_INLINE float accept(const float& x, const float& low, const float& high) noexcept {
-  constexpr int32_t kMost = static_cast<int32_t>(detail::kInfinityBits) - 1;
-  const int32_t from = detail::ordered(detail::observe(low)),
-                to = detail::ordered(detail::observe(high));
-  const int32_t at = detail::ordered(detail::observe(x));  // of a NaN beyond the infinities
-  const bool inside = (from < -kMost ? -kMost : from) <= at && at <= (to > kMost ? kMost : to);
-  return detail::from_bits(inside ? detail::observe(x) : detail::kMissingBits);
 }
 
 }  // namespace ETLMON_BUILD

@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "etlmon/verdict.hpp"
+#include "etlmon/temporal/verdict.hpp"
 
 namespace harness {
 

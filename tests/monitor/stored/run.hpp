@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "etlmon/verdict.hpp"
+#include "etlmon/temporal/verdict.hpp"
 #include "etlmon/views.hpp"
 
 namespace trial {

@@ -1,7 +1,7 @@
 // A monitor whose targets lie in a file.
 #include <cstdio>
 
-#include "etlmon/mapped_targets.hpp"
+#include "etlmon/distance/mapped_targets.hpp"
 #include "reach.hpp"
 
 int main() {

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// The kernel that runs: best<...>(). Gives: where the machine has vectors, what vectors/ has; else
+// `baseline`, the kernel that measures row after row, element after element. Keeps true: here, and
+// for views.hpp, is where the runtime includes vectors/; firmware without vectors never does.
+#pragma once
+
+#include "etlmon/distance/storage.hpp"
+#include "etlmon/distance/tally.hpp"
+
+#if defined(ETLMON_VECTORS)
+#include "etlmon/vectors/dispatch.hpp"
+#else
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+namespace detail {
+
+#define ETLMON_TARGET
+#define ETLMON_WIDE ETLMON_INLINE
+#if defined(__FP_FAST_FMAF)
+#define ETLMON_FUSED 1
+#endif
+namespace baseline {
+// clang-format off
+#include "etlmon/distance/terms.inc"
+#include "etlmon/distance/rows.inc"
+#include "etlmon/distance/scalars.inc"
+#include "etlmon/distance/run.inc"
+// clang-format on
+}  // namespace baseline
+#undef ETLMON_FUSED
+#undef ETLMON_WIDE
+#undef ETLMON_TARGET
+
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+                               Aggregation aggregation) noexcept {
+  return unpacked(baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
+                                                                         aggregation));
+}
+
+/// 1 / |z|, or 0: inverse_length in run.inc.
+template <class Size>
+ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
+  return baseline::inverse_length_of<Size>(z);
+}
+
+}  // namespace detail
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
+
+#endif
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+namespace detail {
+
+/// The kernel on rows, or columns, of T; on int8 with their scale.
+template <class Metric, class Aggregation, class Size, bool InColumns, class T>
+ETLMON_INLINE Measured best(const float* z, const T* targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+}
+template <class Metric, class Aggregation, class Size, bool InColumns>
+ETLMON_INLINE Measured best(const float* z, ScaledRows targets, const float* weights, Size size,
+                            Aggregation aggregation) noexcept {
+  return best_of<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation);
+}
+
+}  // namespace detail
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: MIT
+// The distances: how their sums are kept and what a sum over all elements means. What one element
+// adds stands in terms.inc, which is compiled once per instruction set. Gives: per distance a
+// struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
+// a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error
+// bounds: error_bounds.hpp. Each struct has
+//   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered
+//   as the distance is Point       what is computed once from z           finish(value)  the
+//   distance k...        what it reads, where it is sound, how great it can be: its range is [0,
+//   kHighest]
+#pragma once
+
+#include "etlmon/bits.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+namespace detail {
+
+/// Sums of squares below this may have lost terms to underflow (to flush to zero under
+/// -ffast-math); they are computed again in scaled form. 2^-80: what a term of D <= 2^20 can lose
+/// is below one rounding of the sum.
+constexpr uint32_t kLeastSquare = 0x17800000u;
+constexpr uint32_t kGreatestSquare =
+    0x71800000u;  ///< 2^100: the reciprocal of the root is a normal float
+constexpr uint32_t kGreatest = 0x7f7fffffu;  ///< FLT_MAX
+
+struct NoPoint {};
+
+/// One running sum, or two.
+template <class V>
+struct Sum {
+  V sum;
+};
+template <class V>
+struct TwoSums {
+  V apart, along;
+};
+
+/// A distance that is a plain sum over elements needs no more than its term.
+struct Additive {
+  template <class V>
+  using Partial = Sum<V>;
+  using Point = NoPoint;
+  static constexpr bool kWeighted = false;   ///< reads one weight per element
+  static constexpr bool kQuadratic = false;  ///< reads D x D weights
+  static constexpr bool kDirection =
+      false;                            ///< of z only the direction counts: z is scaled to length 1
+  static constexpr bool kTold = false;  ///< of the length of z, in the place of weights
+  static constexpr bool kRescales =
+      false;  ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
+  static constexpr bool kSum = true;  ///< a row's value is its sum
+  static constexpr float kHighest = kInfinite;
+  ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
+  ETLMON_INLINE static float finish(float value) noexcept { return value; }
+};
+
+/// z times `scale` has length 1.
+struct UnitPoint {
+  float scale;
+};
+
+// Sums that the kernels need besides the distances.
+struct SquaredLength : Additive {};  ///< sum z^2
+struct Product : Additive {};        ///< sum x g
+
+/// Powers of two: x * down lies in [1, 2) (in [2^-23, 4) at the ends of the range), and up = 1 /
+/// down.
+struct PowerOfTwo {
+  float down, up;
+};
+/// Sum of squares of differences that are scaled first.
+struct ScaledL2Sq : Additive {
+  using Point = PowerOfTwo;
+};
+
+}  // namespace detail
+
+/// sum (z - g)^2
+struct L2Sq : detail::Additive {};
+
+/// sqrt of sum (z - g)^2
+struct L2 : L2Sq {
+  static constexpr bool kRescales = true;
+  ETLMON_INLINE static float finish(float value) noexcept { return detail::square_root(value); }
+};
+
+/// sum |z - g|
+struct L1 : detail::Additive {};
+
+/// max |z - g|
+struct Linf : detail::Additive {};
+
+/// sqrt of sum w (z - g)^2: Mahalanobis distance with a diagonal inverse covariance.
+struct MahalanobisDiagonal : L2 {
+  static constexpr bool kWeighted = true;
+};
+
+/// sqrt of (z - g)^T W (z - g), W symmetric positive definite, D x D. Its sum is run.inc's
+/// quadratic_form.
+struct Mahalanobis : L2 {
+  static constexpr bool kQuadratic = true;
+};
+
+/// 1 - cos(z, g) for a target of length 1, as |u - g|^2 / 2 with u = z / |z|: exact to rounding for
+/// nearly parallel vectors, where 1 - u.g would cancel.
+struct Cosine : detail::Additive {
+  using Point = detail::UnitPoint;
+  static constexpr bool kDirection = true;
+  static constexpr bool kSum = false;
+  static constexpr float kHighest = 2.0f;
+  ETLMON_INLINE static float row(const detail::Sum<float>& s) noexcept {
+    const float half = 0.5f * s.sum;
+    return half < kHighest ? half : kHighest;
+  }
+};
+
+/// The angle between z and a target of length 1, in radians, as 2 atan(|u - g| / |u + g|), u = z /
+/// |z| (Kahan, "How futile are mindless assessments of roundoff", 2006, section 12): no
+/// cancellation near 0 nor near pi.
+struct Angular : detail::Additive {
+  using Point = detail::UnitPoint;
+  static constexpr bool kDirection = true;
+  static constexpr bool kSum = false;
+  static constexpr float kHighest = 3.14159274f;  // the float32 nearest to pi lies above it
+  template <class V>
+  using Partial = detail::TwoSums<V>;
+  /// tan^2 of half the angle. Below 2^-60, |u + g|^2 is 0 but for rounding, and the angle pi.
+  ETLMON_INLINE static float row(const detail::TwoSums<float>& p) noexcept {
+    constexpr float kLeast = 8.67361738e-19f;
+    return p.apart / (p.along > kLeast ? p.along : kLeast);
+  }
+  ETLMON_INLINE static float finish(float value) noexcept {
+    const float angle = 2.0f * detail::arc_tangent(detail::square_root(value));
+    return angle < kHighest ? angle : kHighest;
+  }
+};
+
+namespace detail {
+/// A mean of distances, or an end of an interval around one, that rounding may have carried beyond
+/// the greatest distance. A monitor's bounds are made from the range that the distance has; nothing
+/// may leave it.
+template <class Metric>
+ETLMON_INLINE float capped(float distance) noexcept {
+  if constexpr (Metric::kHighest <= FLT_MAX) {
+    return distance < Metric::kHighest ? distance : Metric::kHighest;
+  } else {
+    return distance;
+  }
+}
+
+/// The same distance where 1 / |z| has been found already.
+template <class Metric>
+struct Told : Metric {
+  static constexpr bool kTold = true;
+};
+}  // namespace detail
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: MIT
+// A distance known within bounds: what measuring a narrow copy of the targets says about the
+// targets themselves. Takes: the distance from z to rows in float16 or int8, and how far the
+// narrowing moved a row. Gives: an interval in which the distance to the float32 rows lies, in real
+// arithmetic and as any build computes it; whether a comparison can be told from it. Keeps true: an
+// interval is never too small, whatever -ffast-math does, and never leaves the distance's range, of
+// which a monitor's bounds are made; where it leaves a comparison open, or the distance is not
+// finite, doubtful() says so, and the float32 rows have to be measured.
+#pragma once
+
+#include "etlmon/distance/aggregate.hpp"
+#include "etlmon/distance/distances.hpp"
+#include "etlmon/scalars.hpp"
+#include "etlmon/temporal/predicate.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// Numbers that a comparison may turn on: all of [low, high]. A threshold is one of a single
+/// number.
+struct Cut {
+  float low, high;
+  constexpr Cut(float at) noexcept : low(at), high(at) {}
+  constexpr Cut(float least, float greatest) noexcept : low(least), high(greatest) {}
+};
+
+/// The distance to the float32 rows lies in [low, high]; `measured` is what is reported.
+struct Enclosed {
+  Measured measured = kUnmeasured;
+  float low = kMissing;
+  float high = kMissing;
+
+  /// Whether some comparison with a number of the cuts might come out otherwise for the float32
+  /// rows. A least normal number is kept clear of them, so that no difference is flushed to zero.
+  template <size_t N>
+  ETLMON_INLINE bool doubtful(const Cut (&cuts)[N]) const noexcept {
+    if (!is_finite(measured.delta) || !is_finite(high)) return true;
+    const Key least = key_of(detail::rounded(low - 2.0f * FLT_MIN));
+    const Key greatest = key_of(detail::rounded(high + 2.0f * FLT_MIN));
+    bool open = false;
+    for (const Cut& cut : cuts) open |= key_of(cut.high) >= least && key_of(cut.low) <= greatest;
+    return open;
+  }
+};
+
+/// A distance that is exact.
+ETLMON_INLINE Enclosed exactly(const Measured& measured) noexcept {
+  Enclosed exact;
+  exact.measured = measured;
+  exact.low = exact.high = measured.delta;
+  return exact;
+}
+
+namespace detail {
+
+/// |computed - exact| <= linear d + root sqrt(d) + constant, for the exact distance d:
+/// error_bounds.hpp in float32, with denormals flushed and two roundings of the interval's ends.
+struct RoundingError {
+  float linear, root, constant;
+  ETLMON_INLINE float at(float distance, float its_root) const noexcept {
+    return linear * distance + root * its_root + constant;
+  }
+};
+
+template <class A, class B>
+constexpr bool is() noexcept {
+  return Same<A, B>::value;
+}
+
+template <class Metric>
+constexpr RoundingError rounding_error(uint32_t dimension) noexcept {
+  const float d = static_cast<float>(dimension);
+  const float lost = (d + 4.0f) * FLT_MIN;
+  if (is<Metric, Linf>()) return {3.0f * FLT_EPSILON, 0.0f, lost};
+  if (is<Metric, L1>()) return {(0.5f * d + 3.0f) * FLT_EPSILON, 0.0f, lost};
+  if (is<Metric, L2Sq>()) return {(0.5f * d + 5.0f) * FLT_EPSILON, 0.0f, lost};
+  if (is<Metric, Cosine>()) {
+    const float length = (0.25f * d + 5.0f) * FLT_EPSILON;
+    return {(0.75f * d + 10.0f) * FLT_EPSILON, 1.5f * FLT_EPSILON, 0.5f * length * length + lost};
+  }
+  if (is<Metric, Angular>()) return {2.0f * FLT_EPSILON, 0.0f, (0.75f * d + 16.0f) * FLT_EPSILON};
+  return {(0.25f * d + 7.0f) * FLT_EPSILON, 0.0f, lost};  // l2 and mahalanobis, diagonal
+}
+
+/// How far a distance d changes where a row moves by `moved`: in the norm of the distance itself,
+/// for l2sq, cosine and angular in the Euclidean one. Triangle inequality; of squares, |a^2 - b^2|
+/// = |a - b| (a + b); cosine is half the square of a chord. Angular is f = 2 atan(a / b) with a =
+/// |u - g|, b = |u + g|, |u| = 1: neither a nor b changes faster than g moves, so |df| = 2 |b da -
+/// a db| / (a^2 + b^2) <= 2 sqrt(2) / sqrt(a^2 + b^2) |dg|, and a^2 + b^2 = 2 + 2 |g|^2 >= 2 + 2 (1
+/// - moved)^2 all the way from a g of length 1: at most 2 / sqrt(1 + (3/4)^2) = 1.6 times as much
+/// as g moves up to 1/4; beyond, nothing is claimed.
+///
+/// Rounding leaves u with a length off by s <= (D / 4 + 5) FLT_EPSILON. An angle changes by 2 s |g|
+/// / (1 + |g|^2) at most, no more than for |g| = 1. |u - g|^2 / 2 changes by s (d + (1 - |g|^2) /
+/// 2): what cosine's bound lacks for rows of other lengths is length_error().
+template <class Metric>
+ETLMON_INLINE float length_error(float moved, uint32_t dimension) noexcept {
+  if (!is<Metric, Cosine>()) return 0.0f;
+  return moved * (1.0f + 0.5f * moved) * (0.25f * static_cast<float>(dimension) + 5.0f) *
+         FLT_EPSILON;
+}
+template <class Metric>
+ETLMON_INLINE float change(float moved, float its_root) noexcept {
+  if (is<Metric, L2Sq>()) return moved * (2.0f * its_root + moved);
+  if (is<Metric, Cosine>()) return moved * (1.41421366f * its_root + 0.5f * moved);
+  if (is<Metric, Angular>()) return moved <= 0.25f ? 1.6f * moved : 4.0f;
+  return moved;
+}
+
+}  // namespace detail
+
+/// What `narrow`, measured on rows of which none moved by more than `moved`, says about the rows.
+/// `dimension` of the rows; `averaged`: how many rows a mean is over, 0 for other aggregations (all
+/// are monotonic in every row's distance, and the bounds are concave in it, so what holds of rows
+/// holds of the aggregate).
+template <class Metric>
+ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dimension,
+                               uint32_t averaged = 0) noexcept {
+  static_assert(!Metric::kQuadratic,
+                "what rounding does to a full quadratic form depends on the point");
+  constexpr float kSlack =
+      1.0001f;  // of the arithmetic below, each operation of which is off by 4 roundings at most
+  Enclosed result;
+  result.measured = narrow;
+  // Nothing below may overflow: -ffast-math lets a compiler take what does for anything at all.
+  constexpr float kGreatestDelta = 1.3e36f, kGreatestMove = 1.1e18f;
+  if (!is_finite(narrow.delta) || narrow.delta > kGreatestDelta || moved > kGreatestMove)
+    return result;
+  detail::RoundingError error = detail::rounding_error<Metric>(dimension);
+  error.constant += detail::length_error<Metric>(moved, dimension);
+  if (averaged > 0) {
+    error.linear += (0.5f * static_cast<float>(averaged) + 3.0f) * FLT_EPSILON;
+    error.constant += static_cast<float>(averaged) * FLT_MIN;
+  }
+  if (!(error.linear < 0.5f)) return result;
+  const float rest = 1.0f / (1.0f - error.linear);
+  // The exact distance to the narrow rows is at most `distance`, the solution of d - error(d) =
+  // delta.
+  float root = 0.0f, distance = (narrow.delta + error.constant) * rest;
+  if (detail::is<Metric, Cosine>() || detail::is<Metric, L2Sq>()) {
+    root = (detail::square_root(narrow.delta + error.constant) + error.root) * rest;
+    distance = root * root;
+  }
+  const float changed = detail::change<Metric>(moved, root);
+  float root_there = 0.0f;
+  if (detail::is<Metric, Cosine>()) root_there = detail::square_root(distance + changed);
+  const float off = detail::rounded(
+      (changed + error.at(distance, root) + error.at(distance + changed, root_there)) * kSlack);
+  result.low = detail::rounded(narrow.delta - off);
+  if (!(key_of(result.low) > 0)) result.low = 0.0f;
+  result.high = detail::capped<Metric>(detail::rounded(narrow.delta + off));
+  return result;
+}
+
+/// The robustness of delta <= epsilon and delta < epsilon, with what is left open about delta.
+ETLMON_INLINE Value at_most(const Enclosed& delta, const float& epsilon, Value range) noexcept {
+  if (is_nan(delta.measured.delta)) return range;
+  return between(detail::rounded(epsilon - delta.high), detail::rounded(epsilon - delta.low));
+}
+
+/// The robustness of delta >= epsilon and delta > epsilon, with what is left open about delta.
+ETLMON_INLINE Value at_least(const Enclosed& delta, const float& epsilon, Value range) noexcept {
+  if (is_nan(delta.measured.delta)) return range;
+  return between(detail::rounded(delta.low - epsilon), detail::rounded(delta.high - epsilon));
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

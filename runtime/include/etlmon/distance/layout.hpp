@@ -1,0 +1,147 @@
+// SPDX-License-Identifier: MIT
+// In which order the elements of a row are added, and where a target set is better kept column by
+// column. Takes: K rows of D elements. Gives: order(K, D), in_columns(K, D), the set in columns,
+// made by the compiler. Keeps true: both depend on K and D alone, so the kernel with constant sizes
+// and the one with sizes known at run time compute the same sums; all rows of a set are added in
+// the same order, so equal rows have equal distances.
+#pragma once
+
+#include "etlmon/bits.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+namespace detail {
+
+#if defined(ETLMON_VECTORS)
+constexpr bool kHasVectors = true;
+#else
+constexpr bool kHasVectors = false;
+#endif
+
+constexpr uint32_t kLanes = 16;        ///< floats of the widest vector
+constexpr uint32_t kRowsTogether = 4;  ///< rows that are read at once where there are no vectors
+
+enum class Order : uint8_t {
+  sequential,  ///< element after element, into one sum
+  lanes,       ///< element i into sum i mod 16
+  two_chunks,  ///< element i into sum i mod 32: one or two rows alone are too few sums to hide an
+               ///< addition's latency
+  four_chunks  ///< element i into sum i mod 64; and for sets beyond the first-level cache, which
+               ///< are read in one stream
+};
+
+/// Rows of a column, with vectors: K, and copies of the last row up to whole vectors.
+constexpr uint32_t column_length(uint32_t K) noexcept { return (K + kLanes - 1) / kLanes * kLanes; }
+
+/// Many short rows: with a row in each lane no sum over lanes is needed. Without vectors, four rows
+/// or more: four are read in one stream. The limit keeps what the compiler has to evaluate within
+/// its default limits.
+constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
+  constexpr uint32_t kMost = 16384;
+  if (!kHasVectors) return K >= kRowsTogether && K <= kMost / D;
+  const bool short_rows = (D < kLanes && K > 4) || (D <= 4 * kLanes && K >= 2 * kLanes);
+  return short_rows && K <= kMost && column_length(K) <= kMost / D;
+}
+
+constexpr Order order(uint32_t K, uint32_t D) noexcept {
+  if (!kHasVectors || D < kLanes || in_columns(K, D)) return Order::sequential;
+  constexpr uint32_t kCached = 1u << 14;  // 64 KiB
+  if (K == 1 || K > kCached / D) return Order::four_chunks;
+  return K == 2 ? Order::two_chunks : Order::lanes;
+}
+
+/// Where the first element of row k is in columns of K rows, and how far the next is from it. With
+/// vectors the whole set is one block of columns; without, every four rows are, and what is left
+/// over stays in rows.
+struct Place {
+  size_t first, stride;
+};
+constexpr Place place_in_columns(uint32_t k, uint32_t K, uint32_t D) noexcept {
+  if (kHasVectors) return {k, column_length(K)};
+  const uint32_t in_four = k % kRowsTogether, four = k - in_four;
+  if (four + kRowsTogether > K) return {size_t{k} * D, 1};
+  return {size_t{four} * D + in_four, kRowsTogether};
+}
+
+/// A target set, element by element.
+template <uint32_t K, uint32_t D, class T = float>
+struct Columns {
+  static constexpr uint32_t kRows = kHasVectors ? column_length(K) : K;
+  alignas(64) T values[D * kRows];
+};
+
+template <uint32_t K, uint32_t D, class T>
+constexpr void put_in_columns(const T* rows, Columns<K, D, T>& columns) noexcept {
+  for (uint32_t k = 0; k < columns.kRows; ++k) {
+    const Place place = place_in_columns(k, K, D);
+    const T* row = rows + (k < K ? k : K - 1) * D;
+    for (uint32_t i = 0; i < D; ++i) columns.values[place.first + i * place.stride] = row[i];
+  }
+}
+
+template <uint32_t K, uint32_t D, class T>
+constexpr Columns<K, D, T> columns_of(const T (&rows)[K * D]) noexcept {
+  Columns<K, D, T> columns{};
+  put_in_columns(rows, columns);
+  return columns;
+}
+
+/// The columns of a set that is a constant of the program.
+template <uint32_t K, uint32_t D, const auto& Rows>
+struct ColumnsOf {
+  static constexpr auto kColumns = columns_of<K, D>(Rows);
+};
+
+/// Sizes known to the compiler, and sizes known at run time. stride(): floats from a row to the
+/// next.
+template <uint32_t K, uint32_t D>
+struct Fixed {
+  static constexpr uint32_t rows() noexcept { return K; }
+  static constexpr uint32_t dimension() noexcept { return D; }
+  static constexpr uint32_t stride() noexcept { return D; }
+  static constexpr bool may_be(Order which) noexcept { return order(K, D) == which; }
+  /// Rows shorter than a vector, never added up in lanes.
+  static constexpr bool is_short() noexcept { return D < kLanes; }
+  /// Too few elements for vectors of 64 bytes to gain anything; of directions: their distances
+  /// begin with |z|.
+  static constexpr bool is_small(bool of_directions) noexcept {
+    return !in_columns(K, D) && (D < 2 * kLanes || uint64_t{K} * D <= (of_directions ? 256 : 64));
+  }
+  /// Whether a tile of R rows occurs where tiles have `most` rows, then half of that, and so on.
+  static constexpr bool has_tile(uint32_t R, uint32_t most) noexcept {
+    return R == most ? K >= R : (K & R) != 0;
+  }
+  /// Of a row in blocks of C vectors of kLanes: whether there are such blocks, how many vectors
+  /// follow at most, and whether less than one is left.
+  static constexpr bool has_blocks(uint32_t C) noexcept { return D >= C * kLanes; }
+  static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return D / kLanes % C; }
+  static constexpr bool has_rest() noexcept { return D % kLanes != 0; }
+};
+/// Rows that begin at multiples of 64 bytes, as in a file of targets.
+constexpr uint32_t padded(uint32_t D) noexcept { return (D + kLanes - 1) / kLanes * kLanes; }
+template <uint32_t K, uint32_t D>
+struct Padded : Fixed<K, D> {
+  static constexpr uint32_t stride() noexcept { return padded(D); }
+};
+struct Sizes {
+  uint32_t K, D;
+  constexpr uint32_t rows() const noexcept { return K; }
+  constexpr uint32_t dimension() const noexcept { return D; }
+  constexpr uint32_t stride() const noexcept { return D; }
+  static constexpr bool may_be(Order) noexcept { return true; }
+  static constexpr bool is_short() noexcept { return false; }
+  static constexpr bool is_small(bool) noexcept { return false; }
+  static constexpr bool has_tile(uint32_t, uint32_t) noexcept { return true; }
+  static constexpr bool has_blocks(uint32_t) noexcept { return true; }
+  static constexpr uint32_t vectors_after_blocks(uint32_t C) noexcept { return C - 1; }
+  static constexpr bool has_rest() noexcept { return true; }
+};
+/// One row of a set of which only is_short() is known to the compiler.
+template <bool Short>
+struct RowSize : Sizes {
+  static constexpr bool is_short() noexcept { return Short; }
+};
+
+}  // namespace detail
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

@@ -1,0 +1,243 @@
+// SPDX-License-Identifier: MIT
+// The same distances where squares, or a sum of distances, leave the range of float32: huge, tiny,
+// or exactly zero. Takes: what kernel.hpp takes. Gives: distances computed from differences scaled
+// by a power of two, one row at a time. Keeps true: a distance that float32 can represent does not
+// overflow on the way, a tiny one does not vanish on the way, and a vector of zeros has no
+// direction. Kept out of line, one function for every K and D.
+#pragma once
+
+#include "etlmon/distance/best.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+namespace detail {
+
+ETLMON_INLINE PowerOfTwo power_of_two(uint32_t bits_of_x) noexcept {
+  uint32_t exponent = bits_of_x >> 23;
+  exponent = exponent < 1 ? 1 : exponent > 253 ? 253 : exponent;
+  return {from_bits((254 - exponent) << 23), from_bits(exponent << 23)};
+}
+
+template <class G>
+ETLMON_INLINE uint32_t greatest_magnitude(G x, uint32_t n) noexcept {
+  uint32_t greatest = 0;
+  for (uint32_t i = 0; i < n; ++i) {
+    const uint32_t bits = observe(element(x, i)) & ~kSignBit;
+    greatest = bits > greatest ? bits : greatest;
+  }
+  return greatest;
+}
+
+/// Bits of |z - g|. Short, here and below: of rows that Size::is_short() says.
+template <bool Short>
+class RescaledL2 {
+ public:
+  RescaledL2(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+
+  template <class G>
+  uint32_t row(G g) const noexcept {
+    const uint32_t greatest =
+        observe(baseline::one_row<Linf>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
+    if (greatest == 0 || greatest >= kInfinityBits) return greatest;
+    const PowerOfTwo power = power_of_two(greatest);
+    const float square =
+        baseline::one_row<ScaledL2Sq>(power, z_, g, z_, RowSize<Short>{{1, dimension_}});
+    return observe(rounded(rounded(square_root(square)) * power.up));
+  }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+};
+
+/// Bits of sqrt((z - g)^T W (z - g)); W a diagonal or full. With s = sqrt(diag W) and a = s (z -
+/// g), every |W_ij / (s_i s_j)| <= 1 (W is positive definite), so scaling a by its largest element
+/// bounds every term.
+template <class Metric>
+class RescaledRoot {
+ public:
+  RescaledRoot(const float* z, const float* weights, uint32_t dimension) noexcept
+      : z_(z), weights_(weights), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+
+  template <class G>
+  uint32_t row(G g) const noexcept {
+    constexpr uint32_t kQuarterOfMost =
+        0x7e800000u;  // 2^126: differences of larger elements may overflow
+    const uint32_t size_z = greatest_magnitude(z_, dimension_),
+                   size_g = greatest_magnitude(g, dimension_);
+    const float half = size_z >= kQuarterOfMost || size_g >= kQuarterOfMost ? 0.5f : 1.0f;
+
+    uint32_t greatest = 0;
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      const uint32_t bits = observe(rounded(difference(g, i, half) * stretch(i))) & ~kSignBit;
+      greatest = bits > greatest ? bits : greatest;
+    }
+    if (greatest == 0 || greatest >= kInfinityBits) return greatest;
+
+    const PowerOfTwo power = power_of_two(greatest);
+    float sum = 0.0f;
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      const float a = rounded(rounded(difference(g, i, half) * stretch(i)) * power.down);
+      sum += a * (Metric::kQuadratic ? weighted(g, i, half, power.down) : a);
+    }
+    const float square = sum > 0.0f ? sum : 0.0f;
+    return observe(rounded(rounded(square_root(square) * power.up) / half));
+  }
+
+ private:
+  template <class G>
+  float difference(G g, uint32_t i, float half) const noexcept {
+    return rounded(rounded(z_[i] * half) - rounded(element(g, i) * half));
+  }
+  float stretch(uint32_t i) const noexcept {
+    return square_root(weights_[Metric::kQuadratic ? static_cast<size_t>(i) * dimension_ + i : i]);
+  }
+  /// Element i of W (z - g) / s_i, scaled.
+  template <class G>
+  float weighted(G g, uint32_t i, float half, float down) const noexcept {
+    const float* row = weights_ + static_cast<size_t>(i) * dimension_;
+    const float s = stretch(i);
+    if (!(s > 0.0f)) return 0.0f;
+    float sum = 0.0f;
+    for (uint32_t j = 0; j < dimension_; ++j) {
+      sum += rounded(rounded(row[j] / s) * rounded(difference(g, j, half) * down));
+    }
+    return sum;
+  }
+
+  const float* z_;
+  const float* weights_;
+  uint32_t dimension_;
+};
+
+/// Bits of cosine and angular distance for a z whose squared length is out of range: z is scaled
+/// first, then to length 1.
+template <class Metric>
+class RescaledDirection {
+ public:
+  RescaledDirection(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {
+    const uint32_t greatest = greatest_magnitude(z, dimension);
+    if (greatest == 0) return;
+    down_ = power_of_two(greatest).down;
+    float square = 0.0f;
+    for (uint32_t i = 0; i < dimension; ++i) {
+      const float x = rounded(z[i] * down_);
+      square += x * x;
+    }
+    known_ = (observe(square) & kInfinityBits) !=
+             0;  // zero also where the denormals of z were flushed to zero
+    point_.scale = known_ ? 1.0f / square_root(square) : 0.0f;
+  }
+  bool known() const noexcept { return known_; }
+
+  template <class G>
+  uint32_t row(G g) const noexcept {
+    typename Metric::template Partial<float> sums{};
+    for (uint32_t i = 0; i < dimension_; ++i) {
+      baseline::accumulate(Metric{}, sums, point_, baseline::at(point_, rounded(z_[i] * down_)),
+                           element(g, i), 0.0f);
+    }
+    return observe(Metric::finish(Metric::row(sums)));
+  }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+  float down_ = 1.0f;
+  bool known_ = false;
+  UnitPoint point_{};
+};
+
+/// Bits of a distance that needs no scaling itself; only the mean over its rows does.
+template <class Metric, bool Short>
+class Unscaled {
+ public:
+  Unscaled(const float* z, const float*, uint32_t dimension) noexcept
+      : z_(z), dimension_(dimension) {}
+  static constexpr bool known() noexcept { return true; }
+  template <class G>
+  uint32_t row(G g) const noexcept {
+    return observe(baseline::one_row<Metric>({}, z_, g, z_, RowSize<Short>{{1, dimension_}}));
+  }
+
+ private:
+  const float* z_;
+  uint32_t dimension_;
+};
+
+template <bool First, class A, class B>
+struct Choose {
+  using Type = A;
+};
+template <class A, class B>
+struct Choose<false, A, B> {
+  using Type = B;
+};
+template <class Metric, bool Short>
+using RescaledSquare = typename Choose<Metric::kWeighted || Metric::kQuadratic,
+                                       RescaledRoot<Metric>, RescaledL2<Short>>::Type;
+template <class Metric, bool Short>
+using RescaledOrNot = typename Choose<Metric::kRescales, RescaledSquare<Metric, Short>,
+                                      Unscaled<Metric, Short>>::Type;
+template <class Metric, bool Short>
+using Rescaled = typename Choose<Metric::kDirection, RescaledDirection<Metric>,
+                                 RescaledOrNot<Metric, Short>>::Type;
+
+template <class Metric, bool Short, class Aggregation, bool InColumns, class G>
+MeasuredBits measure_rescaled(const float* z, const Set<InColumns, G>& set, const float* weights,
+                              Aggregation aggregation) noexcept {
+  const Rescaled<Metric, Short> distance(z, weights, set.dimension);
+  if (!distance.known()) return packed(kUnmeasured);
+  Nearest nearest;
+  typename Set<InColumns, G>::Buffer buffer;
+  for (uint32_t row = 0; row < set.rows; ++row) {
+    const uint32_t bits = distance.row(set.row(row, buffer));
+    nearest.add(bits, row);
+    if constexpr (Aggregation::kOfDistances) {
+      aggregation.add(rounded(from_bits(bits) /
+                              static_cast<float>(set.rows)));  // so that the sum cannot overflow
+    } else {
+      aggregation.add(bits);
+    }
+  }
+  if constexpr (Aggregation::kOfDistances) {
+    return packed(observe(capped<Metric>(aggregation.result(1))), nearest.row);
+  } else {
+    return packed(aggregation.result(nearest), nearest.row);
+  }
+}
+
+/// z is row k of the set, element by element.
+template <bool Short, bool InColumns, class G>
+ETLMON_INLINE bool is_row(const float* z, const Set<InColumns, G>& set, uint32_t k) noexcept {
+  typename Set<InColumns, G>::Buffer buffer;
+  const auto row = set.row(k, buffer);
+  if ((observe(z[0] - element(row, 0)) & ~kSignBit) != 0) return false;  // most rows end here
+  return observe(baseline::one_row<Linf>({}, z, row, z, RowSize<Short>{{1, set.dimension}})) == 0;
+}
+
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+MeasuredBits measure_again(const float* z, G targets, const float* weights, Size size,
+                           Aggregation aggregation) noexcept {
+  if (z == nullptr || !all_finite(z, size.dimension())) return packed(kUnmeasured);
+  const Set<InColumns, G> set{targets, size.rows(), size.dimension(), size.stride()};
+  if constexpr (Metric::kRescales && Aggregation::kNearest) {
+    for (uint32_t row = 0; row < set.rows; ++row) {
+      if (is_row<Size::is_short()>(z, set, row)) return packed({0.0f, row});
+    }
+  }
+  return measure_rescaled<Metric, Size::is_short()>(z, set, weights, aggregation);
+}
+
+template <bool Short, bool InColumns, class G>
+bool is_equal(const float* z, const Set<InColumns, G>& set, uint32_t row) noexcept {
+  return is_row<Short>(z, set, row);
+}
+
+}  // namespace detail
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

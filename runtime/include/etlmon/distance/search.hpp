@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// min over a large target set without measuring all of it at every step: Search<K, D>, a member of
+// the monitor. Takes: z and rows that begin at multiples of 64 bytes. Gives: what measure_stored
+// gives, bit for bit, nearest row and ties included. How: the row that was nearest before comes
+// first. Blocks of 64 rows are remembered with their least value as seen from an anchor; those that
+// cannot have come near enough since (reach.hpp) are left out. When that has cost as much as
+// measuring all rows once, all are measured and z becomes the anchor. Rows whose first quarter is
+// too far already are not read to their end. Keeps true: a step measures no more than all rows and
+// two more.
+#pragma once
+
+#include "etlmon/distance/reach.hpp"
+#include "etlmon/distance/targets.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// Whether a search knows this distance and saves work: else measure_stored.
+template <class Metric>
+constexpr bool searches(uint32_t rows) noexcept {
+  return detail::Reach<Metric>::kKnown && rows >= 256;
+}
+
+#if !defined(ETLMON_VECTORS)
+namespace detail {
+
+#define ETLMON_TARGET
+#define ETLMON_WIDE ETLMON_INLINE
+namespace baseline {
+// clang-format off
+#include "etlmon/distance/search.inc"
+// clang-format on
+}  // namespace baseline
+#undef ETLMON_WIDE
+#undef ETLMON_TARGET
+
+template <class Metric, class Size>
+ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView state) noexcept {
+  return unpacked(baseline::search<Metric, Size>(z, rows, state));
+}
+
+}  // namespace detail
+#endif
+
+/// What is remembered of one set between steps.
+template <uint32_t K, uint32_t D>
+class Search {
+ public:
+  void reset() noexcept {
+    nearest_ = 0;
+    measured_ = detail::blocks_of(K);
+  }
+  /// `rows`: K rows of D elements, each at a multiple of 64 bytes; the same ones since reset().
+  template <class Metric>
+  Measured nearest(const float* z, const float* rows) noexcept {
+    return detail::best_search<Metric, detail::Padded<K, D>>(
+        z, rows, {anchor_, least_, &nearest_, &measured_});
+  }
+
+ private:
+  float anchor_[D];
+  uint32_t least_[detail::blocks_of(K)];
+  uint32_t nearest_;
+  uint32_t measured_;
+};
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

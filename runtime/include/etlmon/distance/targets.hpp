@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: MIT
+// Target sets that lie beside the program: the bytes of a file NAME.targets.bin, mapped or linked
+// in. Takes: bytes at a multiple of 64, which must stay as they are while a monitor uses them.
+// Gives: Targets, which says whether they are the ones that the monitor was made with. Keeps true:
+// rows are handed out only where size and checksum are right; a Targets of one file is another type
+// than that of any other.
+#pragma once
+
+#include "etlmon/distance/checksum.hpp"
+#include "etlmon/distance/kernel.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// What is known of a file of targets.
+enum class TargetsState : uint8_t {
+  ready,
+  absent,         ///< there are no bytes
+  misaligned,     ///< they do not begin at a multiple of 64
+  wrong_size,     ///< another file, or a truncated one
+  wrong_checksum  ///< another file of that size, or a damaged one
+};
+
+inline const char* words(TargetsState state) noexcept {
+  switch (state) {
+    case TargetsState::ready:
+      return "ready";
+    case TargetsState::absent:
+      return "there are no targets";
+    case TargetsState::misaligned:
+      return "the targets do not begin at a multiple of 64 bytes";
+    case TargetsState::wrong_size:
+      return "the targets have another size than those that the monitor was made with";
+    case TargetsState::wrong_checksum:
+      break;
+  }
+  return "the targets are not those that the monitor was made with, or are damaged";
+}
+
+/// The bytes of the file with this size and this XXH64. It owns nothing: what it views must outlive
+/// the monitors that take it.
+template <uint64_t Size, uint64_t Xxh64>
+class Targets {
+ public:
+  static constexpr uint64_t kSize = Size;    ///< in bytes, a multiple of 64
+  static constexpr uint64_t kXxh64 = Xxh64;  ///< of all of them
+
+  constexpr Targets() noexcept = default;
+  /// Reads all bytes once, for the checksum.
+  Targets(const uint8_t* bytes, size_t size) noexcept : state_(check(bytes, size)) {
+    if (ready()) rows_ = reinterpret_cast<const float*>(reinterpret_cast<uintptr_t>(bytes));
+  }
+
+  bool ready() const noexcept { return state_ == TargetsState::ready; }
+  TargetsState state() const noexcept { return state_; }
+  /// The first row; nullptr where they are not ready.
+  const float* rows() const noexcept { return rows_; }
+
+ private:
+  static_assert(Size % 64 == 0, "rows begin at multiples of 64");
+#if defined(__BYTE_ORDER__) && __BYTE_ORDER__ != __ORDER_LITTLE_ENDIAN__
+  static_assert(Size == 0, "the numbers in the file are little-endian, this machine's are not");
+#endif
+
+  static TargetsState check(const uint8_t* bytes, size_t size) noexcept {
+    if (bytes == nullptr) return TargetsState::absent;
+    if (size != Size) return TargetsState::wrong_size;
+    if (reinterpret_cast<uintptr_t>(bytes) % 64 != 0) return TargetsState::misaligned;
+    Checksum checksum;
+    checksum.add(bytes, size);
+    return checksum.value() == Xxh64 ? TargetsState::ready : TargetsState::wrong_checksum;
+  }
+
+  const float* rows_ = nullptr;
+  TargetsState state_ = TargetsState::absent;
+};
+
+/// The size of a class of `bytes` bytes in 32-bit words, with a pointer among its members.
+constexpr size_t with_pointer(size_t bytes) noexcept {
+  return (bytes + 2 * sizeof(void*) - 1) / sizeof(void*) * sizeof(void*);
+}
+
+/// measure() for rows that each begin at a multiple of 64 bytes; the same bits.
+template <class Metric, class Aggregation, uint32_t K, uint32_t D>
+ETLMON_INLINE Measured measure_stored(const float* z, const float* rows,
+                                      const float* weights = nullptr) noexcept {
+  return detail::best<Metric, Aggregation, detail::Padded<K, D>, false>(z, rows, weights, {}, {});
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: MIT
+// What a Boolean monitor answers after a step.
+// Takes: truth values at the end of a step. Gives: the status that follows from them. Keeps true: a
+// BooleanVerdict is one byte on every target, and undecided unless made by one of the two functions
+// below.
+#pragma once
+
+#include <stdint.h>
+
+#include "etlmon/temporal/truth.hpp"
+#include "etlmon/temporal/verdict.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// The answer of a Boolean monitor: the same questions, no numbers.
+struct BooleanVerdict : Answers<BooleanVerdict> {
+  uint8_t status = 0;  ///< bits of Answers
+};
+
+static_assert(sizeof(BooleanVerdict) == 1, "a Boolean verdict is its status");
+
+inline BooleanVerdict prefix_verdict(Truth holds, bool surely, bool perhaps) noexcept {
+  const unsigned satisfied = holds.low ? BooleanVerdict::kSatisfied : 0u;
+  const unsigned violated = holds.high ? 0u : BooleanVerdict::kViolated;
+  const unsigned settled = surely || !perhaps ? BooleanVerdict::kFinal : 0u;
+  return {{}, static_cast<uint8_t>(satisfied | violated | settled | BooleanVerdict::kDecided)};
+}
+
+inline BooleanVerdict sliding_verdict(Truth holds) noexcept {
+  return prefix_verdict(holds, true, true);
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

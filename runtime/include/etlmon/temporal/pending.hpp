@@ -1,0 +1,220 @@
+// SPDX-License-Identifier: MIT
+// Formulas at the last positions of a prefix, whose windows still reach past its end.
+// Takes: readings of the operands at n positions, oldest first, the last one being the present.
+// Gives: readings of the formula there, by the definitions of robustness and of the bounds, every
+// window cut at the present. Keeps true: position p tells exactly what rho and the bounds of the
+// operator are there on this prefix; the work is at most n times the window. R: Reading or
+// BasicReading<Truth>.
+#pragma once
+
+#include <stdint.h>
+
+#include "etlmon/temporal/machine.hpp"
+#include "etlmon/temporal/reading.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// The last N values of a stream.
+template <class V, uint32_t N>
+class Recent {
+ public:
+  void reset() noexcept { next_ = 0; }
+
+  void push(V value) noexcept {
+    values_[next_] = value;
+    next_ = next_ + 1 == N ? 0 : next_ + 1;
+  }
+
+  /// The last n <= N, oldest first, as readings of settled values.
+  void list(BasicReading<V>* out, uint32_t n) const noexcept {
+    uint32_t at = next_ >= n ? next_ - n : next_ + N - n;
+    for (uint32_t p = 0; p < n; ++p) {
+      out[p] = settled(values_[at]);
+      at = at + 1 == N ? 0 : at + 1;
+    }
+  }
+
+ private:
+  uint32_t next_;
+  V values_[N];
+};
+
+namespace detail {
+/// A parameter that follows the others' type: nullptr may stand for it.
+template <class T>
+struct As {
+  using Type = T;
+};
+}  // namespace detail
+
+/// The two senses of a future operator. F and U seek: the best over a window, and beyond its end
+/// something better may come.
+struct Seeking {
+  template <class V>
+  static constexpr V gain(V a, V b) noexcept {
+    return max_of(a, b);
+  }
+  template <class V>
+  static constexpr V keep(V a, V b) noexcept {
+    return min_of(a, b);
+  }
+  template <class V>
+  static constexpr V nothing() noexcept {
+    return Lattice<V>::bottom();
+  }
+  template <class V>
+  static constexpr V all() noexcept {
+    return Lattice<V>::top();
+  }
+  /// The bound that what is unseen moves.
+  template <class R>
+  static constexpr auto& open_end(R& reading) noexcept {
+    return reading.upper;
+  }
+};
+
+/// G and R guard: the dual.
+struct Guarding {
+  template <class V>
+  static constexpr V gain(V a, V b) noexcept {
+    return min_of(a, b);
+  }
+  template <class V>
+  static constexpr V keep(V a, V b) noexcept {
+    return max_of(a, b);
+  }
+  template <class V>
+  static constexpr V nothing() noexcept {
+    return Lattice<V>::top();
+  }
+  template <class V>
+  static constexpr V all() noexcept {
+    return Lattice<V>::bottom();
+  }
+  template <class R>
+  static constexpr auto& open_end(R& reading) noexcept {
+    return reading.lower;
+  }
+};
+
+/// The upper bound of a window without one.
+constexpr uint32_t kWithoutEnd = 0xffffffffu;
+
+/// One past the last position of a window up to `high`, cut at the present.
+constexpr uint32_t window_end(uint32_t from, uint32_t high, uint32_t n) noexcept {
+  return high < n - from ? from + high + 1 : n;
+}
+
+template <class R>
+void pending_and(const R* f, const R* g, R* out, uint32_t n) noexcept {
+  for (uint32_t p = 0; p < n; ++p) out[p] = min_of(f[p], g[p]);
+}
+
+template <class R>
+void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
+  for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
+}
+
+/// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
+/// and G. unseen: the highest, or lowest, unseen value of g.
+template <class Sense, class R, class End>
+void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n,
+                     uint32_t low, uint32_t high, End unseen) noexcept {
+  for (uint32_t p = 0; p < n; ++p) {
+    R best = Sense::template nothing<R>();
+    R held = Sense::template all<R>();
+    const uint32_t end = window_end(p, high, n);
+    for (uint32_t j = p; j < end; ++j) {
+      if (j - p >= low) best = Sense::gain(best, Sense::keep(held, g[j]));
+      if (f != nullptr) held = Sense::keep(held, f[j]);
+    }
+    auto& open = Sense::open_end(best);
+    if (high >= n - p) open = Sense::gain(open, Sense::keep(Sense::open_end(held), unseen));
+    out[p] = best;
+  }
+}
+
+/// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,
+/// the last at `step`. best and held: the operator and its left side up to the last settled
+/// position; both are moved on by one.
+template <class Sense, class V, class End>
+BasicReading<V> pending_from_start(V& best, V& held,
+                                   const typename detail::As<BasicReading<V>>::Type* f,
+                                   const BasicReading<V>* g, uint32_t n, uint32_t step,
+                                   uint32_t horizon, uint32_t low, uint32_t high,
+                                   End unseen) noexcept {
+  const auto open = [&](uint32_t position) { return low <= position && position <= high; };
+  uint32_t p = 0;
+  uint32_t position = step + 1 - n;
+  if (step >= horizon) {
+    if (open(position)) best = Sense::gain(best, Sense::keep(held, g[0].rho));
+    if (f != nullptr) held = Sense::keep(held, f[0].rho);
+    ++p;
+    ++position;
+  }
+  BasicReading<V> result = settled(best);
+  BasicReading<V> left = settled(held);
+  for (; p < n; ++p, ++position) {
+    if (open(position)) result = Sense::gain(result, Sense::keep(left, g[p]));
+    if (f != nullptr) left = Sense::keep(left, f[p]);
+  }
+  auto& end = Sense::open_end(result);
+  if (high == kWithoutEnd || step < high)
+    end = Sense::gain(end, Sense::keep(Sense::open_end(left), unseen));
+  return result;
+}
+
+/// A state machine whose guards are settled some steps late. guards: n rows of `width`, the first
+/// one settled where `settles`; scratch: 2 * states readings; settled_guards: width + states
+/// values. Its registers are moved on by the settled row.
+template <class V, class End>
+BasicReading<V> pending_machine(V* registers, uint32_t states, const BasicReading<V>* guards,
+                                uint32_t width, uint32_t n, bool settles,
+                                const Transition* transitions, const uint32_t* ends,
+                                const Owed* owed, const End* weak, const End* strong,
+                                BasicReading<V>* scratch, V* settled_guards) noexcept {
+  BasicReading<V>* now = scratch;
+  BasicReading<V>* next = scratch + states;
+  if (settles) {
+    for (uint32_t g = 0; g < width; ++g) settled_guards[g] = guards[g].rho;
+    V* moved = settled_guards + width;
+    machine_advance(registers, moved, states, transitions, ends, settled_guards);
+    for (uint32_t q = 0; q < states; ++q) registers[q] = moved[q];
+  }
+  for (uint32_t q = 0; q < states; ++q) now[q] = settled(registers[q]);
+  for (uint32_t p = settles ? 1 : 0; p < n; ++p) {
+    machine_advance(now, next, states, transitions, ends, guards + p * width);
+    BasicReading<V>* const other = now;
+    now = next;
+    next = other;
+  }
+  return machine_read(now, states, owed, weak, strong);
+}
+
+/// Its registers, with room on the stack for the rest.
+template <class V, uint32_t States, uint32_t Width>
+class PendingMachine {
+  using End = typename Lattice<V>::End;
+
+ public:
+  void reset() noexcept {
+    for (uint32_t q = 0; q < States; ++q)
+      registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
+  }
+
+  BasicReading<V> read(const BasicReading<V> (*guards)[Width], uint32_t n, bool settles,
+                       const Transition* transitions, const uint32_t* ends, const Owed* owed,
+                       const End* weak, const End* strong) noexcept {
+    BasicReading<V> scratch[2 * States];
+    V values[Width + States];
+    return pending_machine(registers_, States, guards[0], Width, n, settles, transitions, ends,
+                           owed, weak, strong, scratch, values);
+  }
+
+ private:
+  V registers_[States];
+};
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: MIT
+// Truth inside a Boolean monitor: what is known of a yes or no, in two bits.
+// Takes: comparisons. Gives: a value type with which the temporal operators and machines work as
+// they do with robustness: min is "and", max is "or". Keeps true: low implies high; where nothing
+// is missing the two are equal.
+#pragma once
+
+#include "etlmon/bits.hpp"
+#include "etlmon/scalars.hpp"
+#include "etlmon/temporal/value.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+struct Truth {
+  bool low : 1;   ///< surely true
+  bool high : 1;  ///< perhaps true
+};
+static_assert(sizeof(Truth) == 1, "two bits in a byte");
+
+constexpr Truth kYes{true, true};
+constexpr Truth kNo{false, false};
+constexpr Truth kPerhaps{false, true};  ///< a sample is missing
+
+constexpr Truth min_of(Truth a, Truth b) noexcept { return {a.low && b.low, a.high && b.high}; }
+constexpr Truth max_of(Truth a, Truth b) noexcept { return {a.low || b.low, a.high || b.high}; }
+constexpr Truth negate(Truth a) noexcept { return {!a.high, !a.low}; }
+
+template <>
+struct Lattice<bool> {
+  using End = bool;
+  static constexpr bool bottom() noexcept { return false; }
+  static constexpr bool top() noexcept { return true; }
+};
+
+template <>
+struct Lattice<Truth> {
+  using End = bool;
+  static constexpr Truth bottom() noexcept { return kNo; }
+  static constexpr Truth top() noexcept { return kYes; }
+};
+
+constexpr Truth truth_of(bool yes) noexcept { return yes ? kYes : kNo; }
+constexpr Truth truth_of(Flag flag) noexcept {
+  return flag.present() ? truth_of(flag.value()) : kPerhaps;
+}
+
+/// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is
+/// unknown: `range`, all that it may come to.
+ETLMON_INLINE Truth is_at_most(const float& delta, const float& epsilon,
+                               Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) <= key_of(epsilon));
+}
+ETLMON_INLINE Truth is_below(const float& delta, const float& epsilon,
+                             Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) < key_of(epsilon));
+}
+ETLMON_INLINE Truth is_at_least(const float& delta, const float& epsilon,
+                                Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) >= key_of(epsilon));
+}
+ETLMON_INLINE Truth is_above(const float& delta, const float& epsilon,
+                             Truth range = kPerhaps) noexcept {
+  return is_nan(delta) ? range : truth_of(key_of(delta) > key_of(epsilon));
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

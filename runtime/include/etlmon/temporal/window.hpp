@@ -1,0 +1,251 @@
+// SPDX-License-Identifier: MIT
+// Sliding aggregates: the combination of the last N elements of a stream, for any monoid, in
+// constant time a step. Takes: one element a step. Gives: combine(oldest, ..., newest) over the
+// last N; identity stands before the first. Keeps true: at most window_operations(N) combinations
+// in any step, whatever the history; state N + 2 elements.
+//
+// The method cuts the stream into blocks of N / 2 (rounded down), so that the window is always
+//     a suffix of the oldest block  |  the middle block, whole  |  a prefix of the newest block
+// and, where N is odd, the newest block may be whole too. The suffix is read from a table, the
+// other two are running totals. The table for the middle block, which is the next oldest, is built
+// in place from its end while the newest block fills, one entry a step: it is complete when it is
+// due. The oldest block is given up from its front at the pace at which the newest grows, so these
+// two share their slots, and the next entry to build mirrors the next slot to fill. (Suffix and
+// prefix tables: van Herk 1992, Gil and Werman 1993; half-blocks keep a step from building a whole
+// table.)
+#pragma once
+
+#include <stdint.h>
+
+#include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/monoid.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
+constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{1}) + 2; }
+
+/// The most combinations that any step of a window over the last n >= 1 performs. Long runs reach
+/// it.
+constexpr uint32_t window_operations(uint32_t n) noexcept { return n == 1 ? 0 : n < 4 ? n : 4; }
+
+/// Empties a window: storage of window_elements(n).
+template <class Monoid>
+void window_reset(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n) noexcept {
+  cursor = 0;
+  for (uint32_t i = 0; i < window_elements(n); ++i) storage[i] = Monoid::identity();
+}
+
+/// oldest, middle and newest of a window together, in the order that is cheaper.
+template <class Monoid>
+constexpr typename Monoid::Element window_total(typename Monoid::Element oldest,
+                                                typename Monoid::Element middle,
+                                                typename Monoid::Element newest) noexcept {
+  return Monoid::kNewestLast ? Monoid::combine(Monoid::combine(oldest, middle), newest)
+                             : Monoid::combine(oldest, Monoid::combine(middle, newest));
+}
+
+/// One step of a window over the last n >= 1 elements: the combination of those, this one included.
+/// storage: window_elements(n) elements that window_reset prepared; cursor: the slot of the ring
+/// that this step fills.
+template <class Monoid>
+ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* storage,
+                                                 uint32_t& cursor, uint32_t n,
+                                                 typename Monoid::Element element) noexcept {
+  using Element = typename Monoid::Element;
+  if (n == 1) return element;
+  const bool odd = n % 2 != 0;
+  const uint32_t slots = n & ~uint32_t{1};
+  Element& middle = storage[0];
+  Element& newest = storage[1];
+  Element* ring = storage + 2;
+
+  const uint32_t at = cursor;
+  const Element total = Monoid::combine(newest, element);
+  Element aggregate = total;
+  if (odd)
+    aggregate =
+        window_total<Monoid>(ring[at], middle, total);  // the slot's suffix, before it is filled
+  ring[at] = element;
+  uint32_t next = at + 1;
+  if (n < 4 || next == slots / 2 ||
+      next == slots) {  // the newest block is full: every block is one older from here
+    if (next == slots) next = 0;
+    middle = total;
+    newest = Monoid::identity();
+    if (!odd) aggregate = Monoid::combine(ring[next], total);
+  } else {
+    newest = total;
+    ring[slots - 1 - next] = Monoid::combine(ring[slots - 1 - next], ring[slots - next]);
+    if (!odd) aggregate = window_total<Monoid>(ring[next], middle, total);
+  }
+  cursor = next;
+  return aggregate;
+}
+
+/// The aggregate of the last N elements. Monoid::Element: trivially copyable, alignment at most 4.
+template <class Monoid, uint32_t N>
+class Window {
+  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+  static_assert(alignof(typename Monoid::Element) <= alignof(uint32_t),
+                "the cursor comes first, without padding");
+
+ public:
+  using Element = typename Monoid::Element;
+
+  /// Forgets all elements; time proportional to N.
+  void reset() noexcept { window_reset<Monoid>(storage_, cursor_, N); }
+
+  /// Takes this step's element, gives the combination of the last N, oldest first.
+  Element push(Element element) noexcept {
+    return window_push<Monoid>(storage_, cursor_, N, element);
+  }
+
+ private:
+  uint32_t cursor_;
+  Element storage_[window_elements(N)];
+};
+
+/// Where the highs of a window over pairs part from its lows: per block the first slot whose ends
+/// differ, kNowhere where all are the same. From that slot on the block's elements, in the oldest
+/// block its whole suffix table, stand among the highs; before it, and in the other blocks, the
+/// lows are the highs too.
+struct Parting {
+  static constexpr uint32_t kNowhere = 0xffffffffu;
+  uint32_t newest, middle, oldest;
+
+  void reset() noexcept { newest = middle = oldest = kNowhere; }
+  bool nowhere() const noexcept { return (newest & middle & oldest) == kNowhere; }
+  /// The newest block is full: every block is one older.
+  void next_block() noexcept {
+    oldest = middle == kNowhere ? kNowhere : 0;
+    middle = newest;
+    newest = kNowhere;
+  }
+};
+
+/// The highs' step of a window over pairs of keys, where they part from the lows; to be done before
+/// the lows' step. Both storages as in window_push; step by step the same, but for what is still
+/// read among the lows.
+template <class Ends>
+typename Ends::Element window_push_highs(const typename Ends::Element* lows,
+                                         typename Ends::Element* highs, Parting& parting,
+                                         uint32_t cursor, uint32_t n,
+                                         typename Ends::Element element, bool parts) noexcept {
+  using Element = typename Ends::Element;
+  constexpr uint32_t kNowhere = Parting::kNowhere;
+  const bool odd = n % 2 != 0;
+  const uint32_t slots = n & ~uint32_t{1};
+  const auto suffix = [&](uint32_t slot) noexcept {
+    return (parting.oldest == kNowhere ? lows : highs)[2 + slot];
+  };
+  const auto middle = [&]() noexcept { return (parting.middle == kNowhere ? lows : highs)[0]; };
+
+  const Element total = Ends::combine((parting.newest == kNowhere ? lows : highs)[1], element);
+  if (parts && parting.newest == kNowhere) parting.newest = cursor;
+  Element aggregate = total;
+  if (odd) aggregate = window_total<Ends>(suffix(cursor), middle(), total);
+  highs[2 + cursor] = element;
+  uint32_t next = cursor + 1;
+  if (n < 4 || next == slots / 2 || next == slots) {
+    if (next == slots) next = 0;
+    highs[0] = total;
+    parting.next_block();
+    if (!odd) aggregate = Ends::combine(suffix(next), total);
+  } else {
+    highs[1] = total;
+    const uint32_t built = slots - 1 - next;
+    if (parting.middle != kNowhere)
+      highs[2 + built] =
+          Ends::combine((built < parting.middle ? lows : highs)[2 + built], highs[3 + built]);
+    if (!odd) aggregate = window_total<Ends>(suffix(next), middle(), total);
+  }
+  return aggregate;
+}
+
+/// Over pairs of keys. The lows and the highs never meet: these are two windows. While no sample in
+/// them is missing they are the same window twice, and only that of the lows is kept up.
+template <template <class> class Operator, uint32_t N>
+class Window<Operator<Value>, N> {
+ public:
+  using Element = typename Operator<Value>::Element;
+
+  void reset() noexcept {
+    window_reset<Ends>(lows_, cursor_, N);
+    parting_.reset();
+  }
+
+  ETLMON_STEP Element push(Element element) noexcept {
+    if (N == 1) return element;
+    if (!same_ends(element) || !parting_.nowhere())
+      return push_apart(low_of(element), high_of(element));
+    const EndElement both = window_push<Ends>(lows_, cursor_, N, low_of(element));
+    return pair_of(both, both);
+  }
+
+ private:
+  using Ends = Operator<Key>;
+  using EndElement = typename Ends::Element;
+
+  ETLMON_COLD Element push_apart(EndElement low, EndElement high) noexcept {
+    const bool parts = !same_ends(pair_of(low, high));
+    const EndElement highs =
+        window_push_highs<Ends>(lows_, highs_, parting_, cursor_, N, high, parts);
+    return pair_of(window_push<Ends>(lows_, cursor_, N, low), highs);
+  }
+
+  uint32_t cursor_;
+  Parting parting_;
+  EndElement lows_[window_elements(N)];
+  EndElement highs_[window_elements(N)];  ///< written before they are read
+};
+
+/// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one
+/// combination and a delay by N - M instead of a second window, where several windows watch one
+/// signal. Only for operators whose segments may overlap.
+template <class Monoid, uint32_t M, uint32_t N>
+class Widening {
+  static_assert(M < N && N - M <= M, "the two shorter windows must meet");
+  static_assert(Monoid::kMayOverlap, "an element that both windows hold would count twice");
+
+ public:
+  using Element = typename Monoid::Element;
+
+  /// Forgets all elements; time proportional to N - M.
+  void reset() noexcept { past_.reset(Monoid::identity()); }
+
+  /// Takes this step's aggregate of the last M, gives that of the last N.
+  ETLMON_STEP Element push(Element aggregate) noexcept {
+    return Monoid::combine(past_.push(aggregate), aggregate);
+  }
+
+ private:
+  Delay<Element, N - M> past_;
+};
+
+template <class Monoid>
+struct WindowBytes {
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    return storage_bytes(window_elements(n) *
+                         static_cast<uint32_t>(sizeof(typename Monoid::Element)));
+  }
+};
+
+template <template <class> class Operator>
+struct WindowBytes<Operator<Value>> {
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    using Element = typename Operator<Key>::Element;
+    return storage_bytes(2 * window_elements(n) * static_cast<uint32_t>(sizeof(Element))) +
+           static_cast<uint32_t>(sizeof(Parting));
+  }
+};
+
+/// sizeof(Window<Monoid, n>).
+template <class Monoid>
+constexpr uint32_t window_bytes(uint32_t n) noexcept {
+  return WindowBytes<Monoid>::of(n);
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon

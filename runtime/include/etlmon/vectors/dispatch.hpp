@@ -1,0 +1,105 @@
+// SPDX-License-Identifier: MIT
+// Which version of the kernel runs: the best that the CPU and the operating system have.
+// Gives: best_of(...), a call of that version's run(...), and the like of what else there is a
+// version of. Keeps true: no version runs on a CPU, or under an operating system, that lacks it;
+// nothing is written at run time: the compiler's own library (__cpu_model of libgcc or compiler-rt)
+// asks the CPU before main(). Without dispatch, under ETLMON_NO_DISPATCH too, a plain call.
+#pragma once
+
+#include "etlmon/vectors/versions.hpp"
+
+#if defined(ETLMON_VECTORS)
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+namespace detail {
+
+#if defined(ETLMON_DISPATCH)
+/// The x86-64 level of the CPU as far as the kernels use it: 1, 3 (AVX2 and FMA; no CPU has these
+/// without F16C) or 4 (AVX-512 F, VL, BW, DQ).
+ETLMON_INLINE uint32_t x86_64_level() noexcept {
+  if (!__builtin_cpu_supports("avx2") || !__builtin_cpu_supports("fma")) return 1;
+  const bool wide = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512vl") &&
+                    __builtin_cpu_supports("avx512bw") && __builtin_cpu_supports("avx512dq");
+  return wide ? 4 : 3;
+}
+#endif
+
+/// The kernel. Small sets have no third version.
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE MeasuredBits best_run(const float* z, G targets, const float* weights, Size size,
+                                    Aggregation aggregation) noexcept {
+#if defined(ETLMON_DISPATCH)
+  const uint32_t level = x86_64_level();
+  if constexpr (!Size::is_small(Metric::kDirection)) {
+    if (level >= 4) {
+      return x86_64_v4::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
+                                                                     aggregation);
+    }
+  }
+  if (level >= 3) {
+    return x86_64_v3::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
+                                                                   aggregation);
+  }
+#endif
+  return baseline::run<Metric, Aggregation, Size, InColumns, G>(z, targets, weights, size,
+                                                                aggregation);
+}
+template <class Metric, class Aggregation, class Size, bool InColumns, class G>
+ETLMON_INLINE Measured best_of(const float* z, G targets, const float* weights, Size size,
+                               Aggregation aggregation) noexcept {
+  return unpacked(
+      best_run<Metric, Aggregation, Size, InColumns>(z, targets, weights, size, aggregation));
+}
+
+/// 1 / |z|, or 0: inverse_length in run.inc.
+template <class Size>
+ETLMON_INLINE float best_inverse_length(const float* z) noexcept {
+#if defined(ETLMON_DISPATCH)
+  const uint32_t level = x86_64_level();
+  if constexpr (!Size::is_small(true)) {
+    if (level >= 4) return x86_64_v4::inverse_length_of<Size>(z);
+  }
+  if (level >= 3) return x86_64_v3::inverse_length_of<Size>(z);
+#endif
+  return baseline::inverse_length_of<Size>(z);
+}
+
+/// The values of rows, for dynamic.hpp.
+template <class Metric, class G>
+bool best_row_values(const float* z, G targets, const float* weights, uint32_t row, uint32_t end,
+                     Sizes size, float* values) noexcept {
+#if defined(ETLMON_DISPATCH)
+  const uint32_t level = x86_64_level();
+  if (level >= 4) return x86_64_v4::row_values<Metric>(z, targets, weights, row, end, size, values);
+  if (level >= 3) return x86_64_v3::row_values<Metric>(z, targets, weights, row, end, size, values);
+#endif
+  return baseline::row_values<Metric>(z, targets, weights, row, end, size, values);
+}
+
+/// The search in a large set.
+template <class Metric, class Size>
+ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView state) noexcept {
+#if defined(ETLMON_DISPATCH)
+  const uint32_t level = x86_64_level();
+  if (level >= 4) return unpacked(x86_64_v4::search<Metric, Size>(z, rows, state));
+  if (level >= 3) return unpacked(x86_64_v3::search<Metric, Size>(z, rows, state));
+#endif
+  return unpacked(baseline::search<Metric, Size>(z, rows, state));
+}
+
+/// n elements as float32. Few do without vectors of 64 bytes.
+template <class G>
+ETLMON_INLINE void best_widen(G from, float* to, uint32_t n) noexcept {
+#if defined(ETLMON_DISPATCH)
+  const uint32_t level = x86_64_level();
+  if (level >= 4 && n > 4 * kLanes) return x86_64_v4::widen(from, to, n);
+  if (level >= 3) return x86_64_v3::widen(from, to, n);
+#endif
+  baseline::widen(from, to, n);
+}
+
+}  // namespace detail
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
+
+#endif
