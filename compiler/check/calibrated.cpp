@@ -18,7 +18,7 @@ using diag::Code;
 struct Method {
     std::string_view name;
     ThresholdOrigin origin;
-    std::vector<std::string_view> arguments;
+    std::vector<std::string> arguments;
 };
 
 const std::vector<Method>& methods() {
@@ -31,26 +31,16 @@ const std::vector<Method>& methods() {
     return all;
 }
 
-/// "alpha, gamma, lo or hi"
-std::string listed(const std::vector<std::string_view>& words) {
-    std::string text;
-    for (std::size_t i = 0; i < words.size(); ++i) {
-        if (i > 0) text += i + 1 < words.size() ? ", " : " or ";
-        text += words[i];
-    }
-    return text;
-}
-
 const Method* find_method(Context& c, const ast::Name& name) {
-    std::vector<std::string_view> names;
+    std::vector<std::string> names;
     for (const Method& method : methods()) {
         if (method.name == name.text) return &method;
-        names.push_back(method.name);
+        names.emplace_back(method.name);
     }
-    auto& error = c.report(
-        Code::unknown_method, name.span,
-        fmt::format("'{}' is not a calibration method; expected {}", name.text, listed(names)));
-    if (const auto near = diag::nearest_name(name.text, {names.begin(), names.end()}))
+    auto& error = c.report(Code::unknown_method, name.span,
+                           fmt::format("'{}' is not a calibration method; expected {}", name.text,
+                                       diag::alternatives(names)));
+    if (const auto near = diag::nearest_name(name.text, names))
         error.note(fmt::format("did you mean '{}'?", *near));
     return nullptr;
 }
@@ -80,7 +70,7 @@ bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& met
             c.report(Code::calibration_argument, argument.key.span,
                      known.empty() ? fmt::format("{} has no arguments", method.name)
                                    : fmt::format("{} has no argument '{}'; expected {}",
-                                                 method.name, key, listed(known)));
+                                                 method.name, key, diag::alternatives(known)));
         else if (!given.insert(key).second)
             c.report(Code::calibration_argument, argument.key.span,
                      fmt::format("{} is given twice", key));

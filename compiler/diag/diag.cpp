@@ -28,6 +28,12 @@ Diagnostic& Sink::report(Diagnostic diagnostic) {
     return diagnostics_.emplace_back(std::move(diagnostic));
 }
 
+void Sink::drop_warnings_of_spec() {
+    std::erase_if(diagnostics_, [this](const Diagnostic& found) {
+        return severity(found) == Severity::warning && found.file.empty();
+    });
+}
+
 std::vector<Diagnostic> Sink::sorted() const {
     std::vector<Diagnostic> result = diagnostics_;
     // Stable, so that what a stage found at one place stays in the order in which it was found. A
@@ -42,6 +48,15 @@ std::vector<Diagnostic> Sink::sorted() const {
         return place(a) < place(b);
     });
     return result;
+}
+
+std::string alternatives(const std::vector<std::string>& words) {
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) text += i + 1 < words.size() ? ", " : " or ";
+        text += words[i];
+    }
+    return text;
 }
 
 }  // namespace etlc::diag

@@ -68,6 +68,10 @@ public:
     Diagnostic& report(Code code, source::Span span, std::string message);
     Diagnostic& report(Diagnostic diagnostic);
 
+    /// What was found in the spec and is no error, is not told: for commands that use a spec, of
+    /// which `etlc SPEC --check` tells it. Warnings that are errors stay.
+    void drop_warnings_of_spec();
+
     bool has_errors() const { return errors_ > 0; }
     /// Warnings count as what -Werror makes of them.
     Severity severity(const Diagnostic& found) const {
@@ -119,5 +123,8 @@ private:
 /// The candidate nearest to `name` by edit distance, where one is near enough to be meant.
 std::optional<std::string> nearest_name(std::string_view name,
                                         const std::vector<std::string>& candidates);
+
+/// What may stand at a place: "f32, f16 or i8".
+std::string alternatives(const std::vector<std::string>& words);
 
 }  // namespace etlc::diag

@@ -17,6 +17,7 @@
 #include "driver/compile.hpp"
 #include "driver/evaluate.hpp"
 #include "driver/names.hpp"
+#include "driver/options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
@@ -65,9 +66,11 @@ bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
     return static_cast<bool>(text);
 }
 
+enum class SpecWarnings : std::uint8_t { told, dropped };
+
 /// Reads the spec and does `work` with it; the exit status.
 template <class Work>
-int with_spec(const Call& call, const Work& work) {
+int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
     const bool warnings_are_errors = !call.warnings.empty();
     diag::Sink sink(warnings_are_errors);
     source::File file;
@@ -83,6 +86,7 @@ int with_spec(const Call& call, const Work& work) {
     } catch (const std::length_error&) {
         report_lack();
     }
+    if (of_spec == SpecWarnings::dropped) sink.drop_warnings_of_spec();
     return conclude(call, file, sink);
 }
 
@@ -90,10 +94,16 @@ void add_spec_options(CLI::App& app, Call& call) {
     app.add_option("spec", call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
     app.add_option("-W", call.warnings, "-Werror: warnings are errors")
         ->type_name("error")
-        ->check(CLI::IsMember({"error"}));
+        ->check(driver::one_of({"error"}));
     app.add_option("--diagnostics", call.diagnostics, "how to print them")
-        ->check(CLI::IsMember({"text", "json"}))
+        ->type_name("")
+        ->check(driver::one_of({"text", "json"}))
         ->capture_default_str();
+}
+
+void add_limit(CLI::App& app, const std::string& name, std::uint64_t& limit,
+               const std::string& help) {
+    driver::add_number(app, name, limit, help)->default_str(std::to_string(limit));
 }
 
 void add_common_options(CLI::App& app, Call& call) {
@@ -102,31 +112,21 @@ void add_common_options(CLI::App& app, Call& call) {
            "--thresholds", call.request.check.thresholds_path,
            "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
-    app.add_option("--values", call.request.values,
-                   "what monitors compute with; boolean: truth values, and only what can still "
-                   "change a verdict")
-        ->transform(CLI::CheckedTransformer(std::map<std::string, check::Values>{
-                                                {"robustness", check::Values::robustness},
-                                                {"boolean", check::Values::boolean}})
-                        .description("robustness|boolean"))
-        ->default_str("robustness");
-    app.add_option("--targets-as", call.request.targets_as,
-                   "how target sets are stored for measuring; what that leaves open is measured in "
-                   "float32 as well")
-        ->transform(CLI::CheckedTransformer(
-                        std::map<std::string, plan::Storage>{{"f32", plan::Storage::f32},
-                                                             {"f16", plan::Storage::f16},
-                                                             {"i8", plan::Storage::i8}})
-                        .description("f32|f16|i8"))
-        ->default_str("f32");
-    app.add_option("--max-state", call.request.limits.state_bytes, "most bytes of state")
-        ->capture_default_str();
-    app.add_option("--max-code", call.request.limits.code_bytes,
-                   "most bytes of code, estimated, targets aside")
-        ->capture_default_str();
-    app.add_option("--max-work", call.request.limits.operations,
-                   "most operations of the temporal part a step")
-        ->capture_default_str();
+    driver::add_choice<check::Values>(
+        app, "--values", call.request.values,
+        {{"robustness", check::Values::robustness}, {"boolean", check::Values::boolean}},
+        "what monitors compute with; boolean: truth values, and only what can still change a "
+        "verdict");
+    driver::add_choice<plan::Storage>(
+        app, "--targets-as", call.request.targets_as,
+        {{"f32", plan::Storage::f32}, {"f16", plan::Storage::f16}, {"i8", plan::Storage::i8}},
+        "how target sets are stored for measuring; what that leaves open is measured in float32 "
+        "as well");
+    add_limit(app, "--max-state", call.request.limits.state_bytes, "most bytes of state");
+    add_limit(app, "--max-code", call.request.limits.code_bytes,
+              "most bytes of code, estimated, targets aside");
+    add_limit(app, "--max-work", call.request.limits.operations,
+              "most operations of the temporal part a step");
 }
 
 /// Why the generated code cannot be in this namespace, a or a::b; empty where it can.
@@ -163,8 +163,8 @@ void add_compile_options(CLI::App& app, Call& call) {
         ->type_name("FILE");
     app.add_flag("--check", call.check_only, "diagnostics only");
     app.add_option("--emit", call.request.emit, emit_help())
-        ->check(CLI::IsMember(stages))
-        ->type_name("STAGE");
+        ->type_name("")
+        ->check(driver::one_of(stages));
     app.add_flag("--standalone{portable}", call.request.standalone,
                  "paste the runtime in: one file to copy into firmware, in standard C++ alone; "
                  "--standalone=host: with vectors, chosen by the CPU where there is a choice")
@@ -174,11 +174,9 @@ void add_compile_options(CLI::App& app, Call& call) {
         ->type_name("NAME")
         ->check(
             CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
-    app.add_option("--inline-targets", call.request.limits.inline_target_bytes,
-                   "target sets of more bytes are not spelled out in the header, but go to a file "
-                   "beside it")
-        ->type_name("BYTES")
-        ->capture_default_str();
+    add_limit(app, "--inline-targets", call.request.limits.inline_target_bytes,
+              "target sets of more bytes are not spelled out in the header, but go to a file "
+              "beside it");
     app.add_option("--targets-file", call.output.targets,
                    "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to "
                    "it); named, it is "
@@ -254,9 +252,8 @@ void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::str
         ->required();
     app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")
         ->type_name("PATTERN");
-    app.add_option("-j,--jobs", jobs, "threads (default: as many as the machine has)")
-        ->type_name("N")
-        ->check(CLI::Range(1U, 1024U));
+    driver::add_number(app, "-j,--jobs", jobs, "threads (default: as many as the machine has)", 1,
+                       1024);
 }
 
 /// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check
@@ -286,7 +283,7 @@ int compile_command(int argc, char** argv) {
         return complain(app, mistake);
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+    return with_spec(call, SpecWarnings::told, [&](const source::File& file, diag::Sink& sink) {
         const auto output = driver::emit(file, call.request, sink);
         if (output && !sink.refused() && !call.check_only)
             driver::write_output(call.output, file, *output, sink);
@@ -312,7 +309,7 @@ int run_command(int argc, char** argv) {
     app.add_flag("--finish", call.run.finish,
                  "after the trace, also report the last positions of sliding monitors");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
     });
@@ -338,9 +335,10 @@ int calibrate_command(int argc, char** argv) {
                    "that these thresholds have not seen")
         ->type_name("FILE");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {  //
-        driver::calibrate(file, call.calibrate, sink);
-    });
+    return with_spec(call, SpecWarnings::dropped,
+                     [&](const source::File& file, diag::Sink& sink) {  //
+                         driver::calibrate(file, call.calibrate, sink);
+                     });
 }
 
 int evaluate_command(int argc, char** argv) {
@@ -358,7 +356,7 @@ int evaluate_command(int argc, char** argv) {
     app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")
         ->type_name("FILE");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    return with_spec(call, [&](const source::File& file, diag::Sink& sink) {
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         driver::evaluate(file, call.request, call.evaluate, sink);
     });
 }

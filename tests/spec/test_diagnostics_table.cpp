@@ -48,6 +48,10 @@ Status 1 means that the spec or its data are wrong, that memory is too short, or
 output or of the diagnostics could not be written.
 Warnings leave it at 0, unless `-Werror` is given.
 
+Warnings about the spec come from `etlc SPEC.etl`, with `--check` or when it makes a header.
+`run`, `calibrate` and `evaluate` use a spec many times and tell only what is wrong with the data,
+unless `-Werror` is given.
+
 Close standard error (`2>&-`) to get no diagnostics.
 When nobody reads standard output any more (`etlc run ... | head`), SIGPIPE ends etlc as it ends
 other tools: the shell says 141.

@@ -1,0 +1,40 @@
+#include "driver/options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <limits>
+
+#include "data/quote.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::driver {
+
+std::string mistake_in_word(const std::string& found, const std::vector<std::string>& expected) {
+    if (std::find(expected.begin(), expected.end(), found) != expected.end()) return "";
+    const auto meant = diag::nearest_name(found, expected);
+    return fmt::format("found {}, expected {}{}", data::in_quotes(found),
+                       diag::alternatives(expected),
+                       meant ? fmt::format("; did you mean '{}'?", *meant) : "");
+}
+
+std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most) {
+    std::uint64_t number = 0;
+    const char* end = found.data() + found.size();
+    const auto [stop, error] = std::from_chars(found.data(), end, number);
+    if (error == std::errc() && stop == end && least <= number && number <= most) return "";
+    const bool bounded = most < std::numeric_limits<std::uint64_t>::max();
+    return fmt::format("found {}, expected a whole number from {}{}", data::in_quotes(found), least,
+                       bounded ? fmt::format(" to {}", most) : "");
+}
+
+CLI::Validator one_of(std::vector<std::string> words) {
+    const std::string form = fmt::format("{}", fmt::join(words, "|"));
+    return CLI::Validator(
+        [words = std::move(words)](std::string& found) { return mistake_in_word(found, words); },
+        form);
+}
+
+}  // namespace etlc::driver

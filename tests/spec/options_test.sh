@@ -1,0 +1,57 @@
+#!/usr/bin/env bash
+# options_test.sh ETLC: what options take and how they refuse the rest; which commands tell the
+# warnings of a spec.
+set -euo pipefail
+etlc=$1
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+fail() { echo "FAILED: $*"; exit 1; }
+
+cat >t.etl <<'END'
+spec t;
+input x, unused : f32;
+monitor m = F x > 0.5;
+END
+printf 'x\n1\n' >t.csv
+
+# refuses MESSAGE ARGUMENT...: exit status 2, and MESSAGE after the name of the option.
+refuses() {
+    local status=0
+    "$etlc" "${@:2}" >out.txt 2>err.txt || status=$?
+    [ "$status" = 2 ] || fail "${*:2}: exit status $status"
+    head -1 err.txt | grep -qxF "etlc: $1" || fail "${*:2}: $(head -1 err.txt)"
+}
+refuses "--values: found 'bool', expected robustness or boolean" t.etl --check --values bool
+refuses "--values: found 'bolean', expected robustness or boolean; did you mean 'boolean'?" \
+    t.etl --check --values bolean
+refuses "--values: found '0', expected robustness or boolean" t.etl --check --values 0
+refuses "--targets-as: found 'f8', expected f32, f16 or i8; did you mean 'i8'?" \
+    run t.etl --trace t.csv --targets-as f8
+refuses "--emit: found 'hp', expected ast, graph, plan, hpp, dot or report; did you mean 'hpp'?" \
+    t.etl --emit hp
+refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
+refuses "-W: found 'all', expected error" t.etl --check -Wall
+for option in --max-state --max-code --max-work --inline-targets; do
+    for number in -1 1e3 0x10 ' 8' 1.5 99999999999999999999 ten; do
+        refuses "$option: found '$number', expected a whole number from 0" \
+            t.etl --check "$option=$number"
+    done
+    "$etlc" t.etl --check "$option" 1000000 2>err.txt || fail "$option 1000000: $(cat err.txt)"
+done
+for number in 0 -1 1025 all; do
+    refuses "--jobs: found '$number', expected a whole number from 1 to 1024" \
+        evaluate t.etl --data t.csv "--jobs=$number"
+done
+"$etlc" t.etl --values boolean -o boolean.hpp 2>err.txt || fail "$(cat err.txt)"
+"$etlc" t.etl --values robustness -o robustness.hpp 2>err.txt || fail "$(cat err.txt)"
+! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"
+"$etlc" t.etl -o usual.hpp 2>err.txt && cmp usual.hpp robustness.hpp
+
+# Warnings of the spec belong to those who write it.
+"$etlc" t.etl --check 2>err.txt
+grep -q W0201 err.txt || fail "--check does not warn"
+"$etlc" run t.etl --trace t.csv >out.txt 2>err.txt
+[ ! -s err.txt ] || fail "run repeats the warnings of the spec: $(cat err.txt)"
+if "$etlc" run t.etl --trace t.csv -Werror >out.txt 2>err.txt; then fail "run -Werror"; fi
+grep -q W0201 err.txt || fail "run -Werror does not say why"
