@@ -51,7 +51,7 @@ struct VectorLiteral {
     Span span;
 };
 
-/// W of mahalanobis(W): loaded, a literal matrix or diagonal, or the name of a target.
+/// M of mahalanobis(M): loaded, a literal matrix or diagonal, or the name of a target.
 using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Name>;
 
 struct Aggregation {

@@ -1,4 +1,4 @@
-// The weights of mahalanobis(W): a symmetric positive definite matrix, the inverse of a covariance.
+// The weights of mahalanobis(M): a symmetric positive definite matrix, the inverse of a covariance.
 // Takes: a loaded or literal matrix or diagonal, or a target's name. Gives: float32 weights as
 // Distance keeps them. Keeps true: a full matrix is exactly symmetric and has a Cholesky factor; a
 // diagonal is positive.

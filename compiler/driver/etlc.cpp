@@ -168,7 +168,7 @@ void add_compile_options(CLI::App& app, Call& call) {
     app.add_flag("--standalone{portable}", call.request.standalone,
                  "paste the runtime in: one file to copy into firmware, in standard C++ alone; "
                  "--standalone=host: with vectors, chosen by the CPU where there is a choice")
-        ->check(CLI::IsMember({"portable", "host"}));
+        ->check(driver::one_of({"portable", "host"}));
     app.add_option("--namespace", call.request.name_space,
                    "of the generated code (default: the spec's name)")
         ->type_name("NAME")

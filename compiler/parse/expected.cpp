@@ -33,7 +33,7 @@ const std::vector<Group>& groups() {
         {{EtlParser::LESS_EQUAL, EtlParser::GREATER}, "a comparison (<=, <, >= or >)", false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
         {{EtlParser::L2, EtlParser::MAHALANOBIS},
-         "a distance (l2, l2sq, l1, linf, cosine, angular or mahalanobis(W))",
+         "a distance (l2, l2sq, l1, linf, cosine, angular or mahalanobis(M))",
          true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},
         {{EtlParser::HERTZ}, "'Hz'", true},
@@ -142,11 +142,6 @@ bool another_item_could_follow(const Stuck& stuck) {
     }
 }
 
-std::string joined(const std::vector<std::string>& words) {
-    if (words.size() < 2) return words.empty() ? "something else" : words[0];
-    return fmt::format("{} or {}", fmt::join(words.begin(), words.end() - 1, ", "), words.back());
-}
-
 bool contains(const std::vector<std::size_t>& types, std::size_t type) {
     return std::find(types.begin(), types.end(), type) != types.end();
 }
@@ -181,7 +176,7 @@ std::string expected_words(const Stuck& stuck) {
     std::vector<std::string> words = listed(stuck);
     if (operators_could_follow(stuck)) words.insert(words.begin(), "an operator");
     if (another_item_could_follow(stuck)) words.emplace_back("','");
-    return joined(words);
+    return words.empty() ? "something else" : diag::alternatives(words);
 }
 
 bool expects_keyword(const Stuck& stuck) {

@@ -22,6 +22,11 @@ bool is(const Token* token, std::initializer_list<std::size_t> types) {
     return false;
 }
 
+const std::vector<std::string>& units() {
+    static const std::vector<std::string> all{"us", "ms", "s", "min"};
+    return all;
+}
+
 bool is_aggregation(const Token* token) {
     return is(token, {EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN});
 }
@@ -123,7 +128,7 @@ private:
         if (word.getType() == EtlParser::IDENTIFIER) add_nearest(result, word, callable_words());
         if (result.notes.empty())
             result.note(
-                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(W); functions: abs, "
+                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(M); functions: abs, "
                 "sqrt, min, max");
         return result;
     }
@@ -143,9 +148,13 @@ private:
         return result;
     }
 
+    /// A word after a bound is a unit where the interval goes on behind it, or where it is close to
+    /// one; else the interval should have ended before it, as in "F[0, 5 q".
     bool unknown_unit() const {
-        return stuck_.rule == EtlParser::RuleInterval && is(stuck_.previous, {EtlParser::NUMBER}) &&
-               found_is_word();
+        const bool after_bound = stuck_.rule == EtlParser::RuleInterval &&
+                                 is(stuck_.previous, {EtlParser::NUMBER}) && found_is_word();
+        return after_bound && (is(stuck_.following, {EtlParser::COMMA, EtlParser::RBRACKET}) ||
+                               diag::nearest_name(text(found_), units()));
     }
 
     Diagnostic no_such_unit() const {
@@ -153,7 +162,7 @@ private:
             at(Code::unknown_keyword, span_of(found_),
                fmt::format("expected a unit of time (us, ms, s or min) after {}, found {}",
                            quoted(*stuck_.previous, file_), quoted(found_, file_)));
-        add_nearest(result, found_, {"us", "ms", "s", "min"});
+        add_nearest(result, found_, units());
         return result;
     }
 
@@ -201,7 +210,7 @@ private:
                 break;
             case EtlParser::RuleMetric:
             case EtlParser::RuleWeights:
-                to.note("the weights come first: mahalanobis(W)(z, goal)");
+                to.note("the weights come first: mahalanobis(M)(z, goal)");
                 break;
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
@@ -268,6 +277,7 @@ void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
     const Stuck stuck{found,
                       before(1),
                       before(2),
+                      at + 1 < slice_.end ? tokens_[at + 1].get() : nullptr,
                       parser->getExpectedTokens(),
                       context->getRuleIndex(),
                       parent != nullptr ? parent->getRuleIndex() : context->getRuleIndex(),

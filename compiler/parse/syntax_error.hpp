@@ -24,6 +24,7 @@ struct Stuck {
     const Token* found;            ///< EOF where the slice ended
     const Token* previous;         ///< nullptr: nothing read yet
     const Token* before_previous;  ///< nullptr: no such token
+    const Token* following;        ///< after `found`; nullptr: the slice ends
     antlr4::misc::IntervalSet expected;
     std::size_t rule;         ///< EtlParser::Rule...
     std::size_t parent_rule;  ///< of the rule that called it
