@@ -200,6 +200,34 @@ bool compared_as_it_is(const Plan& plan, Index distance) {
     });
 }
 
+/// Why a distance is measured on float32 whatever is asked for; empty where it need not be.
+std::string why_float32(const Plan& plan, Index d) {
+    const check::Distance& distance = plan.model->distances[d];
+    const check::Target& target = plan.model->targets[distance.target];
+    if (stored_set(plan, d) != nullptr)
+        return fmt::format(
+            "'{}' lies in a file beside the header, which keeps float32; --inline-targets {} has "
+            "it in the header",
+            target.name, target.values.size() * sizeof(float));
+    if (full_weights(distance)) return "mahalanobis with full weights is measured on float32";
+    if (!compared_as_it_is(plan, d))
+        return "an expression or an adaptive threshold takes this distance as a float32";
+    return "";
+}
+
+void refuse_unchanged(const Plan& plan, Storage storage, diag::Sink& sink) {
+    constexpr std::size_t kMostNotes = 8;
+    const auto span = [&](Index d) { return plan.model->distances[d].span; };
+    const bool measures = !plan.distances.empty();
+    auto& error =
+        sink.report(Code::targets_not_narrow, measures ? span(plan.distances[0]) : source::Span{},
+                    fmt::format("--targets-as {} changes nothing: {}", word(storage),
+                                measures ? why_float32(plan, plan.distances[0])
+                                         : "no monitor measures a distance"));
+    for (std::size_t i = 1; i < std::min(plan.distances.size(), kMostNotes); ++i)
+        error.note(span(plan.distances[i]), why_float32(plan, plan.distances[i]));
+}
+
 void refuse_row(const Plan& plan, const NarrowSet& set, std::uint32_t row, diag::Sink& sink) {
     const check::Target& target = plan.model->targets[plan.model->distances[set.distance].target];
     sink.report(Code::targets_not_narrow, target.span,
@@ -223,9 +251,7 @@ double to_f16(double x) {
 void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
     if (storage == Storage::f32) return;
     for (const Index d : plan.distances) {
-        const bool in_file = stored_set(plan, d) != nullptr;
-        if (in_file || full_weights(plan.model->distances[d]) || !compared_as_it_is(plan, d))
-            continue;
+        if (!why_float32(plan, d).empty()) continue;
         NarrowSet set{.distance = d, .storage = storage};
         if (const std::uint32_t row = Narrowing(*plan.model, set).run(); row < set.rows) {
             refuse_row(plan, set, row, sink);
@@ -237,13 +263,7 @@ void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
         }
         plan.narrow.push_back(std::move(set));
     }
-    if (!plan.narrow.empty() || sink.has_errors()) return;
-    sink.report(Code::targets_not_narrow, {},
-                fmt::format("--targets-as {} changes nothing here", word(storage)))
-        .note(
-            "it is for distances that a predicate compares with a threshold as they are, not for "
-            "expressions, adaptive "
-            "thresholds or mahalanobis with full weights");
+    if (plan.narrow.empty() && !sink.has_errors()) refuse_unchanged(plan, storage, sink);
 }
 
 const NarrowSet* narrow_set(const Plan& plan, Index distance) {
