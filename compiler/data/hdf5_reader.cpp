@@ -251,6 +251,26 @@ bool fits(const Channel& channel) {
     return channel.shape.size() == 2 && channel.shape[1] == channel.width;
 }
 
+/// Why a dataset cannot be unpacked: the first of its filters that libhdf5 does not have.
+std::string why_unread(const Channel& channel) {
+    const hid_t properties = H5Dget_create_plist(channel.dataset);
+    const int filters = H5Pget_nfilters(properties);
+    for (int i = 0; i < filters; ++i) {
+        unsigned flags = 0;
+        std::size_t values = 0;
+        char name[64] = "";
+        const H5Z_filter_t filter =
+            H5Pget_filter2(properties, static_cast<unsigned>(i), &flags, &values, nullptr,
+                           sizeof name - 1, name, nullptr);
+        if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
+        return " is packed by the filter '" + std::string(name) + "' (number " +
+               std::to_string(filter) +
+               "), which is not read; pack it anew with compression='gzip' in h5py, or by "
+               "'h5repack -f GZIP=4 OLD.h5 NEW.h5'";
+    }
+    return " cannot be read: it is damaged";
+}
+
 /// `count` steps from `first` on, into their places in rows of `stride` doubles.
 void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to,
                 std::size_t stride) {
@@ -266,8 +286,7 @@ void read_block(const Channel& channel, hsize_t first, hsize_t count, double* to
     if (H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, size, nullptr) < 0 ||
         H5Dread(channel.dataset, channel.memory_type, memory_space, file_space, H5P_DEFAULT,
                 buffer) < 0)
-        fail(Cause::array, "dataset " + channel.quoted() +
-                               " cannot be read: it is damaged, or packed in an unknown way");
+        fail(Cause::array, "dataset " + channel.quoted() + why_unread(channel));
     H5Sclose(memory_space);
     H5Sclose(file_space);
     std::copy(bools.begin(), bools.end(), values.begin());

@@ -160,6 +160,16 @@ TEST_F(Hdf5Trace, NothingLeadsOutOfTheFile) {
                       "' keeps its data in other files, which are not read");
 }
 
+TEST_F(Hdf5Trace, UnknownPackingIsNamed) {
+    const diag::Failure found =
+        failure(ETLC_SOURCE_DIR "/tests/unit/data/lzf.h5", {{"z", Kind::vector, 3}});
+    EXPECT_EQ(found.code, Code::malformed_trace_array);
+    EXPECT_EQ(found.message,
+              "array 'z': dataset 'z' is packed by the filter 'lzf' (number 32000), which is not "
+              "read; pack it anew with compression='gzip' in h5py, or by 'h5repack -f GZIP=4 "
+              "OLD.h5 NEW.h5'");
+}
+
 TEST_F(Hdf5Trace, WhatKillsTheReaderIsAMessage) {
     const std::vector<Channel> channels{{"z", Kind::vector, 2},
                                         {"p", Kind::vector, 2},

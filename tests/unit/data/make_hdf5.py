@@ -1,13 +1,14 @@
 #!/usr/bin/env python3
-"""Writes trace.h5 (h5py) beside this file: datasets of every kind that a trace may hold, and of
-those it may not."""
+"""Writes trace.h5 and lzf.h5 (h5py) beside this file: datasets of every kind that a trace may
+hold, and of those it may not."""
 import pathlib
 
 import h5py
 import numpy as np
 
 STEPS = 7
-with h5py.File(pathlib.Path(__file__).resolve().parent / "trace.h5", "w", libver="earliest") as f:
+HERE = pathlib.Path(__file__).resolve().parent
+with h5py.File(HERE / "trace.h5", "w", libver="earliest") as f:
     t = np.arange(STEPS)
     z = np.stack([t, t + 0.25, t + 0.5], axis=1).astype(np.float32)
     f["z"] = z
@@ -39,3 +40,6 @@ with h5py.File(pathlib.Path(__file__).resolve().parent / "trace.h5", "w", libver
     f["data/notes"] = 1.0
     f.create_group("data/other")
     f.create_group("data/demo_\x1b[31m")
+
+with h5py.File(HERE / "lzf.h5", "w", libver="earliest") as f:
+    f.create_dataset("z", data=z, chunks=(7, 3), compression="lzf")
