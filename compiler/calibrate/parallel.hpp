@@ -22,6 +22,15 @@ namespace etlc::calibrate {
 
 inline constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
 
+/// What is wrong with an episode.
+struct Fault {
+    std::string path;
+    diag::Failure failure;
+};
+
+/// Reports each kind of fault once, with the other episodes that have it, out of `episodes`.
+void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink);
+
 /// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at
 /// most `most`, and no more than can be started. All have returned at the end. Gives: the first
 /// exception that ended one of them.
@@ -49,14 +58,15 @@ std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& path
     if (failure && done < paths.size()) std::rethrow_exception(failure);
 
     std::vector<T> all;
-    std::size_t failed = 0;
+    std::vector<Fault> faults;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (*results[i])
             all.push_back(std::move(**results[i]));
-        else if (++failed <= kMostReported)
-            sink.report(data::in_file(results[i]->failure(), paths[i]));
+        else
+            faults.push_back({paths[i], results[i]->failure()});
     }
-    if (failed > 0) return std::nullopt;
+    report(faults, paths.size(), sink);
+    if (!faults.empty()) return std::nullopt;
     return all;
 }
 

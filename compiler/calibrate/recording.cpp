@@ -60,12 +60,12 @@ std::vector<Index> formulas_of(const check::Model& model, const std::vector<Inde
     return formulas;
 }
 
-Failure no_label(const check::Model& model, Index predicate) {
-    const std::string& name = model.predicates[predicate].name;
-    return {
-        Code::no_label,
-        fmt::format("does not say when '{}' holds: it has no array {}, and the spec no truth of it",
-                    name, data::in_quotes(array_name(model, predicate)))};
+/// `absent`: what opening the episode says where the array has to be there.
+Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
+    return {Code::no_label,
+            fmt::format("does not say when '{}' holds, nor does a truth in the spec: {}",
+                        model.predicates[predicate].name, absent.message),
+            absent.line, absent.column};
 }
 
 }  // namespace
@@ -133,7 +133,14 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
         source.channel = inputs.size() + i;
         source.from_array = result.trace_->has(source.channel);
         source.formula = source.from_array ? kNone : truth_of(model, predicate);
-        if (!source.from_array && source.formula == kNone) return no_label(model, predicate);
+        if (!source.from_array && source.formula == kNone) {
+            std::vector<Channel> channels = channels_of(wanted, inputs, required);
+            channels[source.channel].optional = false;
+            const auto required_too = open(channels);
+            return no_label(model, predicate,
+                            required_too ? Failure{Code::no_label, "the file has changed meanwhile"}
+                                         : required_too.failure());
+        }
         if (!source.from_array) by_formula.push_back(predicate);
     }
     result.truth_ = std::make_unique<TruthEvaluator>(model, formulas_of(model, by_formula));
@@ -160,6 +167,7 @@ diag::Result<bool> Recording::next() {
     auto more = trace_->next(sample_);
     if (!more || !*more) return more;
     const auto narrowed = narrow();
+    if (more && !*more && frames_ == 0) return data::no_steps();
     if (!narrowed) return narrowed;
     hash_.add(sample_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {

@@ -133,7 +133,7 @@ std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 diag::Sink& sink) {
     const auto labelled = labelled_in(model, first, request.names);
     if (!labelled) {
-        sink.report(data::in_file(labelled.failure(), first));
+        sink.report(data::in_trace(labelled.failure(), first));
         return std::nullopt;
     }
     std::set<Index> found;

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "data/file.hpp"
 #include "data/hdf5.hpp"
 #include "data/trace_formats.hpp"
 
@@ -33,6 +34,21 @@ bool is_trace(const std::string& path) {
 
 std::string trace_file(const std::string& path) {
     return path.substr(0, group_mark(path));
+}
+
+diag::Failure no_steps() {
+    return {diag::Code::empty_trace, "holds no step, expected at least one"};
+}
+
+diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path) {
+    diag::Diagnostic result = in_file(failure, path);
+    if (failure.code == diag::Code::no_such_channel)
+        result.note("--map NAME=NAME_IN_FILE says what an input is called in the file");
+    if (failure.code == diag::Code::no_label)
+        result.note(
+            "--map truth.NAME=NAME_IN_FILE says what the labels are called in the file; a 'truth' "
+            "in the spec makes them of other inputs");
+    return result;
 }
 
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,

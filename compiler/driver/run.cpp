@@ -4,7 +4,6 @@
 
 #include <algorithm>
 
-#include "data/file.hpp"
 #include "data/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
@@ -57,7 +56,7 @@ public:
 
 private:
     bool fail(const diag::Failure& failure) {
-        sink_.report(data::in_file(failure, request_.trace));
+        sink_.report(data::in_trace(failure, request_.trace));
         return false;
     }
 
@@ -75,6 +74,7 @@ private:
             if (!narrow(sample, samples) || !report(evaluator_.step(samples))) return false;
             show_progress((*trace)->length());
         }
+        if (step_ == 0) return fail(data::no_steps());
         return !request_.finish || finish();
     }
 

@@ -56,6 +56,24 @@ void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& 
     warning.note("targets have to come from other recordings");
 }
 
+bool has_truth(const MonitorSubject& monitor) {
+    return monitor.lacking.empty();
+}
+
+bool refuse_without_truth(const check::Model& model, const Subject& subject, diag::Sink& sink) {
+    const auto& monitors = subject.monitors;
+    if (!subject.labelled.empty() || std::any_of(monitors.begin(), monitors.end(), has_truth))
+        return true;
+    const std::string name = model.predicates[monitors.front().lacking.front()].name;
+    const std::string shown = name.empty() ? "NAME" : name;
+    sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
+                "no predicate of this spec has a truth to be held against")
+        .note(fmt::format("say when it holds, 'truth {0} = ...;', or record it: an array "
+                          "'truth.{0}' of 0 and 1 in the episodes, which --map may name",
+                          shown));
+    return false;
+}
+
 using Get = std::function<Counts(std::size_t episode)>;
 
 Score score(const Bootstrap& bootstrap, const Get& get) {
@@ -201,10 +219,11 @@ std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request
     const check::Model& model = *spec.model;
     auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
     if (!labelled) {
-        sink.report(data::in_file(labelled.failure(), request.episodes[0]));
+        sink.report(data::in_trace(labelled.failure(), request.episodes[0]));
         return std::nullopt;
     }
     const Subject subject = evaluate::subject(model, std::move(*labelled));
+    if (!refuse_without_truth(model, subject, sink)) return std::nullopt;
     const auto truth =
         pipeline::compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
     if (!truth) return std::nullopt;

@@ -14,7 +14,7 @@ header 'z0,z1,grip,held'
 header 'z[0],z[1],grip,held,grip'
 "$ETLC" run t.etl --trace "$SPECS/E0804_absent.npz" 2>&1 | sed "s|$SPECS/||"
 # What --map names is an input of the spec; what it says is looked for in the file.
-echo 'z[0],z[1],grip,closed' > trace.csv
+printf 'z[0],z[1],grip,closed\n1,2,0.75,0\n' > trace.csv
 "$ETLC" run t.etl --trace trace.csv --map held=closed --map gripper=grip
 "$ETLC" run t.etl --trace trace.csv --map held=closed --map grip=gripp
 "$ETLC" run t.etl --trace trace.csv --map held=closed
