@@ -83,7 +83,9 @@ std::string detection(const Detection& d, const std::optional<double>& step_seco
     Object object(indent);
     object.count("turns", d.turns).count("missed", d.missed).count("early", d.early);
     object.figure("mean_steps", d.mean).number("median_steps", d.median);
-    if (step_seconds && d.mean.value) object.number("mean_seconds", *d.mean.value * *step_seconds);
+    if (step_seconds)
+        object.number("mean_seconds",
+                      d.mean.value ? std::optional(*d.mean.value * *step_seconds) : std::nullopt);
     return object.text();
 }
 

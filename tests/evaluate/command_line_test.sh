@@ -63,3 +63,8 @@ grep -q '^near: with the threshold that it starts with; labels would move it$' a
 status=0
 "$etlc" evaluate dock.etl 2>err.txt || status=$?
 [ $status = 2 ] && grep -q -- --data err.txt || fail "no --data: $status, $(cat err.txt)"
+
+# What is not defined is null, and there all the same: here a monitor that misses every turn.
+sed 's/<= 0.5;/<= 0;/' dock.etl >blind.etl
+"$etlc" evaluate blind.etl --data episodes --json blind.json >blind.txt
+grep -q '"mean_seconds": null' blind.json || fail "mean_seconds: $(grep -A8 detection blind.json)"
