@@ -12,8 +12,8 @@ trap 'rm -rf "$box"' EXIT
 cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
-# Every family of kernels: rows in lanes and in columns, int8 rows within bounds,
-# float32 where those leave a comparison open; and state of every kind: a window, a machine, a past operator.
+# Every family of kernels: rows in lanes and in columns, int8 rows within bounds, float32 where
+# those leave a comparison open; and state of every kind: a window, a machine, a past operator.
 awk 'BEGIN {
   srand(3)
   print "spec flags;\ninput z : f32[70];\ninput y : f16[5];\ninput x : f32 in [0, 9];"

@@ -11,8 +11,8 @@ box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-# The distances to float32 targets are not known here: the trace walks through every threshold, in steps that shrink to roundings of it. z is measured on few short rows,
-# y on more and longer ones.
+# The distances to float32 targets are not known here: the trace walks through every threshold, in
+# steps that shrink to roundings of it. z is measured on few short rows, y on more and longer ones.
 awk 'BEGIN {
   srand(7); D = 37; K = 5; steps = 900; E = 70; L = 9
   for (k = 0; k < K; ++k) for (i = 0; i < D; ++i) g[k, i] = sprintf("%.6f", 2 * rand() - 1)

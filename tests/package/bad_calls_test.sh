@@ -76,7 +76,8 @@ not_compiled() {
         fi
     done
 }
-for header in views distance/layout distance/kernel temporal/machine temporal/window vectors/pack; do
+headers="views distance/layout distance/kernel temporal/machine temporal/window vectors/pack"
+for header in $headers; do
     echo "#include \"etlmon/$header.hpp\"" |
         not_compiled "etlmon needs C++17: compile with -std=c++17 or later" 1 -std=c++14
 done

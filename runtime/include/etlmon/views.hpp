@@ -62,8 +62,9 @@ class Vector {
   constexpr Vector(const A& elements) noexcept : data_(elements.data()) {}
   // What compilers quote where a std::vector, or another number of elements, is given.
   // clang-format off
-  template <class A, class = detail::ReadsAs<T, A>, typename detail::If<!detail::holds<A, D>(0)>::type = 0>
-  Vector(const A&) = delete;  // not D elements by its type: Vector::unchecked(x.data()), if x.size() is D
+  template <class A, class = detail::ReadsAs<T, A>,
+            typename detail::If<!detail::holds<A, D>(0)>::type = 0>
+  Vector(const A&) = delete;  // not D elements by its type: Vector::unchecked(x.data()) if it has D
   template <size_t N, typename detail::If<N != D>::type = 0>
   Vector(const T (&)[N]) = delete;  // not D elements
   // clang-format on
