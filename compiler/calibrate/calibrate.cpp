@@ -145,13 +145,17 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         return std::make_unique<Scorer>(model, leaks, predicates, request.names);
     });
     if (!demonstrations) return std::nullopt;
-    refuse_void(model, *demonstrations, {}, sink);
+    const thresholds::Allowance allowance =
+        admit(model, *demonstrations, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     check::Model calibrated = model;
+    record(*demonstrations, allowance, result.file);
+    for (const thresholds::Allowance& used : result.file.allowances)
+        calibrated.reservations.push_back(thresholds::text(used));
     std::vector<Fitted> all;
     Refusing refusing(model, *demonstrations, sink);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
@@ -181,7 +185,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (sink.has_errors()) return std::nullopt;
     for (const Demonstration& demonstration : *demonstrations)
         result.file.episodes.push_back(demonstration.hash);
-    result.report = report(calibrated, predicates, *demonstrations, all);
+    result.report = report(calibrated, predicates, *demonstrations, all) + remark_on(allowance);
     return result;
 }
 

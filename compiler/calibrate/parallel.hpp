@@ -20,8 +20,6 @@
 
 namespace etlc::calibrate {
 
-inline constexpr std::size_t kMostReported = 10;  ///< of many files with the same fault
-
 /// What is wrong with an episode.
 struct Fault {
     std::string path;

@@ -117,10 +117,12 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     for (const Index input : wanted.inputs) required[input] = true;
 
     // What only truths read may be absent where arrays stand in for them.
-    std::vector<std::size_t> identity;
+    std::vector<data::HashedInput> identity;
     for (const Index input : wanted.identity)
-        identity.push_back(static_cast<std::size_t>(
-            std::lower_bound(inputs.begin(), inputs.end(), input) - inputs.begin()));
+        identity.push_back(
+            {static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) -
+                                      inputs.begin()),
+             model.inputs[input].name, model.inputs[input].is_embedding()});
     Recording result(model, std::move(identity));
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
@@ -165,9 +167,9 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
 
 diag::Result<bool> Recording::next() {
     auto more = trace_->next(sample_);
+    if (more && !*more && frames_ == 0) return data::no_steps();
     if (!more || !*more) return more;
     const auto narrowed = narrow();
-    if (more && !*more && frames_ == 0) return data::no_steps();
     if (!narrowed) return narrowed;
     hash_.add(sample_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {

@@ -60,6 +60,7 @@ public:
     std::uint64_t length() const { return trace_->length(); }
     /// Of the frames so far, over the inputs of `identity`.
     std::string hash() const { return hash_.text(); }
+    data::EpisodeContent content() const { return hash_.content(); }
 
 private:
     struct Source {
@@ -68,7 +69,7 @@ private:
         Index formula = check::kNone;
     };
 
-    Recording(const check::Model& model, std::vector<std::size_t> identity)
+    Recording(const check::Model& model, std::vector<data::HashedInput> identity)
         : model_(&model), hash_(std::move(identity)) {}
 
     diag::Result<bool> narrow();

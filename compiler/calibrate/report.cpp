@@ -127,6 +127,8 @@ std::string monitor_report(const check::Model& model) {
         }
     }
     if (zero_aside) text += fmt::format("    {}\n", check::kZeroAside);
+    for (const std::string& reservation : model.reservations)
+        text += fmt::format("    {}\n", reservation);
     return text +
            "    Probabilities are over the demonstrations and the new episode together, which have "
            "to be exchangeable, "

@@ -52,6 +52,7 @@ diag::Result<Demonstration> Scorer::score(const std::string& path) {
     for (std::size_t i = 0; i < predicates_.size(); ++i)
         result.scores[i].from_array = recording->from_array(predicates_[i]);
     result.hash = recording->hash();
+    result.content = recording->content();
     result.frames = recording->frames();
     return result;
 }

@@ -179,12 +179,14 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
     });
     if (!episodes) return std::nullopt;
-    refuse_void(model, *episodes, before.episodes, sink);
+    const thresholds::Allowance allowance =
+        admit(model, *episodes, before, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
     result.file.spec = model.name;
     result.file.etlc = request.version;
+    record(*episodes, allowance, result.file);
     std::uint64_t frames = 0;
     for (const MonitorEpisode& episode : *episodes) frames += episode.frames;
     result.report =
@@ -204,6 +206,10 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         result.report += monitor_report(model, monitor, totals, fitted, episodes->size());
     }
     if (sink.has_errors()) return std::nullopt;
+    thresholds::drop_unused_recordings(result.file);
+    for (const thresholds::Allowance& used : result.file.allowances)
+        result.report += fmt::format("\n{}\n", thresholds::text(used));
+    result.report += remark_on(allowance);
     return result;
 }
 

@@ -91,6 +91,7 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
     for (std::uint32_t call = 0; recording->frames() > 0 && call < last_positions; ++call)
         note(truths_.finish(), highest_.finish(), lowest_.finish(), result);
     result.hash = recording->hash();
+    result.content = recording->content();
     result.frames = recording->frames();
     return result;
 }

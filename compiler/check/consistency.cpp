@@ -100,13 +100,20 @@ Found contradiction(const Entry& entry, const std::string& place, bool upper_bou
 }
 
 std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
-                                          const std::vector<std::string>& others) {
-    const std::set<std::string> known(others.begin(), others.end());
-    const auto found =
-        std::find_if(episodes.begin(), episodes.end(),
-                     [&](const std::string& episode) { return known.contains(episode); });
-    if (found == episodes.end()) return std::nullopt;
-    return *found;
+                                          const thresholds::File& file) {
+    const std::set<std::string> known(file.episodes.begin(), file.episodes.end());
+    data::Recordings recordings;
+    for (const std::string& episode : known)
+        if (const auto found = file.recordings.find(episode); found != file.recordings.end())
+            recordings.add(found->second);
+    for (const std::string& episode : episodes) {
+        if (known.contains(episode)) return episode;
+        const auto recording = file.recordings.find(episode);
+        if (recording == file.recordings.end()) continue;
+        const auto overlap = recordings.find(recording->second);
+        if (overlap && (overlap->equal || file.allowances.empty())) return episode;
+    }
+    return std::nullopt;
 }
 
 }  // namespace etlc::check

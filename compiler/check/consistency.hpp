@@ -27,8 +27,9 @@ std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const
                                            bool upper_bound,
                                            const std::vector<std::string>& episodes);
 
-/// One of `episodes` that is among `others`; nothing where they have none in common.
+/// One of `episodes` that is among those behind the file's predicates, or shares most of its
+/// content with one of them and was not allowed to; nothing where there is none.
 std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
-                                          const std::vector<std::string>& others);
+                                          const thresholds::File& file);
 
 }  // namespace etlc::check

@@ -250,6 +250,9 @@ struct Model {
     std::vector<Truth> truths;
     std::vector<Monitor> monitors;
     std::vector<std::string> dependencies;  ///< paths of every file loaded, for --depfile, sorted
+    /// What the thresholds' guarantees rest on besides exchangeable episodes, in words: that
+    /// episodes which overlap were allowed, and why.
+    std::vector<std::string> reservations;
 };
 
 /// The formula as canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)".

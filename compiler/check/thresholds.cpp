@@ -231,12 +231,12 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
         });
     if (entry == nullptr) return;
     const std::string place = "monitors." + monitor.name;
-    if (const auto shared = shared_episode(entry->episodes, file.episodes)) {
+    if (const auto shared = shared_episode(entry->episodes, file)) {
         c.sink
             .report(data::in_file(
                 {Code::not_disjoint,
-                 fmt::format("'{}' has '{}', which is one of 'episodes', those that thresholds of "
-                             "predicates were calibrated on",
+                 fmt::format("'{}' has '{}', which is one of 'episodes', or most of one: those "
+                             "that thresholds of predicates were calibrated on",
                              place + ".episodes", *shared)},
                 file.path))
             .note(shift.span, "it is for this")
@@ -278,6 +278,8 @@ void check_thresholds(Context& c) {
             : read_thresholds(c, c.model.predicates[predicates[0]].name,
                               c.model.predicates[predicates[0]].threshold);
     if (!file) return;
+    for (const thresholds::Allowance& allowance : file->allowances)
+        c.model.reservations.push_back(thresholds::text(allowance));
     const std::size_t errors = c.sink.errors();
     for (const Index index : predicates) take_threshold(c, index, *file);
     if (c.sink.errors() > errors) return;  // a monitor's shift is for the thresholds in it

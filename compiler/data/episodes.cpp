@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -106,23 +107,27 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
     return episodes;
 }
 
+EpisodeHash::EpisodeHash(std::vector<HashedInput> inputs) : inputs_(std::move(inputs)) {
+    for (const HashedInput& input : inputs_) readers_.emplace_back(input.is_vector);
+}
+
 void EpisodeHash::add(const Sample& sample) {
     constexpr std::uint32_t kNaN = 0x7fc00000;  // one pattern of bits for all that is missing
-    std::size_t n = 0;
-    for (const std::size_t c : channels_) n += sample.values[c].size();
-    bits_.resize(n);
-    auto to = bits_.begin();
-    for (const std::size_t c : channels_) {
-        const std::vector<double>& values = sample.values[c];
-        const auto bits = [](double value) {
-            const auto narrowed = static_cast<float>(value);
-            return narrowed == narrowed ? std::bit_cast<std::uint32_t>(narrowed) : kNaN;
-        };
-        to = sample.present[c] ? std::transform(values.begin(), values.end(), to, bits)
-                               : std::fill_n(to, values.size(), kNaN);
+    const auto bits_of = [](double value) {
+        const auto narrowed = static_cast<float>(value);
+        const auto bits = narrowed == narrowed ? std::bit_cast<std::uint32_t>(narrowed) : kNaN;
+        return std::endian::native == std::endian::big ? __builtin_bswap32(bits) : bits;
+    };
+    bits_.clear();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        const std::vector<double>& values = sample.values[inputs_[i].channel];
+        const bool present = sample.present[inputs_[i].channel];
+        const std::size_t begin = bits_.size();
+        bits_.resize(begin + values.size());
+        std::transform(values.begin(), values.end(), bits_.begin() + static_cast<long>(begin),
+                       [&](double value) { return bits_of(present ? value : NAN); });
+        readers_[i].add(bits_.data() + begin, values.size());
     }
-    if constexpr (std::endian::native == std::endian::big)
-        for (std::uint32_t& bits : bits_) bits = __builtin_bswap32(bits);
     const std::string_view bytes(reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size());
     hash_ = xxh64(bytes, hash_);
     ++steps_;
@@ -130,6 +135,13 @@ void EpisodeHash::add(const Sample& sample) {
 
 std::string EpisodeHash::text() const {
     return fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
+}
+
+EpisodeContent EpisodeHash::content() const {
+    EpisodeContent result;
+    for (std::size_t i = 0; i < inputs_.size(); ++i)
+        result[inputs_[i].name] = readers_[i].content();
+    return result;
 }
 
 }  // namespace etlc::data

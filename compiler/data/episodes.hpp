@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "data/overlap.hpp"
 #include "data/trace.hpp"
 #include "diag/diag.hpp"
 
@@ -23,22 +24,31 @@ namespace etlc::data {
 std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
                                        const std::string& groups, diag::Sink& sink);
 
+/// An input whose samples tell episodes apart.
+struct HashedInput {
+    std::size_t channel = 0;
+    std::string name;  ///< in the spec
+    bool is_vector = false;
+};
+
 /// The content of an episode, read along: 64 bits as 16 hex digits, the same on every machine and
 /// for the same float32 values in any file format. Order and lengths count; names, the file and the
 /// channels left out do not.
 class EpisodeHash {
 public:
-    /// The channels that count, by index.
-    explicit EpisodeHash(std::vector<std::size_t> channels) : channels_(std::move(channels)) {}
+    explicit EpisodeHash(std::vector<HashedInput> inputs);
 
     /// The next step.
     void add(const Sample& sample);
     /// Of the steps so far.
     std::string text() const;
+    /// The same of each input.
+    EpisodeContent content() const;
 
 private:
-    std::vector<std::size_t> channels_;
-    std::vector<std::uint32_t> bits_;  ///< of one step
+    std::vector<HashedInput> inputs_;
+    std::vector<ContentReader> readers_;  ///< per input
+    std::vector<std::uint32_t> bits_;     ///< of one step
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };

@@ -246,12 +246,17 @@ void add_map_option(CLI::App& app, data::NamesInFile& names) {
 }
 
 void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups,
-                         unsigned& jobs) {
+                         std::string& allow_overlap, unsigned& jobs) {
     app.add_option("--data", data, "episodes: .npz, .csv and .h5 files, folders, 'patterns'")
         ->type_name("FILE...")
         ->required();
     app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")
         ->type_name("PATTERN");
+    app.add_option("--allow-overlap", allow_overlap,
+                   "why episodes may share most of their content, or hold targets, and count all "
+                   "the same; it is written into the result")
+        ->type_name("REASON")
+        ->check(CLI::Validator(driver::mistake_in_reason, ""));
     driver::add_number(app, "-j,--jobs", jobs, "threads (default: as many as the machine has)", 1,
                        1024);
 }
@@ -323,7 +328,8 @@ int calibrate_command(int argc, char** argv) {
         "file.",
         "etlc calibrate");
     add_spec_options(app, call);
-    add_episode_options(app, calibration.data, calibration.groups, calibration.jobs);
+    add_episode_options(app, calibration.data, calibration.groups, calibration.allow_overlap,
+                        calibration.jobs);
     add_map_option(app, calibration.names);
     app.add_option("-o,--output", call.calibrate.output,
                    "where to write the thresholds (default: SPEC.thresholds.json beside the spec); "
@@ -348,7 +354,7 @@ int evaluate_command(int argc, char** argv) {
         "etlc evaluate");
     add_common_options(app, call);
     add_episode_options(app, call.evaluate.data, call.evaluate.groups,
-                        call.evaluate.evaluation.jobs);
+                        call.evaluate.evaluation.allow_overlap, call.evaluate.evaluation.jobs);
     add_map_option(app, call.evaluate.evaluation.names);
     app.add_option("--json", call.evaluate.json,
                    "also write the result as JSON; - is standard output")

@@ -30,6 +30,16 @@ std::string mistake_in_number(const std::string& found, std::uint64_t least, std
                        bounded ? fmt::format(" to {}", most) : "");
 }
 
+std::string mistake_in_reason(const std::string& found) {
+    constexpr std::size_t kLongest = 200;
+    const bool has_words = std::any_of(found.begin(), found.end(),
+                                       [](unsigned char c) { return std::isalnum(c) != 0; });
+    const bool one_line = found.find_first_of("\n\r") == std::string::npos;
+    if (has_words && one_line && found.size() <= kLongest) return "";
+    return fmt::format("found {}, expected a reason in words, on one line of at most {} bytes",
+                       data::in_quotes(found), kLongest);
+}
+
 CLI::Validator one_of(std::vector<std::string> words) {
     const std::string form = fmt::format("{}", fmt::join(words, "|"));
     return CLI::Validator(

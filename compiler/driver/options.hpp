@@ -22,6 +22,9 @@ std::string mistake_in_word(const std::string& found, const std::vector<std::str
 /// The same of a whole number in [least, most], in decimal digits.
 std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most);
 
+/// Of a reason that is written into files: it has words and stands on one line.
+std::string mistake_in_reason(const std::string& found);
+
 /// Refuses other words.
 CLI::Validator one_of(std::vector<std::string> words);
 

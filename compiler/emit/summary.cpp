@@ -7,6 +7,7 @@
 #include "emit/emit.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::emit {
 
@@ -190,10 +191,13 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
     print_table(out, prefix, guarantee_rows(plan), 2);
     const std::string margin = prefix.starts_with("//") ? "// " : prefix;
     print_miss_rates(out, prefix, margin, plan);
+    const std::vector<std::string>& reservations = plan.model->reservations;
     const bool of_episodes = is_calibrated(plan, true);
     const bool zero_aside = sets_zero_aside(plan);
-    if (of_episodes || zero_aside) out.line(blank);
+    if (of_episodes || zero_aside || !reservations.empty()) out.line(blank);
     if (zero_aside) out.line(margin + std::string(check::kZeroAside));
+    for (const std::string& reservation : reservations)
+        out.line(margin + source::code_line(reservation));
     if (!of_episodes) return;
     out.line(margin +
              "Probabilities are over the demonstrations and the new episode together, "

@@ -9,6 +9,7 @@
 #include "calibrate/admission.hpp"
 #include "calibrate/parallel.hpp"
 #include "data/file.hpp"
+#include "data/quote.hpp"
 
 namespace etlc::evaluate {
 
@@ -17,26 +18,44 @@ namespace {
 constexpr std::size_t kMostNotes = 8;
 
 /// A threshold looks better on the episodes that it was taken from, and what it promises is about
-/// others.
-bool refuse_seen(const std::vector<EpisodeResult>& episodes, const Request& request,
-                 const thresholds::File& file, diag::Sink& sink) {
-    const std::vector<std::string> calibrated_on = thresholds::all_episodes(file);
-    const std::set<std::string> known(calibrated_on.begin(), calibrated_on.end());
-    std::vector<std::string> seen;
-    for (std::size_t i = 0; i < episodes.size(); ++i)
-        if (known.contains(episodes[i].hash)) seen.push_back(request.episodes[i]);
-    if (seen.empty()) return true;
+/// others. Nothing where some are refused; else how many were passed over.
+std::optional<thresholds::Allowance> admit(const std::vector<EpisodeResult>& episodes,
+                                           const Request& request, const thresholds::File& file,
+                                           diag::Sink& sink) {
+    const calibrate::Seen known(file, thresholds::all_episodes(file));
+    thresholds::Allowance allowance{request.allow_overlap};
+    std::vector<std::string> refused;
+    std::vector<std::string> in_part;
+    for (const EpisodeResult& episode : episodes) {
+        const auto found = known.find(episode);
+        if (!found) continue;
+        if (!found->equal && !request.allow_overlap.empty()) {
+            ++allowance.overlapping;
+            continue;
+        }
+        refused.push_back(episode.path);
+        if (!found->equal)
+            in_part.push_back(fmt::format("{} {} one of them", data::in_quotes(episode.path),
+                                          calibrate::text(*found)));
+    }
+    if (refused.empty()) return allowance;
     auto& error = sink.report(data::in_file(
         {diag::Code::episode_calibrated_on,
          fmt::format(
              "{} of the {} episodes {} among those that the thresholds in {} were calibrated on",
-             seen.size(), episodes.size(), seen.size() == 1 ? "is" : "are", file.path)},
-        seen.front()));
-    for (std::size_t i = 1; i < std::min(seen.size(), kMostNotes); ++i)
-        error.note(seen[i] + " is, too");
-    if (seen.size() > kMostNotes) error.note(fmt::format("and {} more", seen.size() - kMostNotes));
+             refused.size(), episodes.size(), refused.size() == 1 ? "is" : "are", file.path)},
+        refused.front()));
+    for (std::size_t i = 1; i < std::min(refused.size(), kMostNotes); ++i)
+        error.note(refused[i] + " is, too");
+    if (refused.size() > kMostNotes)
+        error.note(fmt::format("and {} more", refused.size() - kMostNotes));
     error.note("keep the episodes for evaluation apart from those for calibration");
-    return false;
+    for (std::size_t i = 0; i < std::min(in_part.size(), kMostNotes); ++i) error.note(in_part[i]);
+    if (!in_part.empty())
+        error.note(
+            "where the recordings are other ones all the same, --allow-overlap REASON says why, "
+            "beside the figures");
+    return std::nullopt;
 }
 
 /// At distance 0 a frame is easier to tell than any that is not a target.
@@ -186,10 +205,13 @@ Evaluation summarise(const check::Model& model, const Subject& subject,
     Evaluation result;
     result.episodes = episodes.size();
     result.step_seconds = model.step_seconds;
-    std::set<std::string> contents;
+    data::Recordings earlier;
     for (const EpisodeResult& episode : episodes) {
         result.frames += episode.frames;
-        result.repeated += contents.insert(episode.hash).second ? 0 : 1;
+        const auto overlap = earlier.find(episode.content);
+        earlier.add(episode.content);
+        result.repeated += overlap && overlap->equal ? 1 : 0;
+        result.overlapping += overlap && !overlap->equal ? 1 : 0;
         result.leaked += episode.leak ? 1 : 0;
     }
     const Bootstrap bootstrap(episodes.size());
@@ -233,9 +255,15 @@ std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request
     };
     const auto episodes =
         calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
-    if (!episodes || (seen && !refuse_seen(*episodes, request, *seen, sink))) return std::nullopt;
+    if (!episodes) return std::nullopt;
+    const auto allowance =
+        seen ? admit(*episodes, request, *seen, sink) : std::optional(thresholds::Allowance{});
+    if (!allowance) return std::nullopt;
     warn_of_leaks(model, *episodes, request, sink);
-    return summarise(model, subject, *episodes);
+    Evaluation result = summarise(model, subject, *episodes);
+    if (seen) result.reservations = model.reservations;
+    if (allowance->overlapping > 0) result.reservations.push_back(thresholds::text(*allowance));
+    return result;
 }
 
 }  // namespace etlc::evaluate

@@ -23,8 +23,10 @@ namespace etlc::evaluate {
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
-    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
-    plan::Limits limits;  ///< of the ground truth's plan
+    std::string allow_overlap;  ///< the reason for which overlaps with the episodes of calibration
+                                ///< are passed over; empty: they are not
+    unsigned jobs = 0;          ///< threads; 0: as many as the machine has
+    plan::Limits limits;        ///< of the ground truth's plan
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
@@ -70,9 +72,11 @@ struct MonitorScore {
 struct Evaluation {
     std::uint64_t episodes = 0;
     std::uint64_t frames = 0;
-    std::uint64_t repeated = 0;  ///< episodes with the content of an earlier one
-    std::uint64_t leaked = 0;    ///< episodes with a frame that is a row of a target
-    double step_seconds = 0;     ///< 0: the spec has no rate
+    std::uint64_t repeated = 0;     ///< episodes with the content of an earlier one
+    std::uint64_t leaked = 0;       ///< episodes with a frame that is a row of a target
+    std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
+    std::vector<std::string> reservations;  ///< what was passed over, in words
+    double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;
 };

@@ -119,6 +119,11 @@ std::string json(const Evaluation& evaluation) {
     Object top(0);
     top.count("episodes", evaluation.episodes).count("frames", evaluation.frames);
     top.count("repeated_episodes", evaluation.repeated).count("leaked_episodes", evaluation.leaked);
+    top.count("overlapping_episodes", evaluation.overlapping);
+    std::string reservations;
+    for (const std::string& one : evaluation.reservations)
+        reservations += (reservations.empty() ? "" : ", ") + source::json_string(one);
+    top.raw("reservations", "[" + reservations + "]");
     top.count("resamples", kResamples);
     Object predicates(top.inner());
     for (const PredicateScore& p : evaluation.predicates)

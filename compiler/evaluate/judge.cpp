@@ -93,6 +93,7 @@ diag::Result<EpisodeResult> Judge::score(const std::string& path) {
         });
     if (!recording) return recording.failure();
     EpisodeResult result;
+    result.path = path;
     result.predicates.resize(subject_.labelled.size());
     result.scored.resize(subject_.labelled.size());
     result.unmeasured.resize(subject_.labelled.size());
@@ -114,6 +115,7 @@ diag::Result<EpisodeResult> Judge::score(const std::string& path) {
     for (const Index predicate : subject_.labelled)
         result.from_array.push_back(recording->from_array(predicate));
     result.hash = recording->hash();
+    result.content = recording->content();
     result.frames = recording->frames();
     return result;
 }

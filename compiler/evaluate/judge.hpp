@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "calibrate/admission.hpp"
 #include "calibrate/leaks.hpp"
 #include "calibrate/recording.hpp"
 #include "data/trace.hpp"
@@ -37,10 +38,7 @@ struct MonitorEpisode {
         ordering;  ///< one: of sequential formulas, where every stage was truly visited
 };
 
-struct EpisodeResult {
-    std::string hash;
-    std::optional<calibrate::Leak> leak;  ///< the first frame that is a target
-    std::uint64_t frames = 0;
+struct EpisodeResult : calibrate::Recorded {
     std::vector<Counts> predicates;           ///< per labelled predicate
     std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
     std::vector<std::uint64_t>

@@ -173,6 +173,12 @@ std::string table(const Evaluation& evaluation) {
         text += fmt::format(
             "{} of the episodes repeat another's content: the intervals are too narrow\n",
             evaluation.repeated);
+    if (evaluation.overlapping > 0)
+        text += fmt::format(
+            "{} of the episodes share most of their content with another: the intervals are too "
+            "narrow\n",
+            evaluation.overlapping);
+    for (const std::string& reservation : evaluation.reservations) text += reservation + "\n";
     if (evaluation.leaked > 0)
         text += fmt::format(
             "{} of the episodes {} a target among the frames: the figures are better than on "

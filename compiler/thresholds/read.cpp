@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <set>
 
 #include "data/file.hpp"
 #include "data/number.hpp"
@@ -35,12 +36,16 @@ public:
             return *failure_;
         }
         check_format(root);
-        check_keys(root, "", {"format", "spec", "predicates", "monitors", "episodes", "etlc"});
+        check_keys(root, "",
+                   {"format", "spec", "predicates", "monitors", "episodes", "recordings",
+                    "allowances", "etlc"});
         file.spec = text(root, "", "spec");
         file.etlc = text(root, "", "etlc");
         entries(root, "predicates", "predicate", file.predicates);
         if (root.find("monitors") != nullptr) entries(root, "monitors", "formula", file.monitors);
         if (root.find("episodes") != nullptr) file.episodes = episodes(root, "");
+        if (root.find("recordings") != nullptr) file.recordings = recordings(root);
+        if (root.find("allowances") != nullptr) file.allowances = allowances(root);
         if (failure_) return *failure_;
         return file;
     }
@@ -181,6 +186,60 @@ private:
         return result;
     }
 
+    std::map<std::string, data::EpisodeContent> recordings(const Json& root) {
+        const Json* object = member(root, "", "recordings", Json::Kind::object, "an object");
+        std::map<std::string, data::EpisodeContent> result;
+        for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i) {
+            const std::string place = "recordings." + object->keys[i];
+            const Json& inputs = object->items[i];
+            if (!is_hash(object->keys[i]) || inputs.kind != Json::Kind::object)
+                fail(place, inputs, "an object named by a content hash of 16 hex digits");
+            for (std::size_t k = 0; k < inputs.keys.size() && !failure_; ++k)
+                result[object->keys[i]][inputs.keys[k]] =
+                    content(inputs.items[k], place + "." + inputs.keys[k]);
+        }
+        return result;
+    }
+
+    data::InputContent content(const Json& json, const std::string& path) {
+        constexpr std::size_t kHash = 16;
+        constexpr std::size_t kUnit = 8;
+        const std::string& digits = json.text;
+        data::InputContent result;
+        bool sound = json.kind == Json::Kind::string && digits.size() > kHash &&
+                     digits[kHash] == ':' && digits.size() % kUnit == 1 &&
+                     is_hash(digits.substr(0, kHash));
+        for (std::size_t at = kHash + 1; sound && at < digits.size(); at += kUnit) {
+            std::uint32_t unit = 0;
+            const char* end = digits.data() + at + kUnit;
+            sound = std::from_chars(digits.data() + at, end, unit, 16).ptr == end &&
+                    (result.sketch.empty() || result.sketch.back() < unit);
+            result.sketch.push_back(unit);
+        }
+        if (!sound)
+            fail(path, json, "16 hex digits, a colon, and ascending numbers of 8 hex digits");
+        else
+            result.hash = digits.substr(0, kHash);
+        return result;
+    }
+
+    std::vector<Allowance> allowances(const Json& root) {
+        const Json* array = member(root, "", "allowances", Json::Kind::array, "an array");
+        std::vector<Allowance> result;
+        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
+            const Json& item = array->items[i];
+            const std::string place = fmt::format("allowances[{}]", i);
+            if (item.kind != Json::Kind::object) {
+                fail(place, item, "an object");
+                break;
+            }
+            check_keys(item, place, {"reason", "overlapping", "leaked"});
+            result.push_back({text(item, place, "reason"), count(item, place, "overlapping"),
+                              count(item, place, "leaked")});
+        }
+        return result;
+    }
+
     std::string hash(const Json& json, const std::string& path) {
         if (json.kind != Json::Kind::string || !is_hash(json.text))
             fail(path, json, "a content hash of 16 hex digits");
@@ -240,6 +299,27 @@ std::vector<std::string> all_episodes(const File& file) {
     for (const auto& [name, entry] : file.monitors)
         result.insert(result.end(), entry.episodes.begin(), entry.episodes.end());
     return result;
+}
+
+void drop_unused_recordings(File& file) {
+    const std::vector<std::string> episodes = all_episodes(file);
+    const std::set<std::string> used(episodes.begin(), episodes.end());
+    std::erase_if(file.recordings, [&](const auto& known) { return !used.contains(known.first); });
+}
+
+std::string text(const Allowance& allowance) {
+    const auto episodes = [](std::uint64_t n) {
+        return fmt::format("{} episode{}", n, n == 1 ? "" : "s");
+    };
+    std::string what;
+    if (allowance.overlapping > 0)
+        what += fmt::format("{} that share{} most of {} content with another",
+                            episodes(allowance.overlapping), allowance.overlapping == 1 ? "s" : "",
+                            allowance.overlapping == 1 ? "its" : "their");
+    if (allowance.leaked > 0)
+        what += fmt::format("{}{} with a target among the frames", what.empty() ? "" : " and ",
+                            episodes(allowance.leaked));
+    return fmt::format("--allow-overlap passed over {}: {}", what, allowance.reason);
 }
 
 diag::Result<File> read(const std::string& path) {

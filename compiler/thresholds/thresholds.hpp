@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "data/overlap.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::thresholds {
@@ -34,6 +35,13 @@ struct Entry {
         episodes;  ///< monitors: hashes of the episodes that it was calibrated on
 };
 
+/// That `etlc calibrate --allow-overlap REASON` passed over what it would have refused.
+struct Allowance {
+    std::string reason;
+    std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
+    std::uint64_t leaked = 0;       ///< episodes with a target among their frames
+};
+
 struct File {
     std::string path;
     std::string spec;
@@ -42,10 +50,21 @@ struct File {
     std::map<std::string, Entry> monitors;
     std::vector<std::string>
         episodes;  ///< content hashes of the episodes behind `predicates`, 16 hex digits each
+    /// Of the episodes behind predicates and monitors, by content hash, what tells them apart;
+    /// those that are not in it, from another version, are told apart by their hashes alone.
+    std::map<std::string, data::EpisodeContent> recordings;
+    std::vector<Allowance> allowances;  ///< of each call of `etlc calibrate` that made use of it
 };
 
 /// Of all episodes that some threshold was calibrated on.
 std::vector<std::string> all_episodes(const File& file);
+
+/// Those of episodes that no threshold in the file was calibrated on.
+void drop_unused_recordings(File& file);
+
+/// In words: "--allow-overlap passed over 3 episodes that share most of their content with another:
+/// REASON".
+std::string text(const Allowance& allowance);
 
 /// Failures are E06; their messages name the key, not the path: `data::in_file` (data/file.hpp)
 /// adds it.

@@ -3,6 +3,7 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "thresholds/thresholds.hpp"
@@ -54,6 +55,31 @@ std::string episodes(const std::vector<std::string>& hashes, std::size_t indent)
     return result + fmt::format("\n{:{}}]", "", indent);
 }
 
+/// Per episode and input, the hash, a colon and the sketch, eight digits a unit.
+std::string recordings(const std::map<std::string, data::EpisodeContent>& all) {
+    std::map<std::string, std::string> members;
+    for (const auto& [hash, content] : all) {
+        std::map<std::string, std::string> inputs;
+        for (const auto& [name, of_input] : content) {
+            std::string digits = of_input.hash + ":";
+            for (const std::uint32_t unit : of_input.sketch)
+                fmt::format_to(std::back_inserter(digits), "{:08x}", unit);
+            inputs[name] = text(digits);
+        }
+        members[hash] = object(inputs, 4);
+    }
+    return object(members, 2);
+}
+
+std::string allowances(const std::vector<Allowance>& all) {
+    std::string result = "[";
+    for (const Allowance& allowance : all)
+        result += fmt::format("{}\n    {{ \"reason\": {}, \"overlapping\": {}, \"leaked\": {} }}",
+                              result.size() > 1 ? "," : "", text(allowance.reason),
+                              allowance.overlapping, allowance.leaked);
+    return result + "\n  ]";
+}
+
 std::string entry(const Entry& entry, const std::string& what) {
     std::map<std::string, std::string> targets;
     for (const auto& [name, hash] : entry.targets) targets[name] = text(hash);
@@ -87,12 +113,17 @@ std::string entries(const std::map<std::string, Entry>& all, const std::string& 
 }  // namespace
 
 std::string write(const File& file) {
-    return fmt::format(
-        "{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": {},\n  \"monitors\": {},\n  "
-        "\"episodes\": {},\n"
-        "  \"etlc\": {}\n}}\n",
-        text(file.spec), entries(file.predicates, "predicate"), entries(file.monitors, "formula"),
-        episodes(file.episodes, 2), text(file.etlc));
+    std::string result = "{\n  \"format\": 1,\n";
+    const auto line = [&](const std::string& key, const std::string& value) {
+        result += fmt::format("  \"{}\": {},\n", key, value);
+    };
+    line("spec", text(file.spec));
+    line("predicates", entries(file.predicates, "predicate"));
+    line("monitors", entries(file.monitors, "formula"));
+    line("episodes", episodes(file.episodes, 2));
+    if (!file.recordings.empty()) line("recordings", recordings(file.recordings));
+    if (!file.allowances.empty()) line("allowances", allowances(file.allowances));
+    return result + fmt::format("  \"etlc\": {}\n}}\n", text(file.etlc));
 }
 
 }  // namespace etlc::thresholds

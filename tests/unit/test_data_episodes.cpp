@@ -99,7 +99,9 @@ std::string hash_of(const std::string& csv, const std::vector<Channel>& channels
                     const std::vector<std::size_t>& counted) {
     auto trace = open_csv_trace(from_memory(csv), channels);
     EXPECT_TRUE(trace);
-    EpisodeHash hash(counted);
+    std::vector<HashedInput> inputs;
+    for (const std::size_t c : counted) inputs.push_back({c, channels[c].name, false});
+    EpisodeHash hash(inputs);
     Sample sample;
     while (*(*trace)->next(sample)) hash.add(sample);
     return hash.text();
@@ -132,7 +134,7 @@ TEST(EpisodeHash, IsThatOfTheFloat32Values) {
     for (const char* array : {"z", "z_half"}) {  // the same numbers as float32 and as float16
         auto trace = open_trace(folder + "trace_stored.npz", {{array, Kind::vector, 3}});
         ASSERT_TRUE(trace);
-        EpisodeHash hash({0});
+        EpisodeHash hash({{0, "z", true}});
         Sample sample;
         while (*(*trace)->next(sample)) hash.add(sample);
         if (found.empty()) found = hash.text();

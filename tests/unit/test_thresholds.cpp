@@ -68,6 +68,17 @@ const std::string kWhole = R"({
     "0000000000000001",
     "ffffffffffffffff"
   ],
+  "recordings": {
+    "0000000000000001": {
+      "held": "00112233445566aa:",
+      "z": "0123456789abcdef:0000000a00ff00ff"
+    },
+    "ffffffffffffffff": {}
+  },
+  "allowances": [
+    { "reason": "few \"places\"", "overlapping": 2, "leaked": 0 },
+    { "reason": "starts at home", "overlapping": 0, "leaked": 1 }
+  ],
   "etlc": "0.1.0"
 }
 )";

@@ -22,4 +22,4 @@ change '23s/4/3/'
 change '24s/0.10000008344650269/0/'
 first=$(sed -n 's/^    "\([0-9a-f]*\)".*/\1/p' good.json | head -1)
 second=$(sed -n 's/^    "\([0-9a-f]*\)".*/\1/p' good.json | sed -n 2p)
-change "s/$second/$first/"
+change "/{\$/! s/$second/$first/"
