@@ -36,10 +36,7 @@ const std::vector<std::string> kNotEdited = {
 
 /// Files that are being worked on elsewhere; none is to be added.
 const std::set<std::string> kYetToBeBroken = {
-    "docs/calibration.md",
-    "docs/comparison.md",
     "docs/runtime.md",
-    "docs/tutorial.md",
     "tests/runtime/aarch64.cmake",
     "tests/runtime/headers.sh",
     "tests/runtime/kernels.cmake",
