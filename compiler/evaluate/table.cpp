@@ -158,7 +158,7 @@ std::string left_out(const Evaluation& evaluation) {
         if (m.lacking.empty()) continue;
         std::string names;
         for (const std::string& name : m.lacking) names += (names.empty() ? "" : ", ") + name;
-        text += fmt::format("{}: not evaluable, for want of a truth of {}\n", m.name, names);
+        text += fmt::format("{}: not evaluable without a truth of {}\n", m.name, names);
     }
     return text.empty() ? "" : "\n" + text;
 }
