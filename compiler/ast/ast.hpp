@@ -64,7 +64,7 @@ struct Aggregation {
 /// AGG DIST(point, target)
 struct Distance {
     std::optional<Aggregation> aggregation;
-    Name metric;  ///< l2, l2sq, l1, linf, cosine, angular, mahalanobis; its span is the word's
+    Name metric;  ///< a word of distances.def; its span is the word's
     std::optional<Weights> weights;
     std::vector<Name> point;       ///< one embedding input, or the scalars of a vector [px, py]
     bool point_is_vector = false;  ///< written with brackets

@@ -21,13 +21,10 @@ struct MetricName {
 };
 
 constexpr std::array kMetrics = std::to_array<MetricName>({
-    {"l2", Metric::l2},
-    {"l2sq", Metric::l2sq},
-    {"l1", Metric::l1},
-    {"linf", Metric::linf},
-    {"cosine", Metric::cosine},
-    {"angular", Metric::angular},
-    {"mahalanobis", Metric::mahalanobis},
+#define DISTANCE(id, Type, prepared, zero_is_unknown) {#id, Metric::id},
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
 });
 
 std::string_view word(Aggregation aggregation) {

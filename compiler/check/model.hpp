@@ -58,7 +58,12 @@ struct Target {
 
 // ---- what is measured ---------------------------------------------------------------------------
 
-enum class Metric : std::uint8_t { l2, l2sq, l1, linf, cosine, angular, mahalanobis };
+enum class Metric : std::uint8_t {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) id,
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+};
 enum class Aggregation : std::uint8_t { min, max, mean, kth };
 
 /// d aggregated over a target set: AGG DIST(point, target).

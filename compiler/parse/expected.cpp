@@ -20,9 +20,19 @@ using Types = std::vector<std::size_t>;
 /// Tokens that are named together where all of them could stand.
 struct Group {
     Types types;
-    std::string_view words;
+    std::string words;
     bool closed;  ///< a list of keywords: another word in their place is an unknown one
 };
+
+const std::vector<std::string>& distance_words() {
+    static const std::vector<std::string> words{
+#define DISTANCE(id, Type, prepared, zero_is_unknown) #id,
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    };
+    return words;
+}
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all{
@@ -33,7 +43,7 @@ const std::vector<Group>& groups() {
         {{EtlParser::LESS_EQUAL, EtlParser::GREATER}, "a comparison (<=, <, >= or >)", false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
         {{EtlParser::L2, EtlParser::MAHALANOBIS},
-         "a distance (l2, l2sq, l1, linf, cosine, angular or mahalanobis(M))",
+         fmt::format("a distance ({})", distances_in_words(" or ")),
          true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},
         {{EtlParser::HERTZ}, "'Hz'", true},
@@ -202,10 +212,24 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
     return words;
 }
 
+std::string distances_in_words(std::string_view before_last) {
+    const std::vector<std::string>& words = distance_words();
+    std::string text;
+    for (std::size_t i = 0; i < words.size(); ++i) {
+        if (i > 0) text += i + 1 < words.size() ? ", " : before_last;
+        text += words[i];
+        if (words[i] == "mahalanobis") text += "(M)";
+    }
+    return text;
+}
+
 const std::vector<std::string>& callable_words() {
-    static const std::vector<std::string> words{"l2",     "l2sq",    "l1",          "linf",
-                                                "cosine", "angular", "mahalanobis", "abs",
-                                                "sqrt",   "min",     "max",         "kth"};
+    static const std::vector<std::string> words = [] {
+        std::vector<std::string> all = distance_words();
+        for (const char* function : {"abs", "sqrt", "min", "max", "kth"})
+            all.emplace_back(function);
+        return all;
+    }();
     return words;
 }
 

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "parse/syntax_error.hpp"
@@ -19,6 +20,9 @@ bool expects_keyword(const Stuck& stuck);
 
 /// The words that could have stood there, for the nearest to a misspelt one.
 std::vector<std::string> expected_spellings(const Stuck& stuck);
+
+/// "l2, l1 or mahalanobis(M)", of all distances; `before_last`: " or ".
+std::string distances_in_words(std::string_view before_last);
 
 /// The names of distances and functions.
 const std::vector<std::string>& callable_words();

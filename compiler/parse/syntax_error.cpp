@@ -127,9 +127,8 @@ private:
                    : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
         if (word.getType() == EtlParser::IDENTIFIER) add_nearest(result, word, callable_words());
         if (result.notes.empty())
-            result.note(
-                "distances: l2, l2sq, l1, linf, cosine, angular, mahalanobis(M); functions: abs, "
-                "sqrt, min, max");
+            result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max",
+                                    distances_in_words(", ")));
         return result;
     }
 

@@ -5,18 +5,16 @@
 namespace etlc::plan {
 
 etlmon::MetricId metric_id(const check::Distance& distance) {
-    using enum check::Metric;
+    if (distance.weights_diagonal) return etlmon::MetricId::mahalanobis_diagonal;
     switch (distance.metric) {
-        case l2: return etlmon::MetricId::l2;
-        case l2sq: return etlmon::MetricId::l2sq;
-        case l1: return etlmon::MetricId::l1;
-        case linf: return etlmon::MetricId::linf;
-        case cosine: return etlmon::MetricId::cosine;
-        case angular: return etlmon::MetricId::angular;
-        case mahalanobis: break;
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case check::Metric::id:                           \
+        return etlmon::MetricId::id;
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
     }
-    return distance.weights_diagonal ? etlmon::MetricId::mahalanobis_diagonal
-                                     : etlmon::MetricId::mahalanobis;
+    return etlmon::MetricId::mahalanobis;
 }
 
 etlmon::AggregationId aggregation_id(const check::Distance& distance) {

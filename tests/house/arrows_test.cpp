@@ -51,10 +51,20 @@ const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "
 /// Headers of the runtime for programs on a host, which no generated code includes, and what of the
 /// C++ library each may use.
 const std::map<std::string, Names> kHosted = {
-    {"dynamic.hpp", {"limits"}},
+    {"dynamic.hpp", {}},
     {"dynamic_enclosed.hpp", {}},
     {"error_bounds.hpp", {}},
-    {"mapped_targets.hpp", {"errno.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h"}}};
+    {"mapped_targets.hpp", {"errno.h", "fcntl.h", "sys/mman.h", "sys/stat.h", "unistd.h"}},
+    {"table.hpp", {}}};
+
+/// Folder of the runtime -> the folders that it may include; "etlmon" is what stands in none.
+const std::map<std::string, Names> kHouses = {{"etlmon", {"etlmon"}},
+                                              {"temporal", {"etlmon", "temporal"}},
+                                              {"distance", {"etlmon", "temporal", "distance"}},
+                                              {"vectors", {"etlmon", "distance", "vectors"}}};
+
+/// Where firmware's half of the runtime includes the other.
+const Names kGates = {"views.hpp", "best.hpp"};
 
 Names reachable(const std::string& folder) {
     Names seen = {folder, "source"};
@@ -147,11 +157,32 @@ TEST(Arrows, TargetsLinkOnlyWhatTheyBuildOn) {
     }
 }
 
+TEST(Arrows, TheRuntimeHasTwoHouses) {
+    std::size_t gates = 0;
+    for (const auto& file : files("runtime")) {
+        if (file.extension() != ".hpp" && file.extension() != ".inc") continue;
+        const std::string folder = file.parent_path().filename();
+        ASSERT_TRUE(kHouses.contains(folder)) << file;
+        for (const std::string& include : includes(file)) {
+            if (!include.starts_with("etlmon/")) continue;
+            const std::string to = std::filesystem::path(include).parent_path().filename();
+            if (to == "vectors" && folder != to) {
+                EXPECT_TRUE(kGates.contains(file.filename())) << file << " includes " << include;
+                ++gates;
+            } else {
+                EXPECT_TRUE(kHouses.at(folder).contains(to)) << file << " includes " << include;
+            }
+        }
+    }
+    EXPECT_EQ(gates, kGates.size());
+}
+
 TEST(Arrows, TheRuntimeNeedsFiveHeadersOfC) {
     for (const auto& file : cpp_files("runtime")) {
         const auto hosted = kHosted.find(file.filename());
         for (const std::string& include : includes(file)) {
-            const bool ours = include.starts_with("etlmon/");
+            const bool ours =
+                include.starts_with("etlmon/") || include.starts_with("etlmon needs C++17");
             if (hosted == kHosted.end()) {
                 EXPECT_TRUE(ours || kFirmwareHeaders.contains(include))
                     << file << " includes " << include;

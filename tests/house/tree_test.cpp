@@ -50,6 +50,28 @@ TEST(Tree, FoldersAreSmall) {
     }
 }
 
+/// What distances.def says of itself. Two words stand for all: others mean more.
+TEST(Tree, DistancesAreNamedInOneFile) {
+    static const std::set<std::string> kTheirs = {"runtime/include/etlmon/distance/distances.def",
+                                                  "grammar/EtlLexer.g4"};
+    static const std::set<std::string> kDefinitions = {
+        "compiler/reference/distance.cpp", "compiler/calibrate/exact_distance.cpp",
+        "compiler/plan/narrow_targets.cpp", "runtime/include/etlmon/distance/error_bounds.hpp"};
+    static const std::regex kWord(R"(\b(l2sq|linf)\b)");
+    static const std::regex kComment(R"(//[^\n]*)");
+    for (const char* folder : {"compiler", "runtime", "grammar"}) {
+        for (const auto& file : files(folder)) {
+            const std::string text = std::regex_replace(content(file), kComment, "");
+            const bool named = std::regex_search(text, kWord);
+            if (kTheirs.contains(file)) {
+                EXPECT_TRUE(named) << file;
+            } else if (!kDefinitions.contains(file)) {
+                EXPECT_FALSE(named) << file << " names a distance: make that of distances.def";
+            }
+        }
+    }
+}
+
 TEST(Tree, NothingNamesTheMachineItWasWrittenOn) {
     static const std::regex kHome(R"(/(home|Users)/[a-z]\w*/|/root/\.)");
     for (const auto& file : files()) {
