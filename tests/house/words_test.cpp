@@ -35,13 +35,7 @@ const std::vector<std::string> kNotEdited = {
 };
 
 /// Files that are being worked on elsewhere; none is to be added.
-const std::set<std::string> kYetToBeBroken = {
-    "docs/runtime.md",
-    "tests/runtime/aarch64.cmake",
-    "tests/runtime/headers.sh",
-    "tests/runtime/kernels.cmake",
-    "tests/runtime/temporal.cmake",
-};
+const std::set<std::string> kYetToBeBroken = {"docs/runtime.md"};
 
 bool edited(const fs::path& file) {
     for (const std::string& folder : kNotEdited) {

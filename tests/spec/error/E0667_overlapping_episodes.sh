@@ -1,5 +1,6 @@
-# An episode less its last frame, and pieces that overlap by more than half, are no other recordings;
-# frames that all episodes begin with, and pieces that share less, are. A reason lets them pass.
+# An episode less its last frame, and pieces that overlap by more than half,
+# are no other recordings; frames that all episodes begin with, and pieces
+# that share less, are. A reason lets them pass.
 cat > dock.etl <<'END'
 spec dock;
 input z  : f32[2];
