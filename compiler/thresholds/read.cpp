@@ -194,9 +194,9 @@ private:
             const Json& inputs = object->items[i];
             if (!is_hash(object->keys[i]) || inputs.kind != Json::Kind::object)
                 fail(place, inputs, "an object named by a content hash of 16 hex digits");
+            data::EpisodeContent& of_inputs = result[object->keys[i]];
             for (std::size_t k = 0; k < inputs.keys.size() && !failure_; ++k)
-                result[object->keys[i]][inputs.keys[k]] =
-                    content(inputs.items[k], place + "." + inputs.keys[k]);
+                of_inputs[inputs.keys[k]] = content(inputs.items[k], place + "." + inputs.keys[k]);
         }
         return result;
     }

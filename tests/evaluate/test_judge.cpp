@@ -132,10 +132,9 @@ TEST(Evaluate, NamesEveryEpisodeThatCannotBeRead) {
                                         "0002.csv: column 'x' holds 'a', expected a number"}));
 }
 
-TEST(Evaluate, AnEpisodeWithoutStepsSaysNothing) {
-    const Evaluation found = evaluated(kNow, {episode("", ""), episode("y", "y")});
-    EXPECT_EQ(found.episodes, 2U);
-    EXPECT_EQ(found.monitors.at(0).episodes.counts.total(), 1U);
+TEST(Evaluate, AnEpisodeWithoutStepsIsAMistake) {
+    EXPECT_EQ(mistakes(kNow, {episode("", ""), episode("y", "y")}),
+              (std::vector<std::string>{"0000.csv: holds no step, expected at least one"}));
 }
 
 TEST(Evaluate, CountsEpisodesThatRepeatAnother) {

@@ -76,8 +76,8 @@ TEST(Overlap, IsMoreThanHalfOfTheSmaller) {
         }
     }
     // A long episode does not hide a short one.
-    EXPECT_TRUE(found(episode(joined(others, piece(a, 0, 21))), episode(a)));
-    EXPECT_FALSE(found(episode(joined(others, piece(a, 0, 20))), episode(a)));
+    EXPECT_TRUE(found(episode(joined(others, piece(a, 0, 32))), episode(a)));
+    EXPECT_FALSE(found(episode(joined(others, piece(a, 0, 8))), episode(a)));
 }
 
 TEST(Overlap, EstimatesSharesOfLongEpisodes) {

@@ -1,5 +1,4 @@
-# Most of an episode that the predicates have seen; allowed
-# for a reason, which the file has to keep.
+# Most of an episode that the predicates have seen; allowed for a reason, which the file keeps.
 cat > dock.etl <<'END'
 spec dock;
 input z  : f32[2];

@@ -1,6 +1,5 @@
-# An episode less its last frame, and pieces that overlap by more than half,
-# are no other recordings; frames that all episodes begin with, and pieces
-# that share less, are. A reason lets them pass.
+# An episode less its last frame, and most of one, are no other recordings; episodes that all begin
+# with the same frame are. A reason lets the former pass.
 cat > dock.etl <<'END'
 spec dock;
 input z  : f32[2];
