@@ -72,6 +72,11 @@ for name, text in {
  "k": 2, "scores": [0.5, 0.99999998], "predicate": "g <= ", "truth": "g > 0.5", "targets": {}}}, \
 "monitors": {},
  "episodes": ["0000000000000001", "0000000000000002"], "etlc": "0.1.0"}""",
+    "recordings.json": """{"format": 1, "spec": "s", "predicates": {}, "monitors": {},
+ "episodes": ["0000000000000001"],
+ "recordings": {"0000000000000001": {"g": "00112233445566aa:", \
+"z": "0123456789abcdef:0000000a00ff00ff"}},
+ "allowances": [{"reason": "few \\"places\\"", "overlapping": 2, "leaked": 0}], "etlc": "0.1.0"}""",
     "format2.json": '{"format": 2}',
     "nested.json": "[" * 40,
     "escapes.json":
