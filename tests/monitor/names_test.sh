@@ -167,7 +167,7 @@ done
 cat >show.hpp <<'END'
 #pragma once
 #include <cstdio>
-#include "etlmon/temporal/verdict.hpp"
+#include "etlmon/temporal/boolean_verdict.hpp"
 inline const char* word(bool satisfied, bool violated, bool decided) {
     return !decided ? "undecided" : satisfied ? "satisfied" : violated ? "violated" : "unknown";
 }

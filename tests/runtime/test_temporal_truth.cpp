@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "etlmon/temporal/boolean_verdict.hpp"
 #include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/demand.hpp"
-#include "etlmon/temporal/verdict.hpp"
 #include "temporal_streams.hpp"
 
 namespace {

@@ -16,7 +16,7 @@
 #include <stdio.h>
 #include <string.h>
 
-#include "etlmon/temporal/verdict.hpp"
+#include "etlmon/temporal/boolean_verdict.hpp"
 
 namespace harness {
 

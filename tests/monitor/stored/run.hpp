@@ -6,7 +6,7 @@
 #include <iterator>
 #include <vector>
 
-#include "etlmon/temporal/verdict.hpp"
+#include "etlmon/temporal/boolean_verdict.hpp"
 #include "etlmon/views.hpp"
 
 namespace trial {
