@@ -9,7 +9,7 @@
 #include <optional>
 
 #include "check/model.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {
 

@@ -10,7 +10,7 @@
 
 #include "calibrate/truth.hpp"
 #include "check/model.hpp"
-#include "plan/inputs.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::calibrate {
 

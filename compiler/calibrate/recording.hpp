@@ -14,7 +14,7 @@
 #include "check/model.hpp"
 #include "data/episodes.hpp"
 #include "data/trace.hpp"
-#include "plan/inputs.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 namespace etlc::calibrate {
 

@@ -10,7 +10,7 @@
 
 #include "calibrate/admission.hpp"
 #include "calibrate/recording.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {
 

@@ -13,7 +13,7 @@
 #include "calibrate/admission.hpp"
 #include "calibrate/calibrate.hpp"
 #include "calibrate/ground_truth.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {
 

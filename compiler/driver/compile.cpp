@@ -23,13 +23,11 @@ namespace {
 
 std::optional<std::string> text_of(const Compiled& compiled, const Request& request) {
     if (request.emit == "graph") return source::visible_lines(ir::print(*compiled.program));
-    if (request.emit == "plan")
-        return source::visible_lines(plan::print(compiled.plan, compiled.program->graph));
+    if (request.emit == "plan") return source::visible_lines(plan::print(compiled.plan));
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
-            return backend.emit(
-                compiled.plan, compiled.program->graph,
-                {request.name_space, kVersion, request.standalone, request.targets_file});
+            return backend.emit(compiled.plan, {request.name_space, kVersion, request.standalone,
+                                                request.targets_file});
     return std::nullopt;
 }
 

@@ -9,7 +9,7 @@
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::driver {
 

@@ -31,12 +31,6 @@ std::string quoted(std::string_view text) {
     return line.substr(0, cut) + " ...";
 }
 
-/// Streams whose value is one register: the register itself is the value of this step.
-bool is_register(StreamOp op) {
-    return op == StreamOp::running_max || op == StreamOp::running_min || op == StreamOp::since ||
-           op == StreamOp::trigger;
-}
-
 }  // namespace
 
 std::string open_condition(ir::Interval interval) {
@@ -142,8 +136,7 @@ std::vector<Demand> demands(const plan::Plan& plan) {
                 break;
             case StreamOp::flag: demand.lazy = true; break;
             case StreamOp::negation:
-            case StreamOp::conjunction:
-            case StreamOp::disjunction:
+            case StreamOp::combination:
             case StreamOp::within:
                 demand.asks = 0;
                 for (plan::Slot operand : stream.operands) {
@@ -173,8 +166,8 @@ std::string Context::value(plan::Slot slot) const {
     if (stream.op == StreamOp::constant) return literal(stream.value);
     if (stream.op == StreamOp::predicate) return now + names.predicate_atom.at(stream.index);
     if (stream.op == StreamOp::flag) return now + names.flag_atom.at(stream.index);
-    if (is_register(stream.op)) return names.stream_member.at(slot);
-    return names.stream_local.at(slot);
+    const bool is_register = stream.op == StreamOp::running || stream.op == StreamOp::since;
+    return is_register ? names.streams[slot].member : names.streams[slot].local;
 }
 
 std::string Context::low(plan::Slot slot) const {
@@ -189,7 +182,7 @@ std::string Context::high(plan::Slot slot) const {
 
 std::string reading_declaration(const Context& context, std::uint32_t reading) {
     const bool declared = context.boolean() && context.plan.readings[reading].operands.empty();
-    return (declared ? "" : "const Reading ") + context.names.reading_local.at(reading);
+    return (declared ? "" : "const Reading ") + context.names.readings[reading].local;
 }
 
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors) {

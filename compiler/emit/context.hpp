@@ -9,9 +9,9 @@
 
 #include "emit/names.hpp"
 #include "emit/printer.hpp"
-#include "plan/budget.hpp"
-#include "plan/dependents.hpp"
 #include "plan/plan.hpp"
+#include "plan/program/budget.hpp"
+#include "plan/program/dependents.hpp"
 
 namespace etlc::emit {
 
@@ -106,21 +106,18 @@ void print_judge(Printer& out, const Context& context);
 /// judged.
 void print_advance(Printer& out, const Context& context);
 void print_streams(Printer& out, const Context& context);
-/// The formula that a stream is; of one in between, what it holds; empty where its code says that.
-std::string stream_text(const ir::Graph& graph, const plan::Stream& stream);
 void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);
 /// Of machines as tables: the lists of keys that say what the states are worth, as locals.
 void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading,
-                        const plan::Machine& machine);
+                        const plan::Table& table);
 /// What the reading's value is assigned to: a Boolean monitor has declared it before it asks
 /// whether to compute it.
 std::string reading_declaration(const Context& context, std::uint32_t reading);
 /// "reach_open || avoid_open"; empty where one of the monitors is sliding, or the class is not
 /// Boolean: always.
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
-std::string table_name(const Context& context, std::uint32_t reading);
 
 /// The function of the runtime that decides the predicate: "is_at_most".
 const char* comparison_name(const check::Predicate& predicate);
@@ -137,9 +134,8 @@ struct Member {
     std::string initial;  ///< empty: reset() or the constructor sets it
 };
 std::vector<Member> members(const Context& context);
-std::vector<Member> stream_members(const Context& context);
-std::vector<Member> reading_members(const Context& context);
+/// Those of readings and streams: the plan says what they are.
+std::vector<Member> temporal_members(const Context& context);
 std::vector<Member> threshold_members(const Context& context);
-std::vector<Member> pending_members(const Context& context, std::uint32_t reading);
 
 }  // namespace etlc::emit

@@ -1,8 +1,8 @@
 // The kernels' calls in measure().
 #include "emit/measurements.hpp"
+#include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
-#include "plan/points.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {

@@ -33,7 +33,7 @@ void print_node(Printer& out, const ir::Graph& graph, ir::NodeId id, std::set<ir
 
 }  // namespace
 
-std::string dot(const plan::Plan& plan, const ir::Graph& graph, const Options&) {
+std::string dot(const plan::Plan& plan, const Options&) {
     Printer out;
     out.open(fmt::format("digraph {} {{", plan.model->name));
     out.line("node [fontname=\"monospace\"];");
@@ -43,7 +43,7 @@ std::string dot(const plan::Plan& plan, const ir::Graph& graph, const Options&) 
         const ir::NodeId root = monitor.node;
         out.line("m{} [label=\"{}{}\", shape=plaintext];", m, monitor.sliding ? "sliding " : "",
                  monitor.name);
-        print_node(out, graph, root, done);
+        print_node(out, *plan.formulas, root, done);
         out.line("m{} -> n{};", m, root);
     }
     out.close();

@@ -1,5 +1,5 @@
 // The plan as text for others: the C++ header, a picture of the graph, the budget.
-// Takes: a plan and its graph. Gives: one string per backend of backends.cpp. Keeps true: the same
+// Takes: a plan. Gives: one string per backend of backends.cpp. Keeps true: the same
 // plan gives the same bytes on every machine.
 #pragma once
 
@@ -21,12 +21,12 @@ struct Options {
 struct Backend {
     std::string_view name;     ///< of --emit
     std::string_view summary;  ///< for --help
-    std::string (*emit)(const plan::Plan& plan, const ir::Graph& graph, const Options& options);
+    std::string (*emit)(const plan::Plan& plan, const Options& options);
 };
 const std::vector<Backend>& backends();
 
-std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options& options);
-std::string dot(const plan::Plan& plan, const ir::Graph& graph, const Options& options);
-std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options& options);
+std::string header(const plan::Plan& plan, const Options& options);
+std::string dot(const plan::Plan& plan, const Options& options);
+std::string report(const plan::Plan& plan, const Options& options);
 
 }  // namespace etlc::emit

@@ -58,12 +58,12 @@ std::set<std::string> runtime_headers(const Context& context) {
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(),
                     [](const plan::Monitor& m) { return m.shifted; }))
         headers.insert("temporal/shift");
-    if (any_stream(plan,
-                   {StreamOp::window_max, StreamOp::window_min, StreamOp::window_since,
-                    StreamOp::window_trigger, StreamOp::window_until, StreamOp::window_release}))
+    if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
         headers.insert(boolean ? "temporal/boolean_window" : "temporal/window");
-    if (!context.names.table_locals.empty()) headers.insert("temporal/machine");
-    if (!context.names.pending.empty()) headers.insert("temporal/pending");
+    for (const Names::OfReading& reading : context.names.readings) {
+        if (!reading.guards.empty()) headers.insert("temporal/machine");
+        if (!reading.count.empty()) headers.insert("temporal/pending");
+    }
     return headers;
 }
 
@@ -171,7 +171,7 @@ bool asks_what_exists(const plan::Plan& plan) {
     return plan.has_sliding ||
            std::any_of(plan.streams.begin(), plan.streams.end(), [](const plan::Stream& stream) {
                return stream.operand_lag > 0 && stream.op != StreamOp::delay &&
-                      stream.op != StreamOp::conjunction && stream.op != StreamOp::disjunction;
+                      stream.op != StreamOp::combination;
            });
 }
 
@@ -351,9 +351,9 @@ bool is_bytes(const Member& member) {
 }  // namespace
 
 std::vector<Member> members(const Context& context) {
-    std::vector<Member> all = reading_members(context);
-    for (const std::vector<Member>& more : {stream_members(context), own_members(context)})
-        all.insert(all.end(), more.begin(), more.end());
+    std::vector<Member> all = temporal_members(context);
+    const std::vector<Member> own = own_members(context);
+    all.insert(all.end(), own.begin(), own.end());
     // Words before bytes: no padding but at the end.
     std::stable_partition(all.begin(), all.end(), [&](const Member& member) {
         return !context.boolean() || !is_bytes(member);
@@ -363,13 +363,13 @@ std::vector<Member> members(const Context& context) {
     return all;
 }
 
-std::string header(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
+std::string header(const plan::Plan& plan, const Options& options) {
     const check::Model& model = *plan.model;
     const bool boolean = plan.values == check::Values::boolean;
     const Context context{plan,
-                          graph,
+                          *plan.formulas,
                           model,
-                          make_names(plan, graph),
+                          make_names(plan),
                           file_name(model.file.path()),
                           options.name_space.empty() ? model.name : options.name_space,
                           options.targets_file,

@@ -14,7 +14,7 @@ std::string shifted(const plan::Monitor& monitor, const std::string& value) {
 
 std::string prefix_verdict(const Context& context, const plan::Monitor& monitor) {
     return fmt::format("etlmon::prefix_verdict({})",
-                       shifted(monitor, context.names.reading_local.at(monitor.reading)));
+                       shifted(monitor, context.names.readings[monitor.reading].local));
 }
 
 std::string verdict(const Context& context, std::size_t m) {
@@ -31,7 +31,7 @@ void print_reading_while_open(Printer& out, const Context& context, std::uint32_
     const plan::Reading& reading = context.plan.readings[r];
     if (!reading.operands.empty())
         return print_reading(out, context, r);  // of others: nothing is asked for
-    out.line("Reading {}{{}};", context.names.reading_local.at(r));
+    out.line("Reading {}{{}};", context.names.readings[r].local);
     out.open(fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
     print_reading(out, context, r);
     out.close();
@@ -71,7 +71,7 @@ void print_open_verdicts(Printer& out, const Context& context) {
         else
             print_wrapped(out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});",
                                            context.names.open_local.at(m), monitor.name,
-                                           context.names.reading_local.at(monitor.reading)));
+                                           context.names.readings[monitor.reading].local));
     }
 }
 

@@ -2,7 +2,7 @@
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
 #include "emit/measurements.hpp"
-#include "plan/literals.hpp"
+#include "plan/program/literals.hpp"
 
 namespace etlc::emit {
 

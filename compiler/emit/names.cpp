@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cctype>
 
-#include "plan/budget.hpp"
+#include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
-#include "plan/points.hpp"
+#include "plan/program/members.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -101,10 +101,10 @@ std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
 
 class Naming {
 public:
-    Naming(const plan::Plan& plan, const ir::Graph& graph)
+    explicit Naming(const plan::Plan& plan)
         : plan_(plan),
           model_(*plan.model),
-          graph_(graph),
+          graph_(*plan.formulas),
           boolean_(plan.values == check::Values::boolean),
           judge_(functions(model_, plan)),
           measure_scope_(functions(model_, plan)),
@@ -169,13 +169,12 @@ private:
     }
 
     void name_streams() {
-        for (plan::Slot slot = 0; slot < plan_.streams.size(); ++slot) {
-            const plan::Stream& stream = plan_.streams[slot];
+        for (const plan::Stream& stream : plan_.streams) {
+            Names::OfStream& names = names_.streams.emplace_back();
             if (is_atom(stream.op)) continue;
             const std::string name = stream_name(stream);
-            names_.stream_local[slot] = local(judge_, name);
-            if (plan::cost_of(stream, plan_.values).state_bytes > 0)
-                names_.stream_member[slot] = member(members_, name);
+            names.local = local(judge_, name);
+            if (!plan::members_of(stream).empty()) names.member = member(members_, name);
         }
     }
 
@@ -200,12 +199,9 @@ private:
             case plan::StreamOp::within: return "_within";
             case plan::StreamOp::delay: return "_delayed";
             case plan::StreamOp::shift: return "_before";
-            case plan::StreamOp::since:
-            case plan::StreamOp::trigger: return "_pending";
-            case plan::StreamOp::window_max:
-            case plan::StreamOp::window_min:
-            case plan::StreamOp::widening_max:
-            case plan::StreamOp::widening_min: return fmt::format("_last_{}", stream.length);
+            case plan::StreamOp::since: return "_pending";
+            case plan::StreamOp::window:
+            case plan::StreamOp::widening: return fmt::format("_last_{}", stream.length);
             default: return "";
         }
     }
@@ -224,9 +220,9 @@ private:
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;
-            names_.reading_local[r] = local(judge_, name + "_reading");
-            if (plan::cost_of(plan_.readings[r], plan_.values).state_bytes > 0)
-                name_registers(r, name);
+            Names::OfReading& names = names_.readings.emplace_back();
+            names.local = local(judge_, name + "_reading");
+            name_state(plan_.readings[r], name, names);
         }
     }
 
@@ -252,55 +248,65 @@ private:
         return result;
     }
 
-    void name_registers(std::uint32_t r, const std::string& name) {
-        const plan::Reading& reading = plan_.readings[r];
-        if (reading.kind != plan::Reading::Kind::machine || !plan::unrolled(reading.machine)) {
-            names_.reading_member[r] = member(
-                members_, name + (reading.kind == plan::Reading::Kind::response ? "_settled" : ""));
-            if (reading.kind == plan::Reading::Kind::response)
-                names_.recent_local[r] = local(judge_, name + "_recent");
-            if (reading.fold.left != plan::kNone)
-                names_.guard_member[r] = member(members_, name + "_guard");
-            if (reading.kind == plan::Reading::Kind::pending) name_pending(r, name);
-            const bool has_table =
-                reading.kind == plan::Reading::Kind::machine ||
-                (reading.kind == plan::Reading::Kind::pending && !reading.pending.is_fold);
-            if (has_table)
-                names_.table_locals[r] = {local(judge_, name + "_guards"),
-                                          local(judge_, name + "_weak"),
-                                          local(judge_, name + "_strong")};
-            return;
-        }
-        std::vector<std::string>& registers = names_.register_member[r];
-        int owing = 0;  // states kept so far that owe something
-        for (std::size_t q = 0; q < reading.machine.states.size(); ++q) {
-            const bool met = reading.machine.automaton.states[q].empty();
-            if (!met && !reading.machine.states[q].always_true) ++owing;
-            const std::string state = met ? name + "_met" : fmt::format("{}_owing_{}", name, owing);
-            if (reading.machine.states[q].always_true) {
-                registers.emplace_back();  // not kept
-                names_.register_next[r].emplace_back();
-                continue;
-            }
-            registers.push_back(member(members_, state));
-            names_.register_next[r].push_back(local(judge_, state));
+    /// The members of a reading, and the locals that work on them.
+    void name_state(const plan::Reading& reading, const std::string& name,
+                    Names::OfReading& names) {
+        switch (reading.kind) {
+            case plan::Reading::Kind::latch: names.members = {member(members_, name)}; break;
+            case plan::Reading::Kind::fold:
+                names.members = {member(members_, name)};
+                if (reading.fold.left != plan::kNone)
+                    names.members.push_back(member(members_, name + "_guard"));
+                break;
+            case plan::Reading::Kind::response:
+                names.members = {member(members_, name + "_settled")};
+                names.recent = local(judge_, name + "_recent");
+                break;
+            case plan::Reading::Kind::machine:
+                if (reading.machine.unrolled) return name_registers(reading.machine, name, names);
+                names.members = {member(members_, name)};
+                name_table(name, names);
+                break;
+            case plan::Reading::Kind::pending:
+                name_pending(reading.pending, name, names);
+                if (!reading.pending.is_fold) name_table(name, names);
+                break;
+            case plan::Reading::Kind::combination: break;
         }
     }
 
-    void name_pending(std::uint32_t r, const std::string& name) {
-        const plan::Pending& pending = plan_.readings[r].pending;
-        Names::PendingNames& names = names_.pending[r];
+    void name_registers(const plan::Machine& machine, const std::string& name,
+                        Names::OfReading& names) {
+        int owing = 0;  // states kept so far that owe something
+        for (std::size_t q = 0; q < machine.states.size(); ++q) {
+            if (machine.states[q].always_true) continue;
+            const bool met = machine.automaton.states[q].empty();
+            if (!met) ++owing;
+            const std::string state = met ? name + "_met" : fmt::format("{}_owing_{}", name, owing);
+            names.members.push_back(member(members_, state));
+            names.next.push_back(local(judge_, state));
+        }
+    }
+
+    void name_table(const std::string& name, Names::OfReading& names) {
+        names.guards = local(judge_, name + "_guards");
+        names.weak = local(judge_, name + "_weak");
+        names.strong = local(judge_, name + "_strong");
+    }
+
+    void name_pending(const plan::Pending& pending, const std::string& name,
+                      Names::OfReading& names) {
         for (const plan::Pending::Part& part : pending.parts) {
             const std::string words = identifier(graph_.text(part.node), "");
             const bool few = !words.empty() && words.size() <= kLongestPartName;
             names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
-            names.leaves.push_back(
-                part.leaf == plan::kNone
-                    ? ""
-                    : member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
+            if (part.leaf == plan::kNone) continue;
+            names.members.push_back(
+                member(members_, fmt::format("{}_last_{}", name, few ? words : "value")));
         }
         names.count = local(judge_, name + "_count");
-        if (pending.is_fold) names_.guard_member[r] = member(members_, name + "_guard");
+        names.members.push_back(member(members_, name));
+        if (pending.is_fold) names.members.push_back(member(members_, name + "_guard"));
     }
 
     void name_constants() {
@@ -380,8 +386,8 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
     return legal ? name : otherwise;
 }
 
-Names make_names(const plan::Plan& plan, const ir::Graph& graph) {
-    return Naming(plan, graph).name_all();
+Names make_names(const plan::Plan& plan) {
+    return Naming(plan).name_all();
 }
 
 }  // namespace etlc::emit

@@ -62,29 +62,21 @@ struct Names {
         threshold_member;  ///< of adaptive predicates: the threshold as it is now
     std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
     std::map<check::Index, std::string> hold_member;
-    std::map<plan::Slot, std::string> stream_local;
-    std::map<plan::Slot, std::string> stream_member;
-    std::map<std::uint32_t, std::string> reading_local;
-    std::map<std::uint32_t, std::string> reading_member;
-    std::map<std::uint32_t, std::string>
-        guard_member;  ///< of folds with two sides: what the left one lets through
-    std::map<std::uint32_t, std::string>
-        recent_local;  ///< of responses that wait before their window
-    std::map<std::uint32_t, std::vector<std::string>>
-        register_member;  ///< of unrolled machines, per state
-    std::map<std::uint32_t, std::vector<std::string>>
-        register_next;  ///< their values of this step, as locals
-    struct TableLocals {
-        std::string guards, weak, strong;
+    struct OfStream {
+        std::string local;   ///< empty: an atom or a constant
+        std::string member;  ///< empty: it keeps nothing
     };
-    std::map<std::uint32_t, TableLocals> table_locals;  ///< of machines as tables
-    struct PendingNames {
-        std::vector<std::string> parts;  ///< locals: readings at the last positions
-        std::vector<std::string>
-            leaves;         ///< members: the last values; empty where the part is no leaf
-        std::string count;  ///< local
+    std::vector<OfStream> streams;
+    struct OfReading {
+        std::string local;
+        std::vector<std::string> members;  ///< as plan::members_of lists them
+        std::string recent;                ///< local of a response that waits before its window
+        std::vector<std::string> next;     ///< locals: this step's value of each register
+        std::string guards, weak, strong;  ///< locals of a machine as a table; else empty
+        std::vector<std::string> parts;    ///< locals of what is pending: at the last positions
+        std::string count;                 ///< local: how many of these there are
     };
-    std::map<std::uint32_t, PendingNames> pending;
+    std::vector<OfReading> readings;
     std::map<std::size_t, std::string>
         verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
     std::map<std::size_t, std::string>
@@ -97,6 +89,6 @@ struct Names {
     std::map<check::Index, std::string> weight_array;  ///< per distance
 };
 
-Names make_names(const plan::Plan& plan, const ir::Graph& graph);
+Names make_names(const plan::Plan& plan);
 
 }  // namespace etlc::emit

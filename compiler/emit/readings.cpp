@@ -2,8 +2,6 @@
 #include <algorithm>
 
 #include "emit/context.hpp"
-#include "plan/register_program.hpp"
-#include "plan/table.hpp"
 
 namespace etlc::emit {
 
@@ -42,7 +40,7 @@ std::string widened(const Context& context, bool takes_max, const std::string& v
 // ---- latches and folds
 
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
-    const std::string& kept = context.names.reading_member.at(r);
+    const std::string& kept = context.names.readings[r].members[0];
     out.line("if (position == 0) {} = {};", kept,
              context.value(context.plan.readings[r].latch.operand));
     out.line("{} = etlmon::settled({});", reading_declaration(context, r), kept);
@@ -50,13 +48,14 @@ void print_latch(Printer& out, const Context& context, std::uint32_t r) {
 
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const Fold& fold = context.plan.readings[r].fold;
-    const std::string& best = context.names.reading_member.at(r);
-    const bool takes_max = ir::takes_max(fold.op);
+    const std::vector<std::string>& members = context.names.readings[r].members;
+    const std::string& best = members[0];
+    const bool takes_max = fold.max;
     const char* widen = takes_max ? "max_of" : "min_of";
     const char* narrow = takes_max ? "min_of" : "max_of";
     const char* end = takes_max ? "high" : "low";
     const bool binary = fold.left != kNone;
-    const std::string guard = binary ? context.names.guard_member.at(r) : "";
+    const std::string guard = binary ? members[1] : "";
     const std::string right = context.value(fold.right);
     const std::string step = binary ? fmt::format("{}({}, {})", narrow, guard, right) : right;
     const std::string open = open_condition(fold.interval);
@@ -93,7 +92,8 @@ std::string conditional(const std::string& condition, const std::string& stateme
 
 void print_response(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Response& response = context.plan.readings[r].response;
-    const std::string& settled = context.names.reading_member.at(r);
+    const Names::OfReading& names = context.names.readings[r];
+    const std::string& settled = names.members[0];
     const char* worst = response.of_always ? "min_of" : "max_of";
     const char* far_end = response.of_always ? "high" : "low";
 
@@ -104,9 +104,9 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     std::string now = response.of_always ? context.spelling.no : context.spelling.yes;
     if (response.pending != kNone) now = context.value(response.pending);
     if (response.recent != kNone) {
-        out.line("const Value {} = {};", context.names.recent_local.at(r),
+        out.line("const Value {} = {};", names.recent,
                  call(worst, {now, context.value(response.recent)}));
-        now = context.names.recent_local.at(r);
+        now = names.recent;
     }
     const std::string unseen_answer = response.of_always ? context.high(response.unseen_answer)
                                                          : context.low(response.unseen_answer);
@@ -129,13 +129,15 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
 // ---- unrolled machines
 
 /// min(max of the sources, literals)
-std::string term_text(const Context& context, std::uint32_t r, const plan::Term& term,
-                      bool in_place) {
+std::string term_text(const Context& context, std::uint32_t r, const plan::Term& term) {
+    const Machine& machine = context.plan.readings[r].machine;
+    const Names::OfReading& names = context.names.readings[r];
     std::vector<std::string> sources;
-    for (plan::Source source : term.sources)
-        sources.push_back(source.updated && !in_place
-                              ? context.names.register_next.at(r)[source.state]
-                              : context.names.register_member.at(r)[source.state]);
+    for (plan::Source source : term.sources) {
+        const bool is_local = source.updated && !machine.program.in_place;
+        sources.push_back(
+            (is_local ? names.next : names.members)[machine.register_of(source.state)]);
+    }
     std::vector<std::string> factors;
     if (!sources.empty()) factors.push_back(call("max_of", sources));
     for (Slot slot : context.by_work(term.literals)) factors.push_back(context.value(slot));
@@ -143,23 +145,24 @@ std::string term_text(const Context& context, std::uint32_t r, const plan::Term&
 }
 
 void print_registers(Printer& out, const Context& context, std::uint32_t r) {
-    const plan::RegisterProgram program =
-        plan::make_register_program(context.plan.readings[r].machine);
-    const std::vector<std::string>& registers = context.names.register_member.at(r);
-    const std::vector<std::string>& next = context.names.register_next.at(r);
+    const Machine& machine = context.plan.readings[r].machine;
+    const plan::RegisterProgram& program = machine.program;
+    const Names::OfReading& names = context.names.readings[r];
     for (const plan::Update& update : program.updates) {
         std::vector<std::string> terms;
-        for (const plan::Term& term : update.terms)
-            terms.push_back(term_text(context, r, term, program.in_place));
-        const std::string target =
-            program.in_place ? registers[update.state] : "const Value " + next[update.state];
-        print_wrapped(out, fmt::format("{} = {};", target,
-                                       terms.empty() ? context.spelling.no
-                                                     : call("max_of", terms, context.boolean())));
+        for (const plan::Term& term : update.terms) terms.push_back(term_text(context, r, term));
+        const std::size_t at = machine.register_of(update.state);
+        print_wrapped(
+            out,
+            fmt::format(
+                "{} = {};", program.in_place ? names.members[at] : "const Value " + names.next[at],
+                terms.empty() ? context.spelling.no : call("max_of", terms, context.boolean())));
     }
     if (program.in_place) return;
-    for (const plan::Update& update : program.updates)
-        out.line("{} = {};", registers[update.state], next[update.state]);
+    for (const plan::Update& update : program.updates) {
+        const std::size_t at = machine.register_of(update.state);
+        out.line("{} = {};", names.members[at], names.next[at]);
+    }
 }
 
 /// The max over states of min(register, key), states with the same key together.
@@ -194,21 +197,22 @@ std::string best_of(const Context& context,
 void print_unrolled(Printer& out, const Context& context, std::uint32_t r) {
     print_registers(out, context, r);
     const Machine& machine = context.plan.readings[r].machine;
-    const std::vector<std::string>& registers = context.names.register_member.at(r);
     std::vector<std::string> rho;
     std::vector<std::pair<std::string, std::string>>
         lower;  // register, key; an empty register is always true
     std::vector<std::pair<std::string, std::string>> upper;
-    for (std::size_t q = 0; q < machine.states.size(); ++q) {
+    for (std::uint32_t q = 0; q < machine.states.size(); ++q) {
         const Machine::State& owed = machine.states[q];
+        const std::string kept =
+            owed.always_true ? "" : context.names.readings[r].members[machine.register_of(q)];
         const std::string strong =
             owed.strong_unseen == kNone ? "" : context.high(owed.strong_unseen);
         const std::string weak = owed.weak_unseen == kNone ? "" : context.low(owed.weak_unseen);
-        upper.emplace_back(owed.always_true ? "" : registers[q] + ".high",
+        upper.emplace_back(owed.always_true ? "" : kept + ".high",
                            strong == context.spelling.top ? "" : strong);
         if (owed.strong) continue;
-        rho.push_back(owed.always_true ? context.spelling.yes : registers[q]);
-        lower.emplace_back(owed.always_true ? "" : registers[q] + ".low",
+        rho.push_back(owed.always_true ? context.spelling.yes : kept);
+        lower.emplace_back(owed.always_true ? "" : kept + ".low",
                            weak == context.spelling.top ? "" : weak);
     }
     print_parts(out, context, r, rho.empty() ? context.spelling.no : call("max_of", rho),
@@ -231,8 +235,8 @@ std::string list(const std::vector<std::string>& items) {
 
 void print_table_machine(Printer& out, const Context& context, std::uint32_t r) {
     const Machine& machine = context.plan.readings[r].machine;
-    const Names::TableLocals& locals = context.names.table_locals.at(r);
-    const std::string& kept = context.names.reading_member.at(r);
+    const Names::OfReading& names = context.names.readings[r];
+    const std::string& kept = names.members[0];
     std::vector<std::string> guards;
     for (const auto& literals : machine.guards) {
         std::vector<std::string> values;
@@ -240,12 +244,12 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
         guards.push_back(values.empty() ? context.spelling.yes
                                         : call("min_of", values, context.boolean()));
     }
-    print_wrapped(out, fmt::format("const Value {}[] = {};", locals.guards, list(guards)));
-    print_machine_keys(out, context, r, machine);
-    const std::string tables = "tables::" + table_name(context, r);
-    out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, locals.guards);
+    print_wrapped(out, fmt::format("const Value {}[] = {};", names.guards, list(guards)));
+    print_machine_keys(out, context, r, machine.table);
+    const std::string tables = "tables::" + names.local;
+    out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, names.guards);
     out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables,
-             locals.weak, locals.strong);
+             names.weak, names.strong);
 }
 
 template <class Items, class Spell>
@@ -256,19 +260,19 @@ void print_array(Printer& out, const std::string& type, const std::string& name,
     print_wrapped(out, text + "};");
 }
 
-/// The machine that is emitted as a table, if the reading has one.
-const Machine* tabled(const Reading& reading) {
-    if (reading.kind == Reading::Kind::machine && !plan::unrolled(reading.machine))
-        return &reading.machine;
+/// The table that the reading is emitted as, if it is.
+const plan::Table* table_of(const Reading& reading) {
+    if (reading.kind == Reading::Kind::machine && !reading.machine.unrolled)
+        return &reading.machine.table;
     if (reading.kind == Reading::Kind::pending && !reading.pending.is_fold)
-        return &reading.pending.machine;
+        return &reading.pending.machine.table;
     return nullptr;
 }
 
 void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
-    const plan::Table table = plan::make_table(*tabled(reading));
-    const std::string name = table_name(context, r);
+    const plan::Table& table = *table_of(reading);
+    const std::string& name = context.names.readings[r].local;
     out.line("// {}: {} states, {} transitions", context.graph.text(reading.node),
              table.ends.size(), table.transitions.size());
     print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
@@ -282,31 +286,14 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
     });
 }
 
-bool is_table(const Reading& reading) {
-    return tabled(reading) != nullptr;
-}
-
-std::string owed_text(const Context& context, const std::vector<plan::NodeId>& obligations) {
-    if (obligations.empty()) return "nothing is owed any more";
-    std::string text = "owed: ";
-    for (std::size_t i = 0; i < obligations.size(); ++i)
-        text += (i == 0 ? "" : ", ") + context.graph.text(obligations[i]);
-    return text;
-}
-
 }  // namespace
 
-std::string table_name(const Context& context, std::uint32_t r) {
-    return context.names.reading_local.at(r);
-}
-
 void print_machine_keys(Printer& out, const Context& context, std::uint32_t r,
-                        const Machine& machine) {
-    const plan::Table table = plan::make_table(machine);
-    const Names::TableLocals& locals = context.names.table_locals.at(r);
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.weak,
+                        const plan::Table& table) {
+    const Names::OfReading& names = context.names.readings[r];
+    print_wrapped(out, fmt::format("const Key {}[] = {};", names.weak,
                                    list(keys(context, table.weak, false))));
-    print_wrapped(out, fmt::format("const Key {}[] = {};", locals.strong,
+    print_wrapped(out, fmt::format("const Key {}[] = {};", names.strong,
                                    list(keys(context, table.strong, true))));
 }
 
@@ -318,80 +305,28 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
         case Reading::Kind::pending: return print_pending(out, context, r);
         case Reading::Kind::response: return print_response(out, context, r);
         case Reading::Kind::machine:
-            return is_table(reading) ? print_table_machine(out, context, r)
-                                     : print_unrolled(out, context, r);
-        case Reading::Kind::conjunction:
-        case Reading::Kind::disjunction: break;
+            return reading.machine.unrolled ? print_unrolled(out, context, r)
+                                            : print_table_machine(out, context, r);
+        case Reading::Kind::combination: break;
     }
     std::vector<std::string> parts;
     for (std::uint32_t operand : reading.operands)
-        parts.push_back(context.names.reading_local.at(operand));
-    print_wrapped(
-        out,
-        fmt::format("{} = {};", reading_declaration(context, r),
-                    call(reading.kind == Reading::Kind::conjunction ? "min_of" : "max_of", parts)));
+        parts.push_back(context.names.readings[operand].local);
+    print_wrapped(out, fmt::format("{} = {};", reading_declaration(context, r),
+                                   call(reading.max ? "max_of" : "min_of", parts)));
 }
 
 void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
-    if (std::none_of(readings.begin(), readings.end(), is_table)) return;
+    if (std::none_of(readings.begin(), readings.end(), table_of)) return;
     out.line(
         "/// State machines: the transitions into each state, where they end, what each state "
         "owes.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
-        if (is_table(readings[r])) print_table(out, context, r);
+        if (table_of(readings[r]) != nullptr) print_table(out, context, r);
     out.line("}  // namespace tables");
     out.line();
-}
-
-std::vector<Member> reading_members(const Context& context) {
-    std::vector<Member> result;
-    for (std::uint32_t r = 0; r < context.plan.readings.size(); ++r) {
-        const Reading& reading = context.plan.readings[r];
-        if (reading.kind == Reading::Kind::pending) {
-            const std::vector<Member> own = pending_members(context, r);
-            result.insert(result.end(), own.begin(), own.end());
-            continue;
-        }
-        const std::string text = context.graph.text(reading.node);
-        if (const auto registers = context.names.register_member.find(r);
-            registers != context.names.register_member.end()) {
-            for (std::size_t q = 0; q < registers->second.size(); ++q) {
-                if (reading.machine.states[q].always_true) continue;
-                const std::string& name = registers->second[q];
-                result.push_back(
-                    {context.spelling.kept, name,
-                     owed_text(context, reading.machine.automaton.states[q]),
-                     fmt::format("{} = {};", name,
-                                 q == 0 ? context.spelling.yes : context.spelling.no)});
-            }
-            continue;
-        }
-        const auto member = context.names.reading_member.find(r);
-        if (member == context.names.reading_member.end()) continue;
-        const std::string& name = member->second;
-        if (is_table(reading)) {
-            result.push_back(
-                {fmt::format("etlmon::Machine<Value, {}>", reading.machine.states.size()), name,
-                 text, fmt::format("{}.reset();", name)});
-            continue;
-        }
-        const bool response = reading.kind == Reading::Kind::response;
-        const bool starts_true =
-            response ? reading.response.of_always
-                     : reading.kind == Reading::Kind::fold && !ir::takes_max(reading.fold.op);
-        const std::string first = starts_true ? context.spelling.yes : context.spelling.no;
-        const std::string second = starts_true ? context.spelling.no : context.spelling.yes;
-        result.push_back({context.spelling.kept, name,
-                          text + (response ? ": where the answer's time is over" : ""),
-                          fmt::format("{} = {};", name, first)});
-        if (reading.kind == Reading::Kind::fold && reading.fold.left != kNone)
-            result.push_back({context.spelling.kept, context.names.guard_member.at(r),
-                              "what its left side lets through",
-                              fmt::format("{} = {};", context.names.guard_member.at(r), second)});
-    }
-    return result;
 }
 
 }  // namespace etlc::emit

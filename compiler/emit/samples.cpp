@@ -1,6 +1,6 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
 #include "emit/measurements.hpp"
-#include "plan/points.hpp"
+#include "plan/decide/points.hpp"
 
 namespace etlc::emit {
 

@@ -6,6 +6,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/program/members.hpp"
 #include "plan/stored.hpp"
 #include "source/escape.hpp"
 
@@ -42,23 +43,32 @@ std::string number(std::uint64_t x) {
     return fmt::format("{}", x);
 }
 
-Row cost_row(Row row, const plan::Cost& cost) {
-    for (std::uint64_t x :
-         {cost.state_bytes, cost.constant_bytes, cost.operations, cost.distance_operations})
-        row.push_back(number(x));
+/// Some sets take other room on machines without vectors of floats.
+bool laid_out_by_machine(const plan::Plan& plan) {
+    return plan.cost.target_bytes != plan.cost.scalar_target_bytes;
+}
+
+Row cost_row(Row row, const plan::Cost& cost, bool both_layouts) {
+    row.push_back(number(cost.state_bytes));
+    row.push_back(number(cost.target_bytes));
+    if (both_layouts) row.push_back(number(cost.scalar_target_bytes));
+    row.push_back(number(cost.operations));
+    row.push_back(number(cost.distance_operations));
     return row;
 }
 
 std::vector<Row> monitor_rows(const plan::Plan& plan) {
-    std::vector<Row> rows{
-        {"monitor", "about", "state B", "targets B", "operations", "distance elements"}};
+    const bool both_layouts = laid_out_by_machine(plan);
+    std::vector<Row> rows{{"monitor", "about", "state B", "targets B"}};
+    if (both_layouts) rows[0].push_back("without SIMD");
+    rows[0].insert(rows[0].end(), {"operations", "distance elements"});
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = plan.monitors[m];
         const std::string about =
             monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
-        rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m]));
+        rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m], both_layouts));
     }
-    rows.push_back(cost_row({"all together", ""}, plan.cost));
+    rows.push_back(cost_row({"all together", ""}, plan.cost, both_layouts));
     return rows;
 }
 
@@ -212,6 +222,8 @@ void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan&
 
 void print_tables(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     print_table(out, prefix, monitor_rows(plan), 2);
+    if (laid_out_by_machine(plan))
+        out.line(prefix + "targets B on x86-64 and 64-bit Arm; without SIMD: on microcontrollers");
     out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
     if (!plan.narrow.empty()) {
@@ -256,7 +268,8 @@ void print_summary(Printer& out, const Context& context) {
         out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }
 
-std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options& options) {
+std::string report(const plan::Plan& plan, const Options& options) {
+    const ir::Graph& graph = *plan.formulas;
     Printer out;
     out.line("spec {}", plan.model->name);
     print_tables(out, "  ", plan);
@@ -273,8 +286,8 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
         const plan::Cost cost = plan::cost_of(reading, plan.values);
         std::string as = "fold";
         if (reading.kind == plan::Reading::Kind::latch) as = "latch";
-        if (reading.kind == plan::Reading::Kind::conjunction) as = "min of parts";
-        if (reading.kind == plan::Reading::Kind::disjunction) as = "max of parts";
+        if (reading.kind == plan::Reading::Kind::combination)
+            as = reading.max ? "max of parts" : "min of parts";
         if (reading.kind == plan::Reading::Kind::response) as = "response";
         if (reading.kind == plan::Reading::Kind::pending)
             as = fmt::format("{}, anew at {} positions",
@@ -284,14 +297,14 @@ std::string report(const plan::Plan& plan, const ir::Graph& graph, const Options
             as = fmt::format("state machine, {} states, {} transitions{}",
                              reading.machine.states.size(),
                              reading.machine.automaton.transitions.size(),
-                             plan::unrolled(reading.machine) ? "" : ", as a table");
+                             reading.machine.unrolled ? "" : ", as a table");
         rows.push_back({shortened(graph.text(reading.node)), as, number(cost.state_bytes),
                         number(cost.code_bytes), number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {
         const plan::Cost cost = plan::cost_of(stream, plan.values);
         if (cost.operations == 0 && cost.state_bytes == 0) continue;
-        const std::string text = stream_text(graph, stream);
+        const std::string text = plan::text_of(stream, graph);
         rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream",
                         number(cost.state_bytes), number(cost.code_bytes),
                         number(cost.operations)});

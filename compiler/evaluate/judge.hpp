@@ -17,7 +17,7 @@
 #include "evaluate/counts.hpp"
 #include "evaluate/ranking.hpp"
 #include "evaluate/subject.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::evaluate {
 

@@ -2,7 +2,7 @@
 // Takes: nodes, through make_*. Gives: their ids; equal nodes have equal ids, so equality of
 // formulas is equality of ids. Keeps true: operands have smaller ids; only predicates and flags are
 // negated; && and || are flat, sorted and without repeats; the laws applied on the way (see
-// simplify.cpp) hold for min and max on every prefix, so p && !p stays.
+// graph.cpp) hold for min and max on every prefix, so p && !p stays.
 #pragma once
 
 #include <cstdint>

@@ -97,7 +97,7 @@ private:
 }  // namespace
 
 Program lower(const check::Model& model) {
-    Program program{Graph(model), {}};
+    Program program{Graph(model), {}, {}};
     Lowering lowering(model, program.graph);
     for (const check::Monitor& monitor : model.monitors)
         program.monitors.push_back(lowering.lower(monitor.formula, false));

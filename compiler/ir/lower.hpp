@@ -3,6 +3,7 @@
 // lowered at most once a polarity, so shared `let`s stay shared.
 #pragma once
 
+#include <unordered_map>
 #include <vector>
 
 #include "ir/graph.hpp"
@@ -12,6 +13,9 @@ namespace etlc::ir {
 struct Program {
     Graph graph;
     std::vector<NodeId> monitors;  ///< per monitor of the model
+    /// Of some formulas an equal one, whose windows end before an unbounded future begins: what is
+    /// cheaper to monitor, the plan decides (opt/split_windows.cpp).
+    std::unordered_map<NodeId, NodeId> apart;
 };
 
 /// Every node that a monitor reaches, operands first: `--emit graph`.

@@ -59,6 +59,7 @@ void optimise(ir::Program& program) {
             if (!program.graph.model().monitors[m].sliding)
                 program.monitors[m] = rewriting.rewrite(program.monitors[m]);
     }
+    split_windows(program);
     ir::verify(program.graph);
 }
 

@@ -1,6 +1,7 @@
 // Rewriting the graph before it is planned.
 // Takes: the program. Gives: an equal one that is smaller to monitor. Keeps true: rho and the
-// bounds of every monitor on every prefix; the passes stand in one table, each is a file.
+// bounds of every monitor on every prefix; the passes stand in one table, each is a file. Behind
+// here the program is const.
 #pragma once
 
 #include <string_view>
@@ -24,12 +25,15 @@ struct Pass {
 };
 const std::vector<Pass>& passes();
 
-/// Applies every pass to every prefix monitor. Sliding monitors are planned as written: their
-/// delays are their meaning.
+/// Applies every pass to every prefix monitor, and then takes windows apart. Sliding monitors are
+/// planned as written: their delays are their meaning.
 void optimise(ir::Program& program);
 
 ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);
 ir::NodeId look_back(ir::Graph& graph, ir::NodeId node);
 ir::NodeId split_until(ir::Graph& graph, ir::NodeId node);
+
+/// Fills in program.apart.
+void split_windows(ir::Program& program);
 
 }  // namespace etlc::opt

@@ -5,13 +5,13 @@
 #include <algorithm>
 #include <set>
 
-#include "plan/budget.hpp"
+#include "plan/decide/readings.hpp"
+#include "plan/decide/refusal.hpp"
+#include "plan/decide/share_windows.hpp"
+#include "plan/decide/streams.hpp"
 #include "plan/narrow_targets.hpp"
-#include "plan/readings.hpp"
-#include "plan/refusal.hpp"
-#include "plan/share_windows.hpp"
+#include "plan/program/budget.hpp"
 #include "plan/stored.hpp"
-#include "plan/streams.hpp"
 
 namespace etlc::plan {
 
@@ -40,12 +40,14 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
 
 class Planning {
 public:
-    Planning(ir::Program& program, const Limits& limits, check::Values values)
+    Planning(const ir::Program& program, const Limits& limits, check::Values values)
         : program_(program),
           limits_(limits),
-          streams_(program.graph, plan_.streams, values),
-          readings_(program.graph, streams_, plan_.readings, limits, values) {
+          formulas_(std::make_shared<ir::Graph>(program.graph)),
+          streams_(*formulas_, plan_.streams, values),
+          readings_(program, *formulas_, streams_, plan_.readings, limits, values) {
         plan_.model = &program.graph.model();
+        plan_.formulas = formulas_;
         plan_.values = values;
     }
 
@@ -78,7 +80,7 @@ public:
             const std::size_t known = readings_.oversize().size();
             const auto reading = readings_.of(program_.monitors[index]);
             for (std::size_t i = known; i < readings_.oversize().size(); ++i)
-                refuse_part(source, readings_.oversize()[i], program_.graph, limits_, plan_.values,
+                refuse_part(source, readings_.oversize()[i], *formulas_, limits_, plan_.values,
                             sink);
             if (!reading) return false;
             monitor.reading = *reading;
@@ -91,6 +93,11 @@ public:
         keep_used_streams();
         share_windows(plan_);
         keep_used_streams();
+        for (Reading& reading : plan_.readings) {
+            if (reading.kind == Reading::Kind::machine) complete(reading.machine);
+            if (reading.kind == Reading::Kind::pending)
+                reading.pending.machine.table = make_table(reading.pending.machine);
+        }
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
@@ -157,8 +164,9 @@ private:
         need(plan_, std::move(flags), predicates);
     }
 
-    ir::Program& program_;
+    const ir::Program& program_;
     const Limits& limits_;
+    std::shared_ptr<ir::Graph> formulas_;
     Plan plan_;
     StreamBuilder streams_;
     ReadingBuilder readings_;
@@ -166,7 +174,7 @@ private:
 
 }  // namespace
 
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
+std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag::Sink& sink,
                          check::Values values, Storage targets_as) {
     Planning planning(program, limits, values);
     bool complete = true;
@@ -174,7 +182,7 @@ std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink&
         complete = planning.add_monitor(m, sink) && complete;
     if (!complete) return std::nullopt;
     Plan result = planning.finish(targets_as, sink);
-    check_budget(result, program.graph, limits, sink);
+    check_budget(result, limits, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
 }

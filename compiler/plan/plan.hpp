@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,17 +15,15 @@
 #include "diag/diag.hpp"
 #include "etlmon/temporal/value.hpp"
 #include "ir/lower.hpp"
-#include "plan/automaton.hpp"
+#include "plan/program/machine.hpp"
 
 namespace etlc::plan {
 
 using check::Index;
-using check::kNone;
 using check::kUnbounded;
 using etlmon::Key;
 using etlmon::Value;
 using ir::NodeId;
-using Slot = std::uint32_t;  ///< index of a stream
 
 // ---- streams: a robustness for one position after the other -------------------------------------
 
@@ -33,28 +32,27 @@ enum class StreamOp : std::uint8_t {
     predicate,    ///< of the model's predicates
     flag,         ///< a bool input, by its index in the model
     negation,     ///< of a predicate or flag
-    conjunction,  ///< min of the operands
-    disjunction,  ///< max of the operands
+    combination,  ///< max of the operands
     within,       ///< the operand at the positions of `interval`, elsewhere `value`
-    delay,  ///< the operand `length` steps ago: later by `length`, so that operands of different
-            ///< lag meet
-    shift,  ///< the operand `length` positions earlier; `value` where there is none
-    running_max,  ///< over all positions so far
-    running_min,
-    window_max,  ///< over the last `length` positions
-    window_min,
-    since,         ///< v = max(g, min(v, f))
-    trigger,       ///< v = min(g, max(v, f))
+    delay,     ///< the operand `length` steps ago: later by `length`, so that operands of different
+               ///< lag meet
+    shift,     ///< the operand `length` positions earlier; `value` where there is none
+    running,   ///< max over all positions so far
+    window,    ///< max over the last `length` positions
+    widening,  ///< the same, from the operand, which is that over fewer
+    since,     ///< v = max(g, min(v, f))
     window_since,  ///< since, over the last `length` positions
-    window_trigger,
     window_until,  ///< until, at the first of the last `length` positions
-    window_release,
-    widening_max,  ///< over the last `length` positions, from the operand, which is that over fewer
-    widening_min,
 };
+
+/// The max of nothing; of a dual, whose max is a min, the min of nothing.
+constexpr Value neutral(bool max) {
+    return max ? etlmon::kFalse : etlmon::kTrue;
+}
 
 struct Stream {
     StreamOp op = StreamOp::constant;
+    bool max = true;  ///< else the dual: where the operation says max it takes the min, and so on
     std::vector<Slot> operands;
     Index index = 0;                ///< predicate or flag
     std::uint32_t length = 0;       ///< of delays, shifts, windows and widenings
@@ -76,9 +74,10 @@ struct Latch {
     Slot operand = 0;
 };
 
-/// F, G, U or R over operands without future: a max or min that grows while the window is open.
+/// F or U, or the duals G and R, over operands without future: a max or min that grows while the
+/// window is open.
 struct Fold {
-    ir::Op op = ir::Op::eventually;
+    bool max = true;
     ir::Interval interval;
     Slot left = kNone;  ///< of U and R
     Slot right = 0;
@@ -106,20 +105,6 @@ struct Response {
     Slot unseen_body = 0;
 };
 
-/// Any other nesting: a weighted automaton over (max, min), see automaton.hpp.
-struct Machine {
-    struct State {
-        bool strong = false;       ///< owes an F or U
-        bool always_true = false;  ///< its register never leaves +inf and is not kept
-        Slot weak_unseen =
-            kNone;  ///< lowest unseen value of what it owes, weakly all of it; else kNone
-        Slot strong_unseen = kNone;  ///< highest unseen value of what it owes strongly
-    };
-    Automaton automaton;
-    std::vector<State> states;
-    std::vector<std::vector<Slot>> guards;  ///< per guard of the automaton, its literals as streams
-};
-
 /// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled
 /// `horizon` steps late; at the positions since, they are evaluated anew at every step on the
 /// prefix as it ends now (etlmon/temporal/pending.hpp), and the registers, which stand where
@@ -128,7 +113,7 @@ struct Pending {
     struct Part {
         NodeId node = kNone;
         Slot leaf = kNone;  ///< a formula without future, else:
-        ir::Op op = ir::Op::conjunction;
+        bool max = true;    ///< ||, F or U; else the dual
         ir::Interval interval;
         std::vector<std::uint32_t> operands;  ///< parts
         Slot unseen = kNone;                  ///< of temporal operators: of the last operand
@@ -136,29 +121,22 @@ struct Pending {
     std::vector<Part> parts;  ///< operands first
     std::uint32_t horizon = 0;
     bool is_fold = true;
-    Fold fold;                                       ///< is_fold: left and right are parts
-    Machine machine;                                 ///< else: its guards are in `guards`
+    Fold fold;        ///< is_fold: left and right are parts
+    Machine machine;  ///< else, as a table; its guards are in `guards`
     std::vector<std::vector<std::uint32_t>> guards;  ///< per guard of the automaton, parts
 };
 
 struct Reading {
-    enum class Kind : std::uint8_t {
-        latch,
-        fold,
-        response,
-        machine,
-        pending,
-        conjunction,
-        disjunction
-    };
+    enum class Kind : std::uint8_t { latch, fold, response, machine, pending, combination };
     Kind kind = Kind::latch;
     NodeId node = 0;
+    bool max = true;  ///< of a combination: the max of the operands, else the min
     Latch latch;
     Fold fold;
     Response response;
-    Machine machine;
+    Machine machine;  ///< for other nestings: a weighted automaton over (max, min)
     Pending pending;
-    std::vector<std::uint32_t> operands;  ///< readings, of conjunction and disjunction
+    std::vector<std::uint32_t> operands;  ///< readings, of a combination
 };
 
 /// Every place in a reading that names a stream; some may be kNone.
@@ -183,7 +161,8 @@ struct Monitor {
 struct Cost {
     std::uint64_t state_bytes = 0;
     std::uint64_t stack_bytes = 0;          ///< arrays of a step: positions that are evaluated anew
-    std::uint64_t constant_bytes = 0;       ///< targets, weights and transition tables
+    std::uint64_t target_bytes = 0;         ///< and weights, on a machine with vectors of floats
+    std::uint64_t scalar_target_bytes = 0;  ///< the same on one without
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part
     std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
@@ -222,6 +201,8 @@ struct NarrowSet {
 
 struct Plan {
     const check::Model* model = nullptr;
+    /// The program's graph, and what readings owe from one step to the next: what `node` means.
+    std::shared_ptr<const ir::Graph> formulas;
     check::Values values = check::Values::robustness;
     std::vector<Index> inputs;  ///< that some monitor depends on, in order of declaration
     std::vector<Index> targets;
@@ -247,7 +228,7 @@ struct Limits {
 };
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
-std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink& sink,
+std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag::Sink& sink,
                          check::Values values = check::Values::robustness,
                          Storage targets_as = Storage::f32);
 
@@ -256,6 +237,6 @@ std::optional<Plan> plan(ir::Program& program, const Limits& limits, diag::Sink&
 Plan measuring(const check::Model& model, const std::vector<Index>& predicates);
 
 /// The plan as text: `--emit plan`.
-std::string print(const Plan& plan, const ir::Graph& graph);
+std::string print(const Plan& plan);
 
 }  // namespace etlc::plan

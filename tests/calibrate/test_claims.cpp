@@ -9,7 +9,7 @@
 #include "calibrate/ground_truth.hpp"
 #include "check/guarantees.hpp"
 #include "driver/compile.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 

@@ -12,7 +12,7 @@
 #include "check/conformal.hpp"
 #include "generated_program.hpp"
 #include "loading.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

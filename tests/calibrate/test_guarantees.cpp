@@ -11,7 +11,7 @@
 #include "check/guarantees.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

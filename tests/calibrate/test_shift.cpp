@@ -12,7 +12,7 @@
 #include "ir/lower.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

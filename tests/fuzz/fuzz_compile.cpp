@@ -34,12 +34,10 @@ void compile(const source::File& file, check::Values values) {
     fuzz::require(compiled.has_value() != sink.has_errors(), "there is a plan or an error");
     require_proportion(file, sink);
     if (!compiled) return;
-    const ir::Graph& graph = compiled->program->graph;
     for (const emit::Backend& backend : emit::backends())
-        require_proportion(
-            backend.emit(compiled->plan, graph, {"deep", "version", false, "targets.bin"}));
+        require_proportion(backend.emit(compiled->plan, {"deep", "version", false, "targets.bin"}));
     require_proportion(ir::print(*compiled->program));
-    require_proportion(plan::print(compiled->plan, graph));
+    require_proportion(plan::print(compiled->plan));
 }
 
 }  // namespace

@@ -9,7 +9,7 @@
 #include "adaptive.hpp"
 #include "check/model.hpp"
 #include "compare.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "plan/plan.hpp"
 #include "reference/reference.hpp"
 

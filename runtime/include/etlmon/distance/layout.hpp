@@ -35,12 +35,17 @@ constexpr uint32_t column_length(uint32_t K) noexcept { return (K + kLanes - 1) 
 
 /// Many short rows: with a row in each lane no sum over lanes is needed. Without vectors, four rows
 /// or more: four are read in one stream. The limit keeps what the compiler has to evaluate within
-/// its default limits.
-constexpr bool in_columns(uint32_t K, uint32_t D) noexcept {
+/// its default limits. `vectors`: whether the machine has some; the compiler asks about both kinds.
+constexpr bool in_columns(uint32_t K, uint32_t D, bool vectors = kHasVectors) noexcept {
   constexpr uint32_t kMost = 16384;
-  if (!kHasVectors) return K >= kRowsTogether && K <= kMost / D;
+  if (!vectors) return K >= kRowsTogether && K <= kMost / D;
   const bool short_rows = (D < kLanes && K > 4) || (D <= 4 * kLanes && K >= 2 * kLanes);
   return short_rows && K <= kMost && column_length(K) <= kMost / D;
+}
+
+/// Elements that a set in columns takes.
+constexpr size_t column_elements(uint32_t K, uint32_t D, bool vectors = kHasVectors) noexcept {
+  return size_t{D} * (vectors ? column_length(K) : K);
 }
 
 constexpr Order order(uint32_t K, uint32_t D) noexcept {
@@ -67,7 +72,7 @@ constexpr Place place_in_columns(uint32_t k, uint32_t K, uint32_t D) noexcept {
 template <uint32_t K, uint32_t D, class T = float>
 struct Columns {
   static constexpr uint32_t kRows = kHasVectors ? column_length(K) : K;
-  alignas(64) T values[D * kRows];
+  alignas(64) T values[column_elements(K, D)];
 };
 
 template <uint32_t K, uint32_t D, class T>

@@ -9,11 +9,6 @@
 
 namespace etlc::plan {
 
-/// A state machine of more states is emitted as a constant table and one loop.
-inline constexpr std::size_t kMaxUnrolledStates = 32;
-inline constexpr std::size_t kMaxUnrolledTransitions = 160;
-bool unrolled(const Machine& machine);
-
 Cost operator+(Cost a, const Cost& b);
 bool within(const Cost& cost, const Limits& limits);
 Cost cost_of(const Stream& stream, check::Values values);
@@ -24,8 +19,5 @@ std::uint64_t measured_elements(const check::Model& model, Index predicate);
 Cost cost_of(const AutomatonSize& size, check::Values values);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
-
-/// Registers of a machine that are kept: all but the one that is always true.
-std::size_t registers(const Machine& machine);
 
 }  // namespace etlc::plan

@@ -1,7 +1,6 @@
 // The plan as text, for --emit plan.
 #include <fmt/format.h>
 
-#include "plan/budget.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::plan {
@@ -17,31 +16,32 @@ std::string value_text(Value value) {
     return fmt::format("[{}, {}]", key_text(value.low), key_text(value.high));
 }
 
-const char* name(StreamOp op) {
-    switch (op) {
+/// What --emit plan calls an operation and its dual.
+const char* name(const Stream& stream) {
+    const auto either = [&](const char* max, const char* min) { return stream.max ? max : min; };
+    switch (stream.op) {
         case StreamOp::constant: return "constant";
         case StreamOp::predicate: return "predicate";
         case StreamOp::flag: return "flag";
         case StreamOp::negation: return "not";
-        case StreamOp::conjunction: return "min";
-        case StreamOp::disjunction: return "max";
+        case StreamOp::combination: return either("max", "min");
         case StreamOp::within: return "within";
         case StreamOp::delay: return "delay";
         case StreamOp::shift: return "shift";
-        case StreamOp::running_max: return "running max";
-        case StreamOp::running_min: return "running min";
-        case StreamOp::window_max: return "window max";
-        case StreamOp::window_min: return "window min";
-        case StreamOp::since: return "since";
-        case StreamOp::trigger: return "trigger";
-        case StreamOp::window_since: return "window since";
-        case StreamOp::window_trigger: return "window trigger";
-        case StreamOp::window_until: return "window until";
-        case StreamOp::window_release: return "window release";
-        case StreamOp::widening_max: return "widening max";
-        case StreamOp::widening_min: return "widening min";
+        case StreamOp::running: return either("running max", "running min");
+        case StreamOp::window: return either("window max", "window min");
+        case StreamOp::widening: return either("widening max", "widening min");
+        case StreamOp::since: return either("since", "trigger");
+        case StreamOp::window_since: return either("window since", "window trigger");
+        case StreamOp::window_until: return either("window until", "window release");
     }
     return "";
+}
+
+/// F, G, U or R.
+const char* symbol(bool max, bool binary) {
+    if (binary) return max ? "U" : "R";
+    return max ? "F" : "G";
 }
 
 std::string slots(const std::vector<Slot>& operands) {
@@ -53,7 +53,7 @@ std::string slots(const std::vector<Slot>& operands) {
 std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
     const Stream& s = plan.streams[slot];
     const check::Model& model = *plan.model;
-    std::string text = fmt::format("  s{} = {}", slot, name(s.op));
+    std::string text = fmt::format("  s{} = {}", slot, name(s));
     if (s.op == StreamOp::constant) text += " " + value_text(s.value);
     if (s.op == StreamOp::predicate) text += " " + model.predicates[s.index].name;
     if (s.op == StreamOp::flag) text += " " + model.inputs[s.index].name;
@@ -63,9 +63,7 @@ std::string stream_text(const Plan& plan, const ir::Graph& graph, Slot slot) {
         text += fmt::format(" positions {} to {}, else {}", s.interval.low,
                             s.interval.bounded() ? fmt::format("{}", s.interval.high) : "the end",
                             value_text(s.value));
-    const bool has_past =
-        s.op == StreamOp::shift || s.op == StreamOp::since || s.op == StreamOp::trigger;
-    if (has_past) text += " from " + value_text(s.value);
+    if (s.op == StreamOp::shift || s.op == StreamOp::since) text += " from " + value_text(s.value);
     if (s.lag != 0) text += fmt::format(", {} steps late", s.lag);
     if (s.node != kNone) text += fmt::format("  // {}", graph.text(s.node));
     return text + "\n";
@@ -82,7 +80,7 @@ std::string machine_text(const Machine& machine, const ir::Graph& graph) {
     const Automaton& automaton = machine.automaton;
     std::string text =
         fmt::format("state machine of {} states, {} transitions, {}\n", automaton.states.size(),
-                    automaton.transitions.size(), unrolled(machine) ? "unrolled" : "as a table");
+                    automaton.transitions.size(), machine.unrolled ? "unrolled" : "as a table");
     for (std::size_t state = 0; state < automaton.states.size(); ++state) {
         text += fmt::format("       q{}: {}{}\n", state, owed(graph, automaton.states[state]),
                             machine.states[state].always_true ? ", always +inf" : "");
@@ -103,7 +101,10 @@ std::string pending_text(const Pending& pending, const ir::Graph& graph) {
         const Pending::Part& part = pending.parts[i];
         text += fmt::format("       p{} =", i);
         if (part.leaf != kNone) text += fmt::format(" s{}", part.leaf);
-        if (part.leaf == kNone) text += fmt::format(" {}", ir::info(part.op).symbol);
+        if (part.leaf == kNone)
+            text += fmt::format(" {}", part.unseen == kNone
+                                           ? (part.max ? "||" : "&&")
+                                           : symbol(part.max, part.operands.size() == 2));
         for (std::uint32_t operand : part.operands) text += fmt::format(" p{}", operand);
         text += fmt::format("  // {}\n", graph.text(part.node));
     }
@@ -117,7 +118,8 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
         case Reading::Kind::latch:
             return fmt::format("latch of s{} at step 0\n", reading.latch.operand);
         case Reading::Kind::fold:
-            text = fmt::format("fold {} over", ir::info(reading.fold.op).symbol);
+            text =
+                fmt::format("fold {} over", symbol(reading.fold.max, reading.fold.left != kNone));
             if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
             return text +
                    fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
@@ -131,17 +133,17 @@ std::string reading_text(const Reading& reading, const ir::Graph& graph) {
             return text + fmt::format(", unseen s{} s{}\n", reading.response.unseen_answer,
                                       reading.response.unseen_body);
         case Reading::Kind::machine: return machine_text(reading.machine, graph);
-        case Reading::Kind::conjunction:
-        case Reading::Kind::disjunction: break;
+        case Reading::Kind::combination: break;
     }
-    text = reading.kind == Reading::Kind::conjunction ? "min" : "max";
+    text = reading.max ? "max" : "min";
     for (std::uint32_t operand : reading.operands) text += fmt::format(" r{}", operand);
     return text + "\n";
 }
 
 }  // namespace
 
-std::string print(const Plan& plan, const ir::Graph& graph) {
+std::string print(const Plan& plan) {
+    const ir::Graph& graph = *plan.formulas;
     std::string text = fmt::format("plan {}\nstreams\n", plan.model->name);
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) text += stream_text(plan, graph, slot);
     if (!plan.readings.empty()) text += "readings\n";

@@ -7,14 +7,15 @@
 #include <map>
 #include <vector>
 
-#include "plan/streams.hpp"
+#include "plan/decide/streams.hpp"
 
 namespace etlc::plan {
 
 class ReadingBuilder {
 public:
-    ReadingBuilder(ir::Graph& graph, StreamBuilder& streams, std::vector<Reading>& readings,
-                   const Limits& limits, check::Values values);
+    /// `graph` is the plan's copy of the program's, which grows by what readings owe.
+    ReadingBuilder(const ir::Program& program, ir::Graph& graph, StreamBuilder& streams,
+                   std::vector<Reading>& readings, const Limits& limits, check::Values values);
 
     /// A sub-formula whose automaton would exceed the limits.
     struct Oversize {
@@ -32,7 +33,7 @@ private:
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
-    std::optional<std::uint32_t> with_split_windows(NodeId id, std::uint64_t operations);
+    std::optional<std::uint32_t> apart(NodeId id, std::uint64_t operations);
     std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
     std::uint32_t latch(NodeId id);
     std::uint32_t fold(const ir::Node& node, NodeId id);
@@ -43,13 +44,14 @@ private:
     std::optional<Automaton> automaton(NodeId id, Literals literals, AutomatonLimits limits,
                                        AutomatonSize& reached);
 
+    const ir::Program& program_;
     ir::Graph& graph_;
     StreamBuilder& streams_;
     std::vector<Reading>& readings_;
     Limits limits_;
     check::Values values_;
     std::uint64_t work_left_;
-    bool splitting_ = false;
+    bool is_apart_ = false;
     std::map<NodeId, std::uint32_t> known_;
     std::vector<Oversize> oversize_;
 };

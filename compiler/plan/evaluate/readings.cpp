@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "etlmon/temporal/predicate.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::plan {
 
@@ -13,26 +13,19 @@ using etlmon::kTop;
 using etlmon::kTrue;
 
 void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
-    switch (reading.kind) {
-        case Reading::Kind::latch: state.registers.assign(1, kFalse); break;
-        case Reading::Kind::fold:
-            state.registers = ir::takes_max(reading.fold.op) ? std::vector<Value>{kFalse, kTrue}
-                                                             : std::vector<Value>{kTrue, kFalse};
-            break;
-        case Reading::Kind::pending: state.pending.emplace(reading.pending); break;
-        case Reading::Kind::response:
-            state.registers.assign(1, reading.response.of_always ? kTrue : kFalse);
-            break;
-        case Reading::Kind::machine:
-            state.registers.assign(reading.machine.states.size(), kFalse);
-            state.next = state.registers;
-            state.registers[0] = kTrue;
-            state.table = make_table(reading.machine);
-            state.guards.assign(reading.machine.guards.size(), kTrue);
-            state.weak.assign(state.table.weak.size() + 1, kTop);
-            state.strong.assign(state.table.strong.size() + 1, kTop);
-            break;
-        default: break;
+    state.registers.clear();
+    if (reading.kind == Reading::Kind::pending) {
+        state.pending.emplace(reading.pending);
+    } else if (reading.kind == Reading::Kind::machine) {
+        const Machine& machine = reading.machine;
+        state.registers.assign(machine.states.size(), kFalse);
+        state.next = state.registers;
+        state.registers[0] = kTrue;
+        state.guards.assign(machine.guards.size(), kTrue);
+        state.weak.assign(machine.table.weak.size() + 1, kTop);
+        state.strong.assign(machine.table.strong.size() + 1, kTop);
+    } else {
+        for (const Member& member : members_of(reading)) state.registers.push_back(member.first);
     }
 }
 
@@ -55,8 +48,7 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
     etlmon::Reading result = readings_[reading.operands[0]];
     for (std::uint32_t operand : reading.operands) {
         const etlmon::Reading& other = readings_[operand];
-        result = reading.kind == Reading::Kind::conjunction ? min_of(result, other)
-                                                            : max_of(result, other);
+        result = reading.max ? max_of(result, other) : min_of(result, other);
     }
     return result;
 }
@@ -64,24 +56,29 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
 /// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left
 /// side before now.
 etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
-    const bool takes_max = ir::takes_max(fold.op);
     const bool open =
         fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
     const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
+    const bool binary = fold.left != kNone;
     Value& best = state.registers[0];
-    Value& guard = state.registers[1];
+    const Value guard = binary ? state.registers[1] : neutral(!fold.max);
     const Value right = streams_[fold.right];
     if (open)
-        best = takes_max ? max_of(best, min_of(guard, right)) : min_of(best, max_of(guard, right));
-    if (fold.left != kNone)
-        guard = takes_max ? min_of(guard, streams_[fold.left]) : max_of(guard, streams_[fold.left]);
+        best = fold.max ? max_of(best, min_of(guard, right)) : min_of(best, max_of(guard, right));
+    Value let_through = guard;
+    if (binary) {
+        const Value left = streams_[fold.left];
+        let_through = fold.max ? min_of(guard, left) : max_of(guard, left);
+        state.registers[1] = let_through;
+    }
     etlmon::Reading reading = etlmon::settled(best);
     if (!reaches_past) return reading;
     const Value unseen = streams_[fold.unseen];
-    if (takes_max)
-        reading.upper = etlmon::max_of(reading.upper, etlmon::min_of(guard.high, unseen.high));
+    if (fold.max)
+        reading.upper =
+            etlmon::max_of(reading.upper, etlmon::min_of(let_through.high, unseen.high));
     else
-        reading.lower = etlmon::min_of(reading.lower, etlmon::max_of(guard.low, unseen.low));
+        reading.lower = etlmon::min_of(reading.lower, etlmon::max_of(let_through.low, unseen.low));
     return reading;
 }
 
@@ -112,7 +109,7 @@ etlmon::Reading Evaluator::advance_response(const Response& response, ReadingSta
 etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState& state) const {
     const auto low = [&](Slot slot) { return streams_[slot].low; };
     const auto high = [&](Slot slot) { return streams_[slot].high; };
-    const Table& table = state.table;
+    const Table& table = machine.table;
     for (std::size_t g = 0; g < machine.guards.size(); ++g) {
         state.guards[g] = kTrue;
         for (Slot slot : machine.guards[g])

@@ -1,10 +1,14 @@
-#include "plan/table.hpp"
+#include "plan/program/machine.hpp"
 
 #include <algorithm>
 
 namespace etlc::plan {
 
 namespace {
+
+/// More states or transitions than these are a constant table and one loop.
+constexpr std::size_t kMaxUnrolledStates = 32;
+constexpr std::size_t kMaxUnrolledTransitions = 160;
 
 /// The index of a stream's key in its list; 0, the neutral key, for no stream.
 std::uint16_t index_of(std::vector<Slot>& list, Slot slot) {
@@ -33,6 +37,13 @@ Table make_table(const Machine& machine) {
         table.owed.push_back({weak, index_of(table.strong, state.strong_unseen)});
     }
     return table;
+}
+
+void complete(Machine& machine) {
+    machine.table = make_table(machine);
+    machine.unrolled = machine.states.size() <= kMaxUnrolledStates &&
+                       machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
+    if (machine.unrolled) machine.program = make_register_program(machine);
 }
 
 }  // namespace etlc::plan

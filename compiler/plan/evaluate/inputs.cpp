@@ -1,4 +1,4 @@
-#include "plan/inputs.hpp"
+#include "plan/evaluate/inputs.hpp"
 
 #include <fmt/format.h>
 

@@ -1,9 +1,9 @@
-#include "plan/streams.hpp"
+#include "plan/decide/streams.hpp"
 
 #include <algorithm>
 #include <cassert>
 
-#include "plan/literals.hpp"
+#include "plan/program/literals.hpp"
 
 namespace etlc::plan {
 
@@ -25,9 +25,9 @@ bool equal(Value a, Value b) {
 }  // namespace
 
 Slot StreamBuilder::intern(Stream stream) {
-    Identity identity{stream.op,           stream.operands,     stream.index, stream.length,
-                      stream.value.low,    stream.value.high,   stream.lag,   stream.operand_lag,
-                      stream.interval.low, stream.interval.high};
+    Identity identity{stream.op,          stream.max,          stream.operands,     stream.index,
+                      stream.length,      stream.value.low,    stream.value.high,   stream.lag,
+                      stream.operand_lag, stream.interval.low, stream.interval.high};
     const auto [entry, added] =
         interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added)
@@ -72,26 +72,28 @@ Slot StreamBuilder::literal(const Node& node, NodeId id) {
     return intern({.op = StreamOp::negation, .operands = {positive}, .node = id});
 }
 
-Slot StreamBuilder::combine(StreamOp op, std::vector<Slot> operands, NodeId node) {
-    const bool conjunction = op == StreamOp::conjunction;
-    const Value neutral = conjunction ? kTrue : kFalse;
-    Value folded = neutral;
+Slot StreamBuilder::combine(bool max, std::vector<Slot> operands, NodeId node) {
+    Value folded = neutral(max);
     std::vector<Slot> kept;
     std::uint32_t lag = 0;
     for (Slot slot : operands) {
         const Stream& stream = streams_[slot];
         lag = std::max(lag, stream.lag);
         if (stream.op == StreamOp::constant)
-            folded = conjunction ? min_of(folded, stream.value) : max_of(folded, stream.value);
+            folded = max ? max_of(folded, stream.value) : min_of(folded, stream.value);
         else
             kept.push_back(slot);
     }
-    if (!equal(folded, neutral) || kept.empty()) kept.push_back(constant(folded));
+    if (!equal(folded, neutral(max)) || kept.empty()) kept.push_back(constant(folded));
     std::sort(kept.begin(), kept.end());
     kept.erase(std::unique(kept.begin(), kept.end()), kept.end());
     if (kept.size() == 1) return kept.front();
-    return intern(
-        {.op = op, .operands = std::move(kept), .lag = lag, .operand_lag = lag, .node = node});
+    return intern({.op = StreamOp::combination,
+                   .max = max,
+                   .operands = std::move(kept),
+                   .lag = lag,
+                   .operand_lag = lag,
+                   .node = node});
 }
 
 Slot StreamBuilder::delayed(Slot slot, std::uint32_t steps) {
@@ -116,13 +118,17 @@ std::vector<Slot> StreamBuilder::align(const std::vector<NodeId>& nodes) {
 }
 
 Slot StreamBuilder::aligned_combination(const Node& node, NodeId id) {
-    const StreamOp op = node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction;
-    return combine(op, align(node.operands), id);
+    return combine(node.op == Op::disjunction, align(node.operands), id);
 }
 
-Slot StreamBuilder::running(StreamOp op, Slot slot, NodeId node) {
+Slot StreamBuilder::running(bool max, Slot slot, NodeId node) {
     const std::uint32_t lag = streams_[slot].lag;
-    return intern({.op = op, .operands = {slot}, .lag = lag, .operand_lag = lag, .node = node});
+    return intern({.op = StreamOp::running,
+                   .max = max,
+                   .operands = {slot},
+                   .lag = lag,
+                   .operand_lag = lag,
+                   .node = node});
 }
 
 Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before,
@@ -137,9 +143,10 @@ Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Val
                    .node = node});
 }
 
-Slot StreamBuilder::window(StreamOp op, std::vector<Slot> operands, std::uint32_t length,
+Slot StreamBuilder::window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,
                            std::uint32_t operand_lag, std::uint32_t lag, NodeId node) {
     return intern({.op = op,
+                   .max = max,
                    .operands = std::move(operands),
                    .length = length,
                    .lag = lag,
@@ -155,13 +162,14 @@ Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere) {
 
 /// "Since the last answer", but satisfied where nothing has been asked yet.
 Slot StreamBuilder::pending(bool of_always, Slot excuse, Slot answer) {
-    return intern({.op = of_always ? StreamOp::since : StreamOp::trigger,
+    return intern({.op = StreamOp::since,
+                   .max = of_always,
                    .operands = {excuse, answer},
-                   .value = of_always ? kTrue : kFalse});
+                   .value = neutral(!of_always)});
 }
 
-Slot StreamBuilder::recent(StreamOp op, Slot slot, std::uint32_t length) {
-    return length == 1 ? slot : window(op, {slot}, length, 0, 0, kNone);
+Slot StreamBuilder::recent(bool max, Slot slot, std::uint32_t length) {
+    return length == 1 ? slot : window(StreamOp::window, max, {slot}, length, 0, 0, kNone);
 }
 
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
@@ -173,11 +181,10 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     const std::uint32_t lag = streams_[operand].lag;
     Slot slot = operand;
     if (high == kUnbounded)
-        slot = running(max ? StreamOp::running_max : StreamOp::running_min, operand, inner);
+        slot = running(max, operand, inner);
     else if (high > low)
-        slot = window(max ? StreamOp::window_max : StreamOp::window_min, {operand}, high - low + 1,
-                      lag, lag, inner);
-    return shift(slot, low, lag, max ? kFalse : kTrue, id);
+        slot = window(StreamOp::window, max, {operand}, high - low + 1, lag, lag, inner);
+    return shift(slot, low, lag, neutral(max), id);
 }
 
 /// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
@@ -189,20 +196,21 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     const NodeId inner = low == 0 ? id : kNone;
     Slot slot = operands[1];
     if (high == kUnbounded)
-        slot = intern({.op = max ? StreamOp::since : StreamOp::trigger,
+        slot = intern({.op = StreamOp::since,
+                       .max = max,
                        .operands = operands,
-                       .value = max ? kFalse : kTrue,
+                       .value = neutral(max),
                        .lag = lag,
                        .operand_lag = lag,
                        .node = inner});
     else if (high > low)
-        slot = window(max ? StreamOp::window_since : StreamOp::window_trigger, operands,
-                      high - low + 1, lag, lag, inner);
+        slot = window(StreamOp::window_since, max, operands, high - low + 1, lag, lag, inner);
     if (low == 0) return slot;
-    const Slot earlier = shift(slot, low, lag, max ? kFalse : kTrue, kNone);
-    const StreamOp all = max ? StreamOp::window_min : StreamOp::window_max;
-    const Slot held = low == 1 ? operands[0] : window(all, {operands[0]}, low, lag, lag, kNone);
-    return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {earlier, held}, id);
+    const Slot earlier = shift(slot, low, lag, neutral(max), kNone);
+    const Slot held = low == 1
+                          ? operands[0]
+                          : window(StreamOp::window, !max, {operands[0]}, low, lag, lag, kNone);
+    return combine(!max, {earlier, held}, id);
 }
 
 /// F[a,b] f at k, known b steps after f at k: the window over f at k+a .. k+b. A window of one
@@ -210,9 +218,9 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
 Slot StreamBuilder::future_unary(const Node& node, NodeId id) {
     const auto [low, high] = node.interval;
     const Slot operand = of(node.operands[0]);
-    const StreamOp op = ir::takes_max(node.op) ? StreamOp::window_max : StreamOp::window_min;
     const std::uint32_t lag = streams_[operand].lag;
-    return window(op, {operand}, high - low + 1, lag, lag + high, id);
+    return window(StreamOp::window, ir::takes_max(node.op), {operand}, high - low + 1, lag,
+                  lag + high, id);
 }
 
 /// f U[a,b] g at k is (f at k .. k+a-1) && (f U[0,b-a] g at k + a); its dual alike.
@@ -223,14 +231,14 @@ Slot StreamBuilder::future_binary(const Node& node, NodeId id) {
     const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
     const std::uint32_t length = high - low + 1;
     const NodeId inner = low == 0 ? id : kNone;
-    const Slot until = window(max ? StreamOp::window_until : StreamOp::window_release, operands,
-                              length, lag, lag + high - low, inner);
+    const Slot until =
+        window(StreamOp::window_until, max, operands, length, lag, lag + high - low, inner);
     if (low == 0) return until;
-    const Slot from_there = window(max ? StreamOp::window_max : StreamOp::window_min, {until}, 1,
-                                   lag + high - low, lag + high, kNone);
-    const Slot held = window(max ? StreamOp::window_min : StreamOp::window_max,
-                             {delayed(operands[0], length)}, low, lag + length, lag + high, kNone);
-    return combine(max ? StreamOp::conjunction : StreamOp::disjunction, {from_there, held}, id);
+    const Slot from_there =
+        window(StreamOp::window, max, {until}, 1, lag + high - low, lag + high, kNone);
+    const Slot held = window(StreamOp::window, !max, {delayed(operands[0], length)}, low,
+                             lag + length, lag + high, kNone);
+    return combine(!max, {from_there, held}, id);
 }
 
 Slot StreamBuilder::unseen(NodeId id) {
@@ -250,9 +258,7 @@ Slot StreamBuilder::unseen(NodeId id) {
         case Op::disjunction: {
             std::vector<Slot> parts;
             for (NodeId operand : node.operands) parts.push_back(unseen(operand));
-            slot =
-                combine(node.op == Op::conjunction ? StreamOp::conjunction : StreamOp::disjunction,
-                        std::move(parts));
+            slot = combine(node.op == Op::disjunction, std::move(parts));
             break;
         }
         default: slot = unseen_temporal(node, id);
@@ -266,20 +272,17 @@ Slot StreamBuilder::unseen(NodeId id) {
 /// operator.
 Slot StreamBuilder::unseen_temporal(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
-    const StreamOp narrow = max ? StreamOp::conjunction : StreamOp::disjunction;
-    const StreamOp widen = max ? StreamOp::disjunction : StreamOp::conjunction;
     const Slot operand = unseen(node.operands.back());
     Slot slot = operand;
     if (node.interval.low > 0)
-        slot = combine(narrow, {operand, constant(kAnything)});  // one end gives way to infinity
+        slot = combine(!max, {operand, constant(kAnything)});  // one end gives way to infinity
     if (ir::info(node.op).tense != ir::Tense::past) return slot;
     const bool unary = ir::info(node.op).arity == ir::Arity::unary;
-    if (unary && node.interval == ir::Interval{}) return combine(widen, {slot, of(id)});
+    if (unary && node.interval == ir::Interval{}) return combine(max, {slot, of(id)});
     if (streams_[operand].op == StreamOp::constant)
         return slot;  // nothing known lies outside a constant range
-    const Slot known = running(max ? StreamOp::running_max : StreamOp::running_min,
-                               of(node.operands.back()), kNone);
-    return combine(widen, {slot, combine(narrow, {known, constant(kAnything)})});
+    const Slot known = running(max, of(node.operands.back()), kNone);
+    return combine(max, {slot, combine(!max, {known, constant(kAnything)})});
 }
 
 }  // namespace etlc::plan

@@ -1,4 +1,4 @@
-#include "plan/points.hpp"
+#include "plan/decide/points.hpp"
 
 #include <algorithm>
 

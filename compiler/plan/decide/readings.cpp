@@ -1,9 +1,8 @@
-#include "plan/readings.hpp"
+#include "plan/decide/readings.hpp"
 
 #include <algorithm>
 
-#include "plan/budget.hpp"
-#include "plan/split_windows.hpp"
+#include "plan/program/budget.hpp"
 
 namespace etlc::plan {
 
@@ -62,10 +61,11 @@ bool loops_freely(const Automaton& automaton, std::uint32_t state) {
 
 }  // namespace
 
-ReadingBuilder::ReadingBuilder(ir::Graph& graph, StreamBuilder& streams,
+ReadingBuilder::ReadingBuilder(const ir::Program& program, ir::Graph& graph, StreamBuilder& streams,
                                std::vector<Reading>& readings, const Limits& limits,
                                check::Values values)
-    : graph_(graph),
+    : program_(program),
+      graph_(graph),
       streams_(streams),
       readings_(readings),
       limits_(limits),
@@ -101,7 +101,7 @@ std::uint32_t ReadingBuilder::latch(NodeId id) {
 }
 
 std::uint32_t ReadingBuilder::fold(const Node& node, NodeId id) {
-    Fold fold{.op = node.op, .interval = node.interval};
+    Fold fold{.max = ir::takes_max(node.op), .interval = node.interval};
     if (node.operands.size() == 2) fold.left = streams_.of(node.operands[0]);
     fold.right = streams_.of(node.operands.back());
     fold.unseen = streams_.unseen(node.operands.back());
@@ -131,9 +131,8 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     const Slot answer = streams_.of(inner.operands[0]);
     result.unseen_answer = streams_.unseen(inner.operands[0]);
     result.unseen_body = streams_.unseen(body);
-    const etlmon::Value idle =
-        of_always ? etlmon::kTrue : etlmon::kFalse;  // where nothing is asked
-    const etlmon::Value urgent = of_always ? etlmon::kFalse : etlmon::kTrue;
+    const Value idle = neutral(!of_always);  // where nothing is asked
+    const Value urgent = neutral(of_always);
     const auto [low, high] = inner.interval;
     if (present.empty() && node.interval == ir::Interval{}) {
         result.passed = streams_.of(body);
@@ -147,10 +146,8 @@ std::optional<Response> ReadingBuilder::response(const Node& node) {
     const Slot excuse = streams_.within(stated, node.interval, idle);
     result.pending =
         streams_.pending(of_always, streams_.shift(excuse, low, 0, idle, kNone), answer);
-    const StreamOp best = of_always ? StreamOp::window_max : StreamOp::window_min;
-    const StreamOp worst = of_always ? StreamOp::window_min : StreamOp::window_max;
-    result.passed = streams_.recent(best, result.pending, high - low + 1);
-    if (low > 0) result.recent = streams_.recent(worst, excuse, low);
+    result.passed = streams_.recent(of_always, result.pending, high - low + 1);
+    if (low > 0) result.recent = streams_.recent(!of_always, excuse, low);
     return result;
 }
 
@@ -166,15 +163,16 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
         }
         const auto part = of(operand);
         complete = complete && part;
-        if (!complete && splitting_) return std::nullopt;
+        if (!complete && is_apart_) return std::nullopt;
         if (part) parts.push_back(*part);
     }
     if (!present.empty())
         parts.push_back(*of(graph_.combine(node.op, std::move(present), node.span)));
     if (!complete) return std::nullopt;
-    const auto kind =
-        node.op == Op::conjunction ? Reading::Kind::conjunction : Reading::Kind::disjunction;
-    return add({.kind = kind, .node = id, .operands = std::move(parts)});
+    return add({.kind = Reading::Kind::combination,
+                .node = id,
+                .max = node.op == Op::disjunction,
+                .operands = std::move(parts)});
 }
 
 Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
@@ -186,7 +184,7 @@ Machine::State ReadingBuilder::state(const std::vector<NodeId>& obligations) {
         if (strong(obligation) == state.strong) unseen.push_back(streams_.unseen(obligation));
     if (unseen.empty()) return state;
     (state.strong ? state.strong_unseen : state.weak_unseen) =
-        streams_.combine(StreamOp::conjunction, std::move(unseen));
+        streams_.combine(false, std::move(unseen));
     return state;
 }
 
@@ -220,6 +218,7 @@ std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits&
         for (NodeId literal : literals) slots.push_back(streams_.of(literal));
         result.guards.push_back(std::move(slots));
     }
+    complete(result);
     return result;
 }
 
@@ -232,7 +231,7 @@ std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, st
     if (!node.has_future) {
         part.leaf = streams_.of(id);
     } else {
-        part.op = node.op;
+        part.max = node.op == Op::disjunction || ir::takes_max(node.op);
         part.interval = node.interval;
         for (NodeId operand : node.operands)
             part.operands.push_back(pending_part(pending, known, operand));
@@ -253,7 +252,7 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
         return graph_[operand].horizon != kUnbounded;
     });
     if (pending.is_fold) {
-        pending.fold = {.op = node.op, .interval = node.interval};
+        pending.fold = {.max = ir::takes_max(node.op), .interval = node.interval};
         if (node.operands.size() == 2)
             pending.fold.left = pending_part(pending, known, node.operands[0]);
         pending.fold.right = pending_part(pending, known, node.operands.back());
@@ -269,20 +268,20 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
         for (NodeId literal : literals) parts.push_back(pending_part(pending, known, literal));
         pending.guards.push_back(std::move(parts));
     }
+    pending.machine.table = make_table(pending.machine);
     return reading;
 }
 
-/// The formula with its windows split, where that can be read with fewer operations; else nothing
-/// is added.
-std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id,
-                                                                std::uint64_t operations) {
-    const NodeId split = split_windows(graph_, id);
-    if (split == id || splitting_) return std::nullopt;
+/// The formula with its windows taken apart, where that can be read with fewer operations; else
+/// nothing is added.
+std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, std::uint64_t operations) {
+    const auto found = program_.apart.find(id);
+    if (found == program_.apart.end()) return std::nullopt;
     const std::size_t before = readings_.size();
     const std::size_t failures = oversize_.size();
-    splitting_ = true;  // a part that is too large is not split again
-    const auto reading = of(split);
-    splitting_ = false;
+    is_apart_ = true;  // a part that is too large is not taken apart again
+    const auto reading = of(found->second);
+    is_apart_ = false;
     oversize_.resize(failures);
     Cost cost;
     for (std::size_t r = before; r < readings_.size(); ++r)
@@ -294,7 +293,7 @@ std::optional<std::uint32_t> ReadingBuilder::with_split_windows(NodeId id,
 }
 
 /// A small machine where there is one, else what takes the fewest operations: pending positions,
-/// the formula with its windows split, a machine up to the limits.
+/// the formula with its windows taken apart, a machine up to the limits.
 std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
     const auto as_reading = [&](Machine machine) {
         return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
@@ -306,7 +305,7 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
     if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_)))
         best.reset();
     oversize_.resize(failures);
-    if (splitting_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
+    if (is_apart_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
     if (!best || cost_of(*best, values_).operations > kMuchWork)
         if (auto large = machine(id, machine_limits(limits_))) {
             Reading reading = as_reading(std::move(*large));
@@ -316,9 +315,9 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
     const std::uint64_t operations =
         best ? cost_of(*best, values_).operations : limits_.operations + 1;
     if (operations > kMuchWork)
-        if (const auto split = with_split_windows(id, operations)) {
+        if (const auto reading = apart(id, operations)) {
             oversize_.resize(failures);
-            return split;
+            return reading;
         }
     if (!best) return std::nullopt;
     oversize_.resize(failures);
@@ -356,8 +355,7 @@ std::vector<Slot*> slots_of(Reading& reading) {
             if (reading.pending.is_fold) slots.push_back(&reading.pending.fold.unseen);
             of_states(reading.pending.machine, slots);
             break;
-        case Reading::Kind::conjunction:
-        case Reading::Kind::disjunction: break;
+        case Reading::Kind::combination: break;
     }
     return slots;
 }

@@ -4,7 +4,7 @@
 
 #include "etlmon/distance/dynamic_enclosed.hpp"
 #include "etlmon/temporal/expression.hpp"
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
 

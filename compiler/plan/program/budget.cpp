@@ -1,18 +1,15 @@
-#include "plan/budget.hpp"
+#include "plan/program/budget.hpp"
 
 #include <algorithm>
 #include <set>
 
 #include "etlmon/temporal/boolean_verdict.hpp"
 #include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/delay.hpp"
-#include "etlmon/temporal/machine.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 #include "etlmon/temporal/window.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/register_program.hpp"
+#include "plan/program/members.hpp"
+#include "plan/program/target_bytes.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -37,61 +34,29 @@ constexpr std::uint64_t kCodePerFold = 96;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
 constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
-/// What a value type takes to keep.
-struct Footprint {
-    std::uint64_t value;
-    std::uint64_t reading;
-    std::uint32_t (*ring)(std::uint32_t length);
-    std::uint32_t (*window)(std::uint32_t length);  ///< of one side
-    std::uint32_t (*since)(std::uint32_t length);   ///< of two, towards the past
-    std::uint32_t (*until)(std::uint32_t length);   ///< towards the future
-};
-
-template <class V>
-constexpr Footprint footprint() {
-    return {sizeof(V),
-            sizeof(etlmon::BasicReading<V>),
-            etlmon::delay_bytes<V>,
-            etlmon::window_bytes<etlmon::Greatest<V>>,
-            etlmon::window_bytes<etlmon::Since<V>>,
-            etlmon::window_bytes<etlmon::Until<V>>};
-}
-
-const Footprint& footprint_of(Values values) {
-    static constexpr Footprint kRobustness = footprint<Value>();
-    static constexpr Footprint kTruth = footprint<etlmon::Truth>();
-    return values == Values::boolean ? kTruth : kRobustness;
-}
-
-/// `kept` values and `combined` minima or maxima of two.
-Cost values(const Footprint& of, std::uint64_t kept, std::uint64_t combined) {
-    return {.state_bytes = kept * of.value,
-            .code_bytes = (kept + combined) * kCodePerValueOperation,
+/// `combined` minima or maxima of two, beside `kept` values.
+Cost values(std::uint64_t kept, std::uint64_t combined) {
+    return {.code_bytes = (kept + combined) * kCodePerValueOperation,
             .operations = combined * kKeysPerValue};
 }
 
-Cost window_cost(std::uint32_t (*bytes)(std::uint32_t), std::uint32_t length, std::uint64_t sides) {
+Cost window_cost(std::uint32_t length, std::uint64_t sides) {
     if (length == 1) return {};
     const std::uint64_t combined = etlmon::window_operations(length) * (2 * sides - 1);
-    return {.state_bytes = bytes(length),
-            .code_bytes = kCodePerWindow * sides,
+    return {.code_bytes = kCodePerWindow * sides,
             .operations = combined * kKeysPerValue + kPartingComparisons};
 }
 
-Cost ring_cost(const Footprint& of, std::uint32_t length) {
-    return {.state_bytes = of.ring(length), .code_bytes = kCodePerRing};
-}
-
-Cost fold_cost(const Footprint& of, const Fold& fold) {
+Cost fold_cost(const Fold& fold) {
     const bool binary = fold.left != kNone;
-    Cost cost = values(of, binary ? 2 : 1, binary ? 3 : 1);
+    Cost cost = values(binary ? 2 : 1, binary ? 3 : 1);
     cost.operations += 2 + 3;  // is the window open, does it reach past this step; the bounds
     cost.code_bytes += kCodePerFold;
     return cost;
 }
 
-Cost response_cost(const Footprint& of, const Response& response) {
-    Cost cost = values(of, 1, 2 + (response.recent != kNone ? 1 : 0));
+Cost response_cost(const Response& response) {
+    Cost cost = values(1, 2 + (response.recent != kNone ? 1 : 0));
     cost.operations +=
         2 +
         3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
@@ -117,47 +82,91 @@ std::uint64_t pending_steps(const Pending& pending) {
     return steps;
 }
 
-Cost pending_cost(const Footprint& of, const Pending& pending) {
+/// What a reading and a value take on the stack.
+struct OnStack {
+    std::uint64_t reading;
+    std::uint64_t value;
+};
+OnStack on_stack(Values values) {
+    if (values == Values::boolean)
+        return {sizeof(etlmon::BasicReading<etlmon::Truth>), sizeof(etlmon::Truth)};
+    return {sizeof(etlmon::BasicReading<Value>), sizeof(Value)};
+}
+
+Cost pending_cost(const Pending& pending, OnStack of) {
     constexpr std::uint64_t kKeysPerReading = 4;
     const std::uint64_t positions = pending.horizon + std::uint64_t{1};
     Cost cost;
-    std::uint64_t leaves = 0;
-    for (const Pending::Part& part : pending.parts) leaves += part.leaf != kNone ? 1 : 0;
-    cost.state_bytes =
-        leaves * etlmon::storage_bytes(static_cast<std::uint32_t>(positions * of.value));
-    cost.state_bytes += of.value * (pending.is_fold ? 2 : pending.machine.states.size());
     cost.stack_bytes = pending.parts.size() * positions * of.reading;
-    if (!pending.is_fold)  // the guards at each position, and what PendingMachine::read works with
-        cost.stack_bytes +=
-            (pending.guards.size() * positions + 2 * pending.machine.states.size()) * of.reading +
-            (pending.guards.size() + pending.machine.states.size()) * of.value;
     cost.operations = positions * pending_steps(pending) * kKeysPerReading;
     cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
-    if (!pending.is_fold)
-        cost.code_bytes += pending.machine.automaton.transitions.size() * kTransitionBytes +
-                           pending.machine.states.size() * kStateBytes +
-                           pending.guards.size() * kCodePerValueOperation;
+    if (pending.is_fold) return cost;
+    const std::size_t states = pending.machine.states.size();
+    const std::size_t guards = pending.guards.size();
+    // The guards at each position, and what PendingMachine::read works with.
+    cost.stack_bytes +=
+        (guards * positions + 2 * states) * of.reading + (guards + states) * of.value;
+    cost.code_bytes += pending.machine.automaton.transitions.size() * kTransitionBytes +
+                       states * kStateBytes + guards * kCodePerValueOperation;
     return cost;
 }
 
-Cost table_cost(const Footprint& of, const AutomatonSize& size) {
-    return {.state_bytes =
-                etlmon::storage_bytes(static_cast<std::uint32_t>(2 * size.states * of.value)),
-            .code_bytes =
+Cost table_cost(const AutomatonSize& size) {
+    return {.code_bytes =
                 kCodePerTable + size.transitions * kTransitionBytes + size.states * kStateBytes,
             .operations = (3 * size.states + 2 * size.transitions) * kKeysPerValue};
 }
 
 /// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of
 /// values.
-Cost machine_cost(const Footprint& of, const Machine& machine) {
+Cost machine_cost(const Machine& machine) {
     const std::size_t read = 3 * machine.states.size();
-    if (unrolled(machine))
-        return values(of, registers(machine), operations(make_register_program(machine)) + read);
-    Cost cost = table_cost(of, {machine.states.size(), machine.automaton.transitions.size()});
+    if (machine.unrolled)
+        return values(machine.program.updates.size(), operations(machine.program) + read);
+    Cost cost = table_cost({machine.states.size(), machine.automaton.transitions.size()});
     cost.code_bytes += machine.guards.size() * kCodePerValueOperation;
     for (const auto& guard : machine.guards)
         cost.operations += guard.empty() ? 0 : (guard.size() - 1) * kKeysPerValue;
+    return cost;
+}
+
+/// Code and work of a stream.
+Cost work_of(const Stream& stream) {
+    switch (stream.op) {
+        case StreamOp::constant:
+        case StreamOp::predicate:
+        case StreamOp::flag:
+        case StreamOp::negation: return {.code_bytes = kCodePerValueOperation};
+        case StreamOp::combination: return values(0, stream.operands.size() - 1);
+        case StreamOp::within: return {.code_bytes = kCodePerValueOperation, .operations = 2};
+        case StreamOp::delay:
+        case StreamOp::shift: return {.code_bytes = kCodePerRing};
+        case StreamOp::running: return values(1, 1);
+        case StreamOp::since: return values(1, 2);
+        case StreamOp::window: return window_cost(stream.length, 1);
+        case StreamOp::window_since:
+        case StreamOp::window_until: return window_cost(stream.length, 2);
+        case StreamOp::widening: return Cost{.code_bytes = kCodePerRing} + values(0, 1);
+    }
+    return {};
+}
+
+/// Code, work and stack of a reading.
+Cost work_of(const Reading& reading, Values kind) {
+    switch (reading.kind) {
+        case Reading::Kind::latch: return values(1, 0);
+        case Reading::Kind::fold: return fold_cost(reading.fold);
+        case Reading::Kind::response: return response_cost(reading.response);
+        case Reading::Kind::machine: return machine_cost(reading.machine);
+        case Reading::Kind::pending: return pending_cost(reading.pending, on_stack(kind));
+        case Reading::Kind::combination: return values(0, 2 * (reading.operands.size() - 1));
+    }
+    return {};
+}
+
+/// With the bytes of these members.
+Cost keeping(Cost cost, const std::vector<Member>& members, Values kind) {
+    for (const Member& member : members) cost.state_bytes += bytes_of(member, kind);
     return cost;
 }
 
@@ -165,8 +174,7 @@ Cost distance_cost(const check::Model& model, const check::Distance& distance) {
     const check::Target& target = model.targets[distance.target];
     const std::uint64_t elements = std::uint64_t{target.rows} * target.dimension;
     const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
-    return {.constant_bytes = distance.weights.size() * sizeof(float),
-            .distance_operations = full ? elements * (1 + target.dimension) : elements};
+    return {.distance_operations = full ? elements * (1 + target.dimension) : elements};
 }
 
 Cost hold_cost(const check::Input& input) {
@@ -213,29 +221,13 @@ public:
             if (searches(plan_, d))
                 sum.state_bytes += search_bytes(model.targets[model.distances[d].target]);
         }
-        sum.constant_bytes += target_bytes();
+        sum.target_bytes = target_bytes(plan_, distances_, Vectors::with);
+        sum.scalar_target_bytes = target_bytes(plan_, distances_, Vectors::without);
         for (Index i : inputs_) sum = sum + hold_cost(model.inputs[i]);
         return sum;
     }
 
 private:
-    /// float32 rows once a set, where some distance needs them, and each set's narrow rows.
-    std::uint64_t target_bytes() const {
-        std::set<Index> wide;
-        std::uint64_t bytes = 0;
-        std::set<std::pair<Index, bool>> narrow;
-        for (Index d : distances_) {
-            const check::Distance& distance = plan_.model->distances[d];
-            const NarrowSet* set = narrow_set(plan_, d);
-            if (set == nullptr || !set->lossless) wide.insert(distance.target);
-            if (set == nullptr) continue;
-            const std::pair rows{distance.target, rows_as_given(distance)};
-            if (narrow.insert(rows).second) bytes += bytes_of(*set);
-        }
-        for (Index t : wide) bytes += plan_.model->targets[t].values.size() * sizeof(float);
-        return bytes;
-    }
-
     static Cost telemetry(const check::Predicate& predicate) {
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
         Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord,
@@ -281,7 +273,8 @@ std::uint64_t measured_elements(const check::Model& model, Index predicate) {
 Cost operator+(Cost a, const Cost& b) {
     a.state_bytes += b.state_bytes;
     a.stack_bytes += b.stack_bytes;
-    a.constant_bytes += b.constant_bytes;
+    a.target_bytes += b.target_bytes;
+    a.scalar_target_bytes += b.scalar_target_bytes;
     a.code_bytes += b.code_bytes;
     a.operations += b.operations;
     a.distance_operations += b.distance_operations;
@@ -293,63 +286,18 @@ bool within(const Cost& cost, const Limits& limits) {
            cost.code_bytes <= limits.code_bytes && cost.operations <= limits.operations;
 }
 
-std::size_t registers(const Machine& machine) {
-    return static_cast<std::size_t>(
-        std::count_if(machine.states.begin(), machine.states.end(),
-                      [](const Machine::State& state) { return !state.always_true; }));
-}
-
-bool unrolled(const Machine& machine) {
-    return machine.states.size() <= kMaxUnrolledStates &&
-           machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
-}
-
 Cost cost_of(const Stream& stream, Values kind) {
-    const Footprint& of = footprint_of(kind);
-    const std::size_t operands = stream.operands.size();
-    switch (stream.op) {
-        case StreamOp::constant:
-        case StreamOp::predicate:
-        case StreamOp::flag:
-        case StreamOp::negation: return {.code_bytes = kCodePerValueOperation};
-        case StreamOp::conjunction:
-        case StreamOp::disjunction: return values(of, 0, operands - 1);
-        case StreamOp::within: return {.code_bytes = kCodePerValueOperation, .operations = 2};
-        case StreamOp::delay:
-        case StreamOp::shift: return ring_cost(of, stream.length);
-        case StreamOp::running_max:
-        case StreamOp::running_min: return values(of, 1, 1);
-        case StreamOp::since:
-        case StreamOp::trigger: return values(of, 1, 2);
-        case StreamOp::window_max:
-        case StreamOp::window_min: return window_cost(of.window, stream.length, 1);
-        case StreamOp::window_since:
-        case StreamOp::window_trigger: return window_cost(of.since, stream.length, 2);
-        case StreamOp::window_until:
-        case StreamOp::window_release: return window_cost(of.until, stream.length, 2);
-        case StreamOp::widening_max:
-        case StreamOp::widening_min:
-            return ring_cost(of, stream.length - stream.from_length) + values(of, 0, 1);
-    }
-    return {};
+    return keeping(work_of(stream), members_of(stream), kind);
 }
 
 Cost cost_of(const Reading& reading, Values kind) {
-    const Footprint& of = footprint_of(kind);
-    switch (reading.kind) {
-        case Reading::Kind::latch: return values(of, 1, 0);
-        case Reading::Kind::fold: return fold_cost(of, reading.fold);
-        case Reading::Kind::pending: return pending_cost(of, reading.pending);
-        case Reading::Kind::response: return response_cost(of, reading.response);
-        case Reading::Kind::machine: return machine_cost(of, reading.machine);
-        case Reading::Kind::conjunction:
-        case Reading::Kind::disjunction: return values(of, 0, 2 * (reading.operands.size() - 1));
-    }
-    return {};
+    return keeping(work_of(reading, kind), members_of(reading), kind);
 }
 
-Cost cost_of(const AutomatonSize& size, Values values) {
-    return table_cost(footprint_of(values), size);
+Cost cost_of(const AutomatonSize& size, Values kind) {
+    const Member table{.kind = Member::Kind::machine,
+                       .length = static_cast<std::uint32_t>(size.states)};
+    return keeping(table_cost(size), {table}, kind);
 }
 
 void add_costs(Plan& plan) {

@@ -1,4 +1,4 @@
-#include "plan/dependents.hpp"
+#include "plan/program/dependents.hpp"
 
 namespace etlc::plan {
 

@@ -8,7 +8,6 @@
 
 #include "etlmon/temporal/pending.hpp"
 #include "plan/plan.hpp"
-#include "plan/table.hpp"
 
 namespace etlc::plan {
 
@@ -31,7 +30,6 @@ private:
                                     const std::vector<Value>& streams);
 
     const Pending& pending_;
-    Table table_;
     std::vector<std::vector<Value>>
         leaves_;                    ///< per part: the last horizon + 1 values, oldest first
     std::vector<Readings> parts_;   ///< per part: at the same positions

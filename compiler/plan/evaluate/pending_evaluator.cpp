@@ -1,4 +1,4 @@
-#include "plan/pending_evaluator.hpp"
+#include "plan/evaluate/pending_evaluator.hpp"
 
 #include <algorithm>
 
@@ -8,7 +8,6 @@ using etlmon::kFalse;
 using etlmon::kTrue;
 
 PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
-    if (!pending.is_fold) table_ = make_table(pending.machine);
     leaves_.resize(pending.parts.size());
     parts_.assign(pending.parts.size(), Readings(pending.horizon + std::size_t{1}));
     reset();
@@ -17,8 +16,7 @@ PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
 void PendingEvaluator::reset() {
     for (auto& leaf : leaves_) leaf.clear();
     if (pending_.is_fold) {
-        const bool max = ir::takes_max(pending_.fold.op);
-        registers_ = max ? std::vector<Value>{kFalse, kTrue} : std::vector<Value>{kTrue, kFalse};
+        registers_ = {neutral(pending_.fold.max), neutral(!pending_.fold.max)};
     } else {
         registers_.assign(pending_.machine.states.size(), kFalse);
         registers_[0] = kTrue;
@@ -52,7 +50,7 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
         out = parts_[part.operands[0]];
         for (std::size_t i = 1; i < part.operands.size(); ++i) {
             const Readings& other = parts_[part.operands[i]];
-            if (part.op == ir::Op::conjunction)
+            if (!part.max)
                 etlmon::pending_and(out.data(), other.data(), out.data(), count);
             else
                 etlmon::pending_or(out.data(), other.data(), out.data(), count);
@@ -63,7 +61,7 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
         part.operands.size() == 2 ? parts_[part.operands[0]].data() : nullptr;
     const etlmon::Reading* right = parts_[part.operands.back()].data();
     const auto [low, high] = part.interval;
-    if (ir::takes_max(part.op))
+    if (part.max)
         etlmon::pending_at_each<etlmon::Seeking>(left, right, out.data(), count, low, high,
                                                  streams[part.unseen].high);
     else
@@ -77,7 +75,7 @@ etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t
     const etlmon::Reading* left = fold.left == kNone ? nullptr : parts_[fold.left].data();
     const etlmon::Reading* right = parts_[fold.right].data();
     const auto [low, high] = fold.interval;
-    if (ir::takes_max(fold.op))
+    if (fold.max)
         return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left,
                                                            right, count, step, pending_.horizon,
                                                            low, high, streams[fold.unseen].high);
@@ -88,6 +86,7 @@ etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
                                                   const std::vector<Value>& streams) {
+    const Table& table = pending_.machine.table;
     const std::size_t width = pending_.guards.size();
     Readings guards(count * width, etlmon::settled(kTrue));
     for (std::uint32_t p = 0; p < count; ++p)
@@ -96,16 +95,16 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
                 guards[p * width + g] = min_of(guards[p * width + g], parts_[part][p]);
     std::vector<Key> weak{etlmon::kTop};
     std::vector<Key> strong{etlmon::kTop};
-    for (Slot slot : table_.weak) weak.push_back(streams[slot].low);
-    for (Slot slot : table_.strong) strong.push_back(streams[slot].high);
+    for (Slot slot : table.weak) weak.push_back(streams[slot].low);
+    for (Slot slot : table.strong) strong.push_back(streams[slot].high);
     const std::size_t states = registers_.size();
     Readings scratch(2 * states);
     std::vector<Value> values(width + states);
     return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states),
                                    guards.data(), static_cast<std::uint32_t>(width), count,
-                                   step >= pending_.horizon, table_.transitions.data(),
-                                   table_.ends.data(), table_.owed.data(), weak.data(),
-                                   strong.data(), scratch.data(), values.data());
+                                   step >= pending_.horizon, table.transitions.data(),
+                                   table.ends.data(), table.owed.data(), weak.data(), strong.data(),
+                                   scratch.data(), values.data());
 }
 
 }  // namespace etlc::plan

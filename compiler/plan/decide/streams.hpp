@@ -23,8 +23,8 @@ public:
     /// continuation" gives them after this step; constant unless an unbounded past operator narrows
     /// them.
     Slot unseen(NodeId node);
-    /// The min or max of streams of equal lag; constants are folded.
-    Slot combine(StreamOp op, std::vector<Slot> operands, NodeId node = kNone);
+    /// The max or min of streams of equal lag; constants are folded.
+    Slot combine(bool max, std::vector<Slot> operands, NodeId node = kNone);
     /// The same stream, later by `steps`.
     Slot delayed(Slot slot, std::uint32_t steps);
 
@@ -36,8 +36,8 @@ public:
     /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that
     /// ask (plan::Response). Of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
-    /// Over the last `length` positions of a stream without lag.
-    Slot recent(StreamOp op, Slot slot, std::uint32_t length);
+    /// The max or min over the last `length` positions of a stream without lag.
+    Slot recent(bool max, Slot slot, std::uint32_t length);
 
 private:
     Slot intern(Stream stream);
@@ -47,9 +47,9 @@ private:
     Slot past_binary(const ir::Node& node, NodeId id);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
-    Slot window(StreamOp op, std::vector<Slot> operands, std::uint32_t length,
+    Slot window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,
                 std::uint32_t operand_lag, std::uint32_t lag, NodeId node);
-    Slot running(StreamOp op, Slot slot, NodeId node);
+    Slot running(bool max, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
 
@@ -58,7 +58,7 @@ private:
     check::Values values_;
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity = std::tuple<StreamOp, std::vector<Slot>, Index, std::uint32_t, Key, Key,
+    using Identity = std::tuple<StreamOp, bool, std::vector<Slot>, Index, std::uint32_t, Key, Key,
                                 std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };

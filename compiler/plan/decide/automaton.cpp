@@ -1,4 +1,4 @@
-#include "plan/automaton.hpp"
+#include "plan/decide/automaton.hpp"
 
 #include <algorithm>
 #include <tuple>

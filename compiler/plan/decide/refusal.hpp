@@ -3,8 +3,8 @@
 // at the operators that need them. Keeps true: a plan within the limits passes without a word.
 #pragma once
 
+#include "plan/decide/readings.hpp"
 #include "plan/plan.hpp"
-#include "plan/readings.hpp"
 
 namespace etlc::plan {
 
@@ -14,6 +14,6 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
                  diag::Sink& sink);
 
 /// A plan over the limits.
-void check_budget(const Plan& plan, const ir::Graph& graph, const Limits& limits, diag::Sink& sink);
+void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink);
 
 }  // namespace etlc::plan

@@ -1,4 +1,4 @@
-#include "plan/evaluator.hpp"
+#include "plan/evaluate/evaluator.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -9,7 +9,7 @@
 #include "etlmon/temporal/shift.hpp"
 #include "etlmon/temporal/window.hpp"
 #include "etlmon/views.hpp"
-#include "plan/literals.hpp"
+#include "plan/program/literals.hpp"
 
 namespace etlc::plan {
 
@@ -50,7 +50,8 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
 void Evaluator::reset() {
     for (Held& held : held_) held = {};
     for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
-        reset_stream(plan_.streams[slot], stream_states_[slot]);
+        for (const Member& member : members_of(plan_.streams[slot]))
+            reset_member(member, stream_states_[slot]);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         reset_reading(plan_.readings[i], reading_states_[i]);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
@@ -154,123 +155,91 @@ void Evaluator::advance_streams() {
 
 namespace {
 
-template <class Monoid>
-Value push(std::vector<Value>& values, std::uint32_t& cursor, std::uint32_t length, Value value) {
-    return etlmon::window_push<Monoid>(values.data(), cursor, length, value);
+Value combined(bool max, Value a, Value b) {
+    return max ? max_of(a, b) : min_of(a, b);
+}
+
+template <class Monoid, class Element>
+Element push(std::vector<Element>& elements, std::uint32_t& cursor, std::uint32_t length,
+             Element element) {
+    return etlmon::window_push<Monoid>(elements.data(), cursor, length, element);
 }
 
 }  // namespace
 
 Value Evaluator::advance_window(const Stream& stream, StreamState& state) const {
     const std::uint32_t n = stream.length;
-    const auto pair = [&](Value no_value, Value no_guard) {
-        return etlmon::Span<Value>{operand(stream, 1, no_value), operand(stream, 0, no_guard)};
-    };
-    switch (stream.op) {
-        case StreamOp::window_max:
-            return push<etlmon::Greatest<Value>>(state.values, state.cursor, n,
-                                                 operand(stream, 0, kFalse));
-        case StreamOp::window_min:
-            return push<etlmon::Least<Value>>(state.values, state.cursor, n,
-                                              operand(stream, 0, kTrue));
-        case StreamOp::window_since:
-            return etlmon::window_push<etlmon::Since<Value>>(state.pairs.data(), state.cursor, n,
-                                                             pair(kFalse, kTrue))
-                .value;
-        case StreamOp::window_trigger:
-            return etlmon::window_push<etlmon::Trigger<Value>>(state.pairs.data(), state.cursor, n,
-                                                               pair(kTrue, kFalse))
-                .value;
-        case StreamOp::window_until:
-            return etlmon::window_push<etlmon::Until<Value>>(state.pairs.data(), state.cursor, n,
-                                                             pair(kFalse, kTrue))
-                .value;
-        default:
-            return etlmon::window_push<etlmon::Release<Value>>(state.pairs.data(), state.cursor, n,
-                                                               pair(kTrue, kFalse))
-                .value;
+    const Value none = neutral(stream.max);
+    if (stream.op == StreamOp::window) {
+        const Value value = operand(stream, 0, none);
+        return stream.max ? push<etlmon::Greatest<Value>>(state.values, state.cursor, n, value)
+                          : push<etlmon::Least<Value>>(state.values, state.cursor, n, value);
     }
+    const etlmon::Span<Value> pair{operand(stream, 1, none),
+                                   operand(stream, 0, neutral(!stream.max))};
+    const auto pushed = [&](auto seeking, auto guarding) {
+        return stream.max ? push<decltype(seeking)>(state.pairs, state.cursor, n, pair).value
+                          : push<decltype(guarding)>(state.pairs, state.cursor, n, pair).value;
+    };
+    return stream.op == StreamOp::window_since
+               ? pushed(etlmon::Since<Value>(), etlmon::Trigger<Value>())
+               : pushed(etlmon::Until<Value>(), etlmon::Release<Value>());
 }
 
 Value Evaluator::advance(const Stream& stream, StreamState& state) const {
+    const bool max = stream.max;
     const auto at = [&](std::size_t i) { return streams_[stream.operands[i]]; };
+    const auto delayed = [&](std::uint32_t length, Value value) {
+        return etlmon::delay_push(state.values.data(), state.cursor, length, value);
+    };
     switch (stream.op) {
         case StreamOp::constant: return stream.value;
         case StreamOp::predicate: return literals_[stream.index];
         case StreamOp::flag: return flags_[stream.index];
         case StreamOp::negation: return negate(at(0));
-        case StreamOp::conjunction: {
-            Value value = kTrue;
-            for (Slot slot : stream.operands) value = min_of(value, streams_[slot]);
-            return value;
-        }
-        case StreamOp::disjunction: {
-            Value value = kFalse;
-            for (Slot slot : stream.operands) value = max_of(value, streams_[slot]);
+        case StreamOp::combination: {
+            Value value = at(0);
+            for (Slot slot : stream.operands) value = combined(max, value, streams_[slot]);
             return value;
         }
         case StreamOp::within:
             return stream.interval.low <= steps_ && steps_ <= stream.interval.high ? at(0)
                                                                                    : stream.value;
-        case StreamOp::delay:
-            return etlmon::delay_push(state.values.data(), state.cursor, stream.length, at(0));
-        case StreamOp::shift:
-            return etlmon::delay_push(state.values.data(), state.cursor, stream.length,
-                                      operand(stream, 0, stream.value));
-        case StreamOp::running_max:
-            return state.values[0] = max_of(state.values[0], operand(stream, 0, kFalse));
-        case StreamOp::running_min:
-            return state.values[0] = min_of(state.values[0], operand(stream, 0, kTrue));
+        case StreamOp::delay: return delayed(stream.length, at(0));
+        case StreamOp::shift: return delayed(stream.length, operand(stream, 0, stream.value));
+        case StreamOp::running:
+            return state.values[0] =
+                       combined(max, state.values[0], operand(stream, 0, neutral(max)));
         case StreamOp::since:
-            return state.values[0] = max_of(operand(stream, 1, kFalse),
-                                            min_of(state.values[0], operand(stream, 0, kTrue)));
-        case StreamOp::trigger:
-            return state.values[0] = min_of(operand(stream, 1, kTrue),
-                                            max_of(state.values[0], operand(stream, 0, kFalse)));
-        case StreamOp::widening_max:
-            return max_of(etlmon::delay_push(state.values.data(), state.cursor,
-                                             stream.length - stream.from_length, at(0)),
-                          at(0));
-        case StreamOp::widening_min:
-            return min_of(etlmon::delay_push(state.values.data(), state.cursor,
-                                             stream.length - stream.from_length, at(0)),
-                          at(0));
-        default: return advance_window(stream, state);
+            return state.values[0] =
+                       combined(max, operand(stream, 1, neutral(max)),
+                                combined(!max, state.values[0], operand(stream, 0, neutral(!max))));
+        case StreamOp::widening:
+            return combined(max, delayed(stream.length - stream.from_length, at(0)), at(0));
+        case StreamOp::window:
+        case StreamOp::window_since:
+        case StreamOp::window_until: return advance_window(stream, state);
     }
+    return kAnything;
 }
 
-void Evaluator::reset_stream(const Stream& stream, StreamState& state) {
+void Evaluator::reset_member(const Member& member, StreamState& state) {
     state.cursor = 0;
-    switch (stream.op) {
-        case StreamOp::delay: state.values.assign(stream.length, kFalse); break;
-        case StreamOp::shift: state.values.assign(stream.length, stream.value); break;
-        case StreamOp::running_max: state.values.assign(1, kFalse); break;
-        case StreamOp::running_min: state.values.assign(1, kTrue); break;
-        case StreamOp::since:
-        case StreamOp::trigger: state.values.assign(1, stream.value); break;
-        case StreamOp::window_max:
-            state.values.assign(etlmon::window_elements(stream.length), kFalse);
+    switch (member.kind) {
+        case Member::Kind::value: state.values.assign(1, member.first); break;
+        case Member::Kind::delay: state.values.assign(member.length, member.first); break;
+        case Member::Kind::window:
+            state.values.assign(etlmon::window_elements(member.length), neutral(member.max));
             break;
-        case StreamOp::window_min:
-            state.values.assign(etlmon::window_elements(stream.length), kTrue);
+        case Member::Kind::since_window:
+        case Member::Kind::until_window:
+            state.pairs.assign(etlmon::window_elements(member.length),
+                               {neutral(member.max), neutral(!member.max)});
             break;
-        case StreamOp::widening_max:
-            state.values.assign(stream.length - stream.from_length, kFalse);
+        case Member::Kind::widening:
+            state.values.assign(member.length - member.from_length, neutral(member.max));
             break;
-        case StreamOp::widening_min:
-            state.values.assign(stream.length - stream.from_length, kTrue);
-            break;
-        case StreamOp::window_since:
-        case StreamOp::window_until:
-            state.pairs.assign(etlmon::window_elements(stream.length),
-                               etlmon::Until<Value>::identity());
-            break;
-        case StreamOp::window_trigger:
-        case StreamOp::window_release:
-            state.pairs.assign(etlmon::window_elements(stream.length),
-                               etlmon::Release<Value>::identity());
-            break;
-        default: break;
+        default: break;  // of readings
     }
 }
 

@@ -1,11 +1,20 @@
-#include "plan/split_windows.hpp"
-
+// Windows over an unbounded future, taken apart: an equal formula, in which bounded operators look
+// at an unbounded future only from the end of their window, and that step is pushed down to what
+// has a bounded future. rho is the same on every prefix, and bounds are at least as tight as the
+// definition's.
+//
+// An automaton counts such windows down: F[0,40] (p U q) is 41 obligations, and under G it is sets
+// of them. Apart, the unbounded operators alone make the automaton, over literals whose future is
+// bounded. Which of the two is cheaper depends on both, so the plan has the choice.
 #include <algorithm>
 #include <optional>
 #include <unordered_map>
+#include <unordered_set>
 #include <vector>
 
-namespace etlc::plan {
+#include "opt/opt.hpp"
+
+namespace etlc::opt {
 
 namespace {
 
@@ -19,8 +28,6 @@ using ir::Span;
 /// More parts than this are not worth it.
 constexpr int kMostSteps = 2000;
 
-struct TooMany {};
-
 /// The rules are written for U and F; with `seeks` false they are those of R and G, where U and R,
 /// && and ||, true and false change places. They hold for truth values at every position k of every
 /// prefix 0..i, and so for min and max: both only compare. A formula is settled where its future is
@@ -29,8 +36,19 @@ class Splitting {
 public:
     explicit Splitting(ir::Graph& graph) : graph_(graph) {}
 
+    /// The formula itself where there is nothing to split, or where the parts would be too many.
+    NodeId apart(NodeId formula) {
+        const NodeId result = rewrite(formula);
+        return too_many() ? formula : result;
+    }
+
+private:
+    /// From here on every operator is left as it is.
+    bool too_many() const { return steps_ > kMostSteps; }
+    bool settled(NodeId id) const { return graph_[id].horizon != kUnbounded; }
+
     NodeId rewrite(NodeId id) {
-        if (settled(id)) return id;
+        if (settled(id) || too_many()) return id;
         if (const auto known = done_.find(id); known != done_.end()) return known->second;
         const Node node = graph_[id];  // a copy: the graph grows meanwhile
         std::vector<NodeId> operands;
@@ -40,11 +58,6 @@ public:
         return result;
     }
 
-private:
-    bool settled(NodeId id) const { return graph_[id].horizon != kUnbounded; }
-    void count_step() {
-        if (++steps_ > kMostSteps) throw TooMany{};
-    }
     static Op wait(bool seeks) { return seeks ? Op::until : Op::release; }
     static Op either(bool seeks) { return seeks ? Op::disjunction : Op::conjunction; }
     static Op both(bool seeks) { return either(!seeks); }
@@ -58,13 +71,15 @@ private:
     }
 
     NodeId combine(Op op, std::vector<NodeId> operands, Span span) {
-        count_step();
+        ++steps_;
+        if (too_many()) return operands.front();
         return graph_.combine(op, std::move(operands), span);
     }
 
     /// left U[a,b] right.
     NodeId until(bool seeks, Interval interval, NodeId left, NodeId right, Span span) {
-        count_step();
+        ++steps_;
+        if (too_many()) return right;
         if (interval.bounded() && !settled(right))
             if (const auto split = by_right(seeks, interval, left, right, span)) return *split;
         if (interval.bounded() && !settled(left))
@@ -73,13 +88,6 @@ private:
     }
 
     // ---- an unbounded future on the right
-
-    /// p U q or p R q that a window looks at.
-    struct Unbounded {
-        bool seeks;
-        NodeId p;
-        NodeId q;
-    };
 
     std::optional<NodeId> by_right(bool seeks, Interval interval, NodeId left, NodeId right,
                                    Span span) {
@@ -206,7 +214,8 @@ private:
     /// && F[b,b] q: the last part is what makes it false where the prefix ends before; for R[c,d]
     /// with c > 0 it is F[b,b] true.
     NodeId shift(bool seeks, std::uint32_t steps, NodeId operand, Span span) {
-        count_step();
+        ++steps_;
+        if (too_many()) return operand;
         const Interval at{steps, steps};
         const Op one = seeks ? Op::eventually : Op::always;
         if (settled(operand)) return graph_.unary(one, at, operand, span);
@@ -237,12 +246,21 @@ private:
 
 }  // namespace
 
-NodeId split_windows(ir::Graph& graph, NodeId formula) {
-    try {
-        return Splitting(graph).rewrite(formula);
-    } catch (const TooMany&) {
-        return formula;
-    }
+void split_windows(ir::Program& program) {
+    ir::Graph& graph = program.graph;
+    std::unordered_set<NodeId> seen;
+    const auto visit = [&](const auto& self, NodeId id) -> void {
+        if (!graph[id].has_future || !seen.insert(id).second) return;
+        if (ir::info(graph[id].op).arity != ir::Arity::many) {
+            const NodeId apart = Splitting(graph).apart(id);
+            if (apart != id) program.apart.emplace(id, apart);
+            return;
+        }
+        const std::vector<NodeId> operands = graph[id].operands;  // the graph grows meanwhile
+        for (NodeId operand : operands) self(self, operand);
+    };
+    for (std::size_t m = 0; m < program.monitors.size(); ++m)
+        if (!graph.model().monitors[m].sliding) visit(visit, program.monitors[m]);
 }
 
-}  // namespace etlc::plan
+}  // namespace etlc::opt

@@ -1,4 +1,4 @@
-#include "plan/literals.hpp"
+#include "plan/program/literals.hpp"
 
 #include "etlmon/temporal/predicate.hpp"
 #include "etlmon/temporal/truth.hpp"

@@ -1,7 +1,8 @@
-#include "plan/register_program.hpp"
-
+// The registers of a small state machine, updated by straight-line code.
 #include <algorithm>
 #include <set>
+
+#include "plan/program/machine.hpp"
 
 namespace etlc::plan {
 

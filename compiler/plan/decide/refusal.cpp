@@ -1,11 +1,11 @@
-#include "plan/refusal.hpp"
+#include "plan/decide/refusal.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <set>
 
-#include "plan/budget.hpp"
+#include "plan/program/budget.hpp"
 
 namespace etlc::plan {
 
@@ -117,9 +117,9 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
         "move the limits");
 }
 
-void check_budget(const Plan& plan, const ir::Graph& graph, const Limits& limits,
-                  diag::Sink& sink) {
+void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
     if (within(plan.cost, limits)) return;
+    const ir::Graph& graph = *plan.formulas;
     const check::Model& model = *plan.model;
     auto& error = sink.report(
         diag::Code::over_budget, model.monitors.front().span,

@@ -1,4 +1,4 @@
-#include "plan/share_windows.hpp"
+#include "plan/decide/share_windows.hpp"
 
 #include <algorithm>
 #include <map>
@@ -10,15 +10,10 @@ namespace {
 
 /// Windows that take the same element at each step, also while finish() reports the last positions:
 /// one without lag goes on beyond the end of the trace, since no position of its own lies there.
-using Signal = std::tuple<StreamOp, std::vector<Slot>, std::uint32_t, bool>;
-
-bool is_shared_kind(const Stream& stream) {
-    return (stream.op == StreamOp::window_max || stream.op == StreamOp::window_min) &&
-           stream.length > 1;
-}
+using Signal = std::tuple<bool, std::vector<Slot>, std::uint32_t, bool>;
 
 void widen(Stream& stream, Slot from, std::uint32_t from_length) {
-    stream.op = stream.op == StreamOp::window_max ? StreamOp::widening_max : StreamOp::widening_min;
+    stream.op = StreamOp::widening;
     stream.operands = {from};
     stream.from_length = from_length;
 }
@@ -31,8 +26,8 @@ void share_windows(Plan& plan) {
     std::map<Signal, std::vector<Slot>> watching;
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
         const Stream& stream = plan.streams[slot];
-        if (is_shared_kind(stream))
-            watching[{stream.op, stream.operands, stream.operand_lag, stream.lag == 0}].push_back(
+        if (stream.op == StreamOp::window && stream.length > 1)
+            watching[{stream.max, stream.operands, stream.operand_lag, stream.lag == 0}].push_back(
                 slot);
     }
     for (auto& [signal, windows] : watching) {

@@ -13,10 +13,10 @@
 #include "etlmon/temporal/monoid.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
-#include "plan/inputs.hpp"
-#include "plan/pending_evaluator.hpp"
+#include "plan/evaluate/inputs.hpp"
+#include "plan/evaluate/pending_evaluator.hpp"
 #include "plan/plan.hpp"
-#include "plan/table.hpp"
+#include "plan/program/members.hpp"
 
 namespace etlc::plan {
 
@@ -68,7 +68,6 @@ private:
     struct ReadingState {
         std::vector<Value> registers;  ///< latch and fold: 1 or 2; machine: one a state
         std::vector<Value> next;       ///< machine: the registers being made
-        Table table;
         std::vector<Value> guards;
         std::vector<Key> weak;  ///< this step's keys of the table's lists
         std::vector<Key> strong;
@@ -76,7 +75,7 @@ private:
     };
 
     void prepare_distances();
-    static void reset_stream(const Stream& stream, StreamState& state);
+    static void reset_member(const Member& member, StreamState& state);
     static void reset_reading(const Reading& reading, ReadingState& state);
     void take_inputs(const std::vector<Sample>& samples);
     bool usable(const check::Input& input, const Sample& sample) const;

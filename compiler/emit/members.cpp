@@ -1,0 +1,71 @@
+// What the class keeps for its formulas: the plan's members, declared.
+#include "plan/program/members.hpp"
+#include "emit/context.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using Kind = plan::Member::Kind;
+
+std::string aggregate(const plan::Member& member, const char* max, const char* min) {
+    return fmt::format("etlmon::{}<Value>", member.max ? max : min);
+}
+
+std::string type_of(const Context& context, const plan::Member& m) {
+    switch (m.kind) {
+        case Kind::value: return context.spelling.kept;
+        case Kind::variable: return "Value";
+        case Kind::delay: return fmt::format("etlmon::Delay<Value, {}>", m.length);
+        case Kind::window:
+            return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Greatest", "Least"),
+                               m.length);
+        case Kind::since_window:
+            return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Since", "Trigger"),
+                               m.length);
+        case Kind::until_window:
+            return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Until", "Release"),
+                               m.length);
+        case Kind::widening:
+            return fmt::format("etlmon::Widening<{}, {}, {}>", aggregate(m, "Greatest", "Least"),
+                               m.from_length, m.length);
+        case Kind::machine: return fmt::format("etlmon::Machine<Value, {}>", m.length);
+        case Kind::recent: return fmt::format("etlmon::Recent<Value, {}>", m.length);
+        case Kind::pending_machine:
+            return fmt::format("etlmon::PendingMachine<Value, {}, {}>", m.length, m.guards);
+    }
+    return "";
+}
+
+std::string reset_of(const Context& context, const plan::Member& member, const std::string& name) {
+    const bool is_value = member.kind == Kind::value || member.kind == Kind::variable;
+    if (is_value) return fmt::format("{} = {};", name, context.literal(member.first));
+    return fmt::format("{}.reset({});", name,
+                       member.kind == Kind::delay ? context.literal(member.first) : "");
+}
+
+Member declared(const Context& context, const plan::Member& member, const std::string& name,
+                const std::string& comment) {
+    return {type_of(context, member), name, comment, reset_of(context, member, name), ""};
+}
+
+}  // namespace
+
+std::vector<Member> temporal_members(const Context& context) {
+    const plan::Plan& plan = context.plan;
+    std::vector<Member> result;
+    for (std::size_t r = 0; r < plan.readings.size(); ++r) {
+        const std::vector<std::string>& names = context.names.readings[r].members;
+        const std::vector<plan::Member> members = plan::members_of(plan.readings[r]);
+        for (std::size_t i = 0; i < members.size(); ++i)
+            result.push_back(declared(context, members[i], names[i],
+                                      plan::comment_of(members[i], context.graph)));
+    }
+    for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot)
+        for (const plan::Member& member : plan::members_of(plan.streams[slot]))
+            result.push_back(declared(context, member, context.names.streams[slot].member,
+                                      plan::text_of(plan.streams[slot], context.graph)));
+    return result;
+}
+
+}  // namespace etlc::emit
