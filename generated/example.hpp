@@ -7,9 +7,8 @@
 //   predicate  measures             threshold  origin
 //   near_goal  min l2(z, goal) <=   0.409      written in the spec; no guarantee
 //
-// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and
-// comparisons of robustness keys in the worst step. distance elements: target elements that a step
-// compares with its input.
+// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and comparisons of
+// robustness keys in the worst step. distance elements: target elements that a step compares with its input.
 #pragma once
 
 #include <stddef.h>
@@ -31,99 +30,98 @@ inline namespace ETLMON_BUILD {  // units compiled with other flags have a class
 
 /// What the monitors see at one step. Inputs{} lacks everything.
 struct Inputs {
-    etlmon::Vector<float, 2> z;
+  etlmon::Vector<float, 2> z;
 };
 
 /// What they answer: about the prefix so far or, sliding, about the position their horizon ago.
 struct Verdicts {
-    etlmon::Verdict stays;  // example.etl:10: monitor stays = G near_goal
+  etlmon::Verdict stays;  // example.etl:10: monitor stays = G near_goal
 };
 
 /// Target sets, a row after the other.
 namespace targets {
 /// literal: 2 rows of 2 elements
-alignas(64) inline constexpr float goal[2 * 2] = {0.0f, 0.0f, 1.0f, 0.0f};
+alignas(64) inline constexpr float goal[2 * 2] = {
+  0.0f, 0.0f, 1.0f, 0.0f
+};
 }  // namespace targets
 
-/// Every monitor of the spec, stepped together. Any number of instances; none of them shares
-/// anything.
+/// Every monitor of the spec, stepped together. Any number of instances; none of them shares anything.
 class Monitor {
-public:
-    static constexpr size_t kStateBytes = 20;  ///< sizeof(Monitor)
-    static constexpr uint32_t kOperations =
-        7;  ///< of the temporal part in the worst step: min, max, compare
-    static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
+ public:
+  static constexpr size_t kStateBytes = 20;  ///< sizeof(Monitor)
+  static constexpr uint32_t kOperations = 7;  ///< of the temporal part in the worst step: min, max, compare
+  static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
 
-    Monitor() noexcept { reset(); }
+  Monitor() noexcept { reset(); }
 
-    /// A new episode.
-    void reset() noexcept {
-        stays_ = etlmon::kTrue;
-        near_goal_ = etlmon::kUnmeasured;
-        incomplete = 0;
-    }
+  /// A new episode.
+  void reset() noexcept {
+    stays_ = etlmon::kTrue;
+    near_goal_ = etlmon::kUnmeasured;
+    incomplete = 0;
+  }
 
-    /// One call, one time step.
-    Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
+  /// One call, one time step.
+  Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
 
-    /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown,
-    /// beside its threshold, and the row of the nearest target.
-    float distance_near_goal() const noexcept { return near_goal_.delta; }
-    static constexpr float threshold_near_goal() noexcept { return 0.409f; }
-    uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
+  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its
+  /// threshold, and the row of the nearest target.
+  float distance_near_goal() const noexcept { return near_goal_.delta; }
+  static constexpr float threshold_near_goal() noexcept { return 0.409f; }
+  uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
 
-    /// Steps on which some predicate or bool input was unknown; saturates.
-    uint32_t missing_steps() const noexcept { return incomplete; }
+  /// Steps on which some predicate or bool input was unknown; saturates.
+  uint32_t missing_steps() const noexcept { return incomplete; }
 
-private:
-    using Value = etlmon::Value;
-    using Key = etlmon::Key;
-    using Reading = etlmon::Reading;
+ private:
+  using Value = etlmon::Value;
+  using Key = etlmon::Key;
+  using Reading = etlmon::Reading;
 
-public:
-    // A step in two halves: step(in) is judge(measure(in)). They share no member that either
-    // changes, so one may interrupt the other; every measure() is followed by one judge() of what
-    // it gave, in the same order.
+ public:
+  // A step in two halves: step(in) is judge(measure(in)). They share no member that either changes, so one may
+  // interrupt the other; every measure() is followed by one judge() of what it gave, in the same order.
 
-    /// What this step says about each predicate.
-    struct Atoms {
-        etlmon::Value near_goal;
-    };
+  /// What this step says about each predicate.
+  struct Atoms {
+    etlmon::Value near_goal;
+  };
 
-    /// The robustness of every predicate at this step; counts the step if something was missing.
-    Atoms measure(const Inputs& in) noexcept {
-        Atoms now;
-        bool missing = false;
+  /// The robustness of every predicate at this step; counts the step if something was missing.
+  Atoms measure(const Inputs& in) noexcept {
+    Atoms now;
+    bool missing = false;
 
-        // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
-        near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
-        now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(),
-                                        Value{etlmon::kBottom, etlmon::key_of(0.409f)});
-        missing |= etlmon::is_nan(near_goal_.delta);
+    // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
+    near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
+    now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom,
+        etlmon::key_of(0.409f)});
+    missing |= etlmon::is_nan(near_goal_.delta);
 
-        if (missing && incomplete != 0xffffffffu) ++incomplete;
-        return now;
-    }
+    if (missing && incomplete != 0xffffffffu) ++incomplete;
+    return now;
+  }
 
-    /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and
-    /// the lower and upper bound that no continuation leaves.
-    Verdicts judge(const Atoms& now) noexcept {
-        using etlmon::max_of;
-        using etlmon::min_of;
+  /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
+  /// bound that no continuation leaves.
+  Verdicts judge(const Atoms& now) noexcept {
+    using etlmon::max_of;
+    using etlmon::min_of;
 
-        // example.etl:10: G near_goal
-        stays_ = min_of(stays_, now.near_goal);
-        const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
+    // example.etl:10: G near_goal
+    stays_ = min_of(stays_, now.near_goal);
+    const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
 
-        Verdicts verdicts;
-        verdicts.stays = etlmon::prefix_verdict(stays_reading);
-        return verdicts;
-    }
+    Verdicts verdicts;
+    verdicts.stays = etlmon::prefix_verdict(stays_reading);
+    return verdicts;
+  }
 
-private:
-    etlmon::Register stays_;      // G near_goal
-    etlmon::Measured near_goal_;  // telemetry
-    uint32_t incomplete;          // steps on which something was unknown; saturates
+ private:
+  etlmon::Register stays_;      // G near_goal
+  etlmon::Measured near_goal_;  // telemetry
+  uint32_t incomplete;          // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
