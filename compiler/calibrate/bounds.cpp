@@ -6,8 +6,8 @@
 #include <limits>
 #include <numeric>
 
-#include "check/range_arithmetic.hpp"
-#include "etlmon/distance/error_bounds.hpp"
+#include "check/numbers/range_arithmetic.hpp"
+#include "etlmon/hosted/error_bounds.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/kernels.hpp"
 
@@ -73,7 +73,7 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
-/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/distance/error_bounds.hpp.
+/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp.
 double magnitude_of(const Distance& distance, const float* z, const float* g,
                     std::uint32_t dimension) {
     std::vector<double> d(dimension);

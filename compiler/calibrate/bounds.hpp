@@ -2,13 +2,13 @@
 // Takes: a predicate as the plan's evaluator has just measured it. Gives: the interval in which its
 // delta lies on every compiler and CPU, under any of the flags that the runtime allows, flush to
 // zero included. Keeps true: the interval depends on the sample alone, not on the machine beyond
-// the kernels' rounding (etlmon/distance/error_bounds.hpp); scalars and arithmetic on them are
+// the kernels' rounding (etlmon/hosted/error_bounds.hpp); scalars and arithmetic on them are
 // exact, because every build rounds them alike (etlmon/temporal/expression.hpp).
 #pragma once
 
 #include <optional>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {

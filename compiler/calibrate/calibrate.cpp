@@ -4,12 +4,12 @@
 
 #include <algorithm>
 
-#include "calibrate/parallel.hpp"
-#include "check/adaptation.hpp"
-#include "check/conformal.hpp"
-#include "check/provenance.hpp"
-#include "data/episodes.hpp"
-#include "data/file.hpp"
+#include "calibrate/episodes/parallel.hpp"
+#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/conformal.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "data/files/file.hpp"
+#include "data/traces/episodes.hpp"
 
 namespace etlc::calibrate {
 

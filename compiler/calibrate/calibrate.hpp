@@ -12,7 +12,7 @@
 
 #include "calibrate/fit.hpp"
 #include "calibrate/scores.hpp"
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "thresholds/thresholds.hpp"
 

@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "check/adaptation.hpp"
-#include "check/conformal.hpp"
+#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/conformal.hpp"
 
 namespace etlc::calibrate {
 

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "calibrate/calibrate.hpp"
-#include "check/guarantees.hpp"
+#include "check/guarantees/guarantees.hpp"
 
 namespace etlc::calibrate {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/admission.hpp"
-#include "calibrate/recording.hpp"
+#include "calibrate/episodes/admission.hpp"
+#include "calibrate/episodes/recording.hpp"
 #include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <set>
 
-#include "calibrate/parallel.hpp"
+#include "calibrate/episodes/parallel.hpp"
 #include "calibrate/shift_scores.hpp"
-#include "check/calibrated.hpp"
-#include "check/conformal.hpp"
-#include "check/guarantees.hpp"
-#include "check/provenance.hpp"
-#include "data/episodes.hpp"
-#include "data/file.hpp"
+#include "check/guarantees/calibrated.hpp"
+#include "check/guarantees/conformal.hpp"
+#include "check/guarantees/guarantees.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "data/files/file.hpp"
+#include "data/traces/episodes.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {

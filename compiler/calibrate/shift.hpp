@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/admission.hpp"
 #include "calibrate/calibrate.hpp"
-#include "calibrate/ground_truth.hpp"
+#include "calibrate/episodes/admission.hpp"
+#include "calibrate/episodes/ground_truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::calibrate {

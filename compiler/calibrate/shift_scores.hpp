@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/recording.hpp"
+#include "calibrate/episodes/recording.hpp"
 #include "calibrate/shift.hpp"
 
 namespace etlc::calibrate {

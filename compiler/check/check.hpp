@@ -8,7 +8,7 @@
 #include <string>
 
 #include "ast/ast.hpp"
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::check {

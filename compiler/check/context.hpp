@@ -16,10 +16,10 @@
 
 #include "ast/ast.hpp"
 #include "check/check.hpp"
-#include "check/matrices.hpp"
-#include "check/model.hpp"
-#include "check/scope.hpp"
-#include "check/time.hpp"
+#include "check/formulas/time.hpp"
+#include "check/model/model.hpp"
+#include "check/names/scope.hpp"
+#include "check/predicates/matrices.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::check {

@@ -2,8 +2,8 @@
 
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
-#include "data/episodes.hpp"
-#include "data/file.hpp"
+#include "data/files/file.hpp"
+#include "data/traces/episodes.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"

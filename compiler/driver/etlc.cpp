@@ -10,8 +10,8 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "check/reserved.hpp"
-#include "data/file.hpp"
+#include "check/names/reserved.hpp"
+#include "data/files/file.hpp"
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 
-#include "data/episodes.hpp"
-#include "data/file.hpp"
-#include "data/trace.hpp"
+#include "data/files/file.hpp"
+#include "data/traces/episodes.hpp"
+#include "data/traces/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data/file.hpp"
+#include "data/files/file.hpp"
 #include "data/quote.hpp"
 
 namespace etlc::driver {

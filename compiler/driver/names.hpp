@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
-#include "data/trace.hpp"
+#include "check/model/model.hpp"
+#include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::driver {

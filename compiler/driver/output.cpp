@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "data/file.hpp"
+#include "data/files/file.hpp"
 #include "driver/depfile.hpp"
 #include "driver/output_file.hpp"
 #include "plan/stored.hpp"

@@ -9,7 +9,7 @@
 #include <system_error>
 #include <utility>
 
-#include "data/file.hpp"
+#include "data/files/file.hpp"
 
 namespace etlc::driver {
 

@@ -9,7 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/atomic_file.hpp"
+#include "data/files/atomic_file.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::driver {

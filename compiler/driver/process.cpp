@@ -8,7 +8,7 @@
 #include <exception>
 #include <new>
 
-#include "data/descriptor.hpp"
+#include "data/files/descriptor.hpp"
 
 namespace etlc::driver {
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data/trace.hpp"
+#include "data/traces/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"

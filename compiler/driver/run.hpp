@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "data/trace.hpp"
+#include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile.hpp"
 

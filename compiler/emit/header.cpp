@@ -79,7 +79,7 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
     if (standalone && context.stores_targets()) {
         out.line("#if defined(ETLMON_MAPPED_TARGETS)  // on a POSIX host, to map {}",
                  context.targets_file);
-        out.line("#include \"etlmon/distance/mapped_targets.hpp\"");
+        out.line("#include \"etlmon/hosted/mapped_targets.hpp\"");
         out.line("#endif");
     }
     const std::size_t dot = version.find('.');

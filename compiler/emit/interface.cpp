@@ -134,7 +134,7 @@ void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
     if (context.stores_targets()) {
         out.line(
-            "/// The bytes of {}: mapped by etlmon/distance/mapped_targets.hpp, or linked in at a "
+            "/// The bytes of {}: mapped by etlmon/hosted/mapped_targets.hpp, or linked in at a "
             "multiple "
             "of 64.",
             context.targets_file);

@@ -2,7 +2,7 @@
 // report.
 #include <algorithm>
 
-#include "check/guarantees.hpp"
+#include "check/guarantees/guarantees.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "plan/narrow_targets.hpp"

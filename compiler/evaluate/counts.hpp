@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <optional>
 
-#include "calibrate/truth.hpp"
+#include "calibrate/episodes/truth.hpp"
 
 namespace etlc::evaluate {
 

@@ -6,9 +6,9 @@
 #include <memory>
 #include <set>
 
-#include "calibrate/admission.hpp"
-#include "calibrate/parallel.hpp"
-#include "data/file.hpp"
+#include "calibrate/episodes/admission.hpp"
+#include "calibrate/episodes/parallel.hpp"
+#include "data/files/file.hpp"
 #include "data/quote.hpp"
 
 namespace etlc::evaluate {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/admission.hpp"
-#include "calibrate/leaks.hpp"
-#include "calibrate/recording.hpp"
-#include "data/trace.hpp"
+#include "calibrate/episodes/admission.hpp"
+#include "calibrate/episodes/leaks.hpp"
+#include "calibrate/episodes/recording.hpp"
+#include "data/traces/trace.hpp"
 #include "evaluate/counts.hpp"
 #include "evaluate/ranking.hpp"
 #include "evaluate/subject.hpp"

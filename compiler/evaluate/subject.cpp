@@ -4,7 +4,7 @@
 #include <set>
 #include <utility>
 
-#include "check/horizons.hpp"
+#include "check/formulas/horizons.hpp"
 
 namespace etlc::evaluate {
 

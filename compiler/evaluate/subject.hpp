@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/ground_truth.hpp"
-#include "check/model.hpp"
+#include "calibrate/episodes/ground_truth.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::evaluate {
 

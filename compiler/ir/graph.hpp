@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::ir {
 
@@ -87,7 +87,7 @@ public:
     NodeId keep(Op op, Interval interval, std::vector<NodeId> operands, Span span);
 
     /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a
-    /// long one are left out (check/elision.hpp).
+    /// long one are left out (check/model/elision.hpp).
     std::string text(NodeId id) const;
 
 private:

@@ -1,7 +1,7 @@
 // Graph nodes as formulas, for comments in generated code and for --emit graph.
 #include <fmt/format.h>
 
-#include "check/elision.hpp"
+#include "check/model/elision.hpp"
 #include "ir/lower.hpp"
 
 namespace etlc::ir {

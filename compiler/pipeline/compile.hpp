@@ -7,7 +7,7 @@
 #include <memory>
 #include <optional>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "ir/lower.hpp"
 #include "plan/plan.hpp"

@@ -1,6 +1,6 @@
 #include "plan/kernels.hpp"
 
-#include "etlmon/distance/dynamic.hpp"
+#include "etlmon/hosted/dynamic.hpp"
 
 namespace etlc::plan {
 

@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "etlmon/distance/aggregate.hpp"
-#include "etlmon/distance/table.hpp"
+#include "etlmon/hosted/table.hpp"
 
 namespace etlc::plan {
 

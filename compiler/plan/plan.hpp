@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 #include "etlmon/temporal/value.hpp"
 #include "ir/lower.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "reference/reference.hpp"
 
 namespace etlc::reference {

@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::reference {
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::reference {
 

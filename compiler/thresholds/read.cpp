@@ -7,7 +7,7 @@
 #include <optional>
 #include <set>
 
-#include "data/file.hpp"
+#include "data/files/file.hpp"
 #include "data/number.hpp"
 #include "data/quote.hpp"
 #include "thresholds/json.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "data/overlap.hpp"
+#include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::thresholds {
@@ -66,8 +66,8 @@ void drop_unused_recordings(File& file);
 /// REASON".
 std::string text(const Allowance& allowance);
 
-/// Failures are E06; their messages name the key, not the path: `data::in_file` (data/file.hpp)
-/// adds it.
+/// Failures are E06; their messages name the key, not the path: `data::in_file`
+/// (data/files/file.hpp) adds it.
 diag::Result<File> read(const std::string& path);
 diag::Result<File> parse(const std::string& json, const std::string& path);
 

@@ -4,7 +4,7 @@
 #include <fstream>
 #include <stdexcept>
 
-#include "data/array.hpp"
+#include "data/arrays/array.hpp"
 
 namespace demo {
 

@@ -2,7 +2,7 @@
 
 #include <memory>
 
-#include "data/trace_formats.hpp"
+#include "data/traces/trace_formats.hpp"
 
 namespace etlc::tests {
 

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "calibrate/recording.hpp"
+#include "calibrate/episodes/recording.hpp"
 
 namespace etlc::tests {
 

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "check/check.hpp"
-#include "check/guarantees.hpp"
+#include "check/guarantees/guarantees.hpp"
 #include "parse/parse.hpp"
 #include "random.hpp"
 #include "roads.hpp"

@@ -6,8 +6,8 @@
 #include <map>
 #include <set>
 
-#include "calibrate/ground_truth.hpp"
-#include "check/guarantees.hpp"
+#include "calibrate/episodes/ground_truth.hpp"
+#include "check/guarantees/guarantees.hpp"
 #include "driver/compile.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"

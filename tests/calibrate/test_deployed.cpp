@@ -9,7 +9,7 @@
 #include <map>
 
 #include "calibrate/bounds.hpp"
-#include "check/conformal.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "generated_program.hpp"
 #include "loading.hpp"
 #include "plan/evaluate/evaluator.hpp"

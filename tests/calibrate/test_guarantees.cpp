@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "calibrate/episodes/ground_truth.hpp"
 #include "calibrate/fit.hpp"
-#include "calibrate/ground_truth.hpp"
 #include "check/check.hpp"
-#include "check/guarantees.hpp"
+#include "check/guarantees/guarantees.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
 #include "plan/evaluate/evaluator.hpp"

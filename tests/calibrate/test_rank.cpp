@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "check/conformal.hpp"
-#include "check/guarantees.hpp"
+#include "check/guarantees/conformal.hpp"
+#include "check/guarantees/guarantees.hpp"
 
 namespace etlc::tests {
 namespace {

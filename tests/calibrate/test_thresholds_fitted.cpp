@@ -8,9 +8,9 @@
 #include <limits>
 
 #include "calibrate/calibrate.hpp"
-#include "check/adaptation.hpp"
 #include "check/check.hpp"
-#include "check/conformal.hpp"
+#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "npy_bytes.hpp"
 #include "parse/parse.hpp"
 #include "random.hpp"

@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "calibrate/exact_distance.hpp"
-#include "calibrate/ground_truth.hpp"
-#include "calibrate/truth.hpp"
+#include "calibrate/episodes/exact_distance.hpp"
+#include "calibrate/episodes/ground_truth.hpp"
+#include "calibrate/episodes/truth.hpp"
 #include "loading.hpp"
 #include "random.hpp"
 #include "reference/reference.hpp"

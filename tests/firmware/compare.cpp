@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/distance/error_bounds.hpp"
+#include "etlmon/hosted/error_bounds.hpp"
 
 namespace {
 

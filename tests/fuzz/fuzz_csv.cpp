@@ -1,7 +1,7 @@
 // .csv traces: any bytes are steps of the channels asked for, or a message with a place.
 #include <cmath>
 
-#include "data/trace_formats.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

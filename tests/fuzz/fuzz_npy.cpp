@@ -1,5 +1,5 @@
 // .npy from memory: any bytes are an array that holds what its shape says, or a message.
-#include "data/array.hpp"
+#include "data/arrays/array.hpp"
 #include "fuzz_target.hpp"
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -1,6 +1,6 @@
 // .npz from memory, as an array to load and as a trace to step through.
-#include "data/array.hpp"
-#include "data/trace_formats.hpp"
+#include "data/arrays/array.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

@@ -2,7 +2,7 @@
 // again, and of which every entry agrees with itself or is told why not.
 #include <string>
 
-#include "check/consistency.hpp"
+#include "check/guarantees/consistency.hpp"
 #include "fuzz_target.hpp"
 #include "thresholds/thresholds.hpp"
 

@@ -61,7 +61,8 @@ const std::map<std::string, Names> kHosted = {
 const std::map<std::string, Names> kHouses = {{"etlmon", {"etlmon"}},
                                               {"temporal", {"etlmon", "temporal"}},
                                               {"distance", {"etlmon", "temporal", "distance"}},
-                                              {"vectors", {"etlmon", "distance", "vectors"}}};
+                                              {"vectors", {"etlmon", "distance", "vectors"}},
+                                              {"hosted", {"etlmon", "distance", "hosted"}}};
 
 /// Where firmware's half of the runtime includes the other.
 const Names kGates = {"views.hpp", "best.hpp"};

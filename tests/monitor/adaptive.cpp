@@ -7,7 +7,7 @@
 #include <limits>
 #include <sstream>
 
-#include "check/provenance.hpp"
+#include "check/guarantees/provenance.hpp"
 #include "loading.hpp"
 #include "random.hpp"
 #include "thresholds/thresholds.hpp"

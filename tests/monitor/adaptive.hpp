@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "random_spec.hpp"
 #include "reference/reference.hpp"
 

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "reference/reference.hpp"
 
 namespace etlc::tests {

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "generated_wire.hpp"
 
 namespace etlc::tests {

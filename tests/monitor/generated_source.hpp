@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::tests {
 

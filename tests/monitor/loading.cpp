@@ -13,7 +13,7 @@
 #include <limits>
 
 #include "check/check.hpp"
-#include "check/conformal.hpp"
+#include "check/guarantees/conformal.hpp"
 #include "diag/render.hpp"
 #include "parse/parse.hpp"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::tests {

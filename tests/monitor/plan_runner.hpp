@@ -7,7 +7,7 @@
 #include <string>
 
 #include "adaptive.hpp"
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "compare.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/plan.hpp"

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data/trace.hpp"
+#include "data/traces/trace.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

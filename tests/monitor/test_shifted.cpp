@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "check/calibrated.hpp"
-#include "check/provenance.hpp"
+#include "check/guarantees/calibrated.hpp"
+#include "check/guarantees/provenance.hpp"
 #include "compare.hpp"
 #include "generated_program.hpp"
 #include "loading.hpp"

@@ -12,7 +12,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "etlmon/distance/error_bounds.hpp"
+#include "etlmon/hosted/error_bounds.hpp"
 
 namespace exact {
 

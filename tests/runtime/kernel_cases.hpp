@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/distance/dynamic.hpp"
+#include "etlmon/hosted/dynamic.hpp"
 #include "exact.hpp"
 
 namespace kernel_cases {

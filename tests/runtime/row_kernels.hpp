@@ -2,7 +2,7 @@
 // kernels: one a storage, as all kernels together take too long.
 #pragma once
 
-#include "etlmon/distance/dynamic.hpp"
+#include "etlmon/hosted/dynamic.hpp"
 #include "guarded.hpp"
 #include "kernel_versions.hpp"
 

@@ -8,7 +8,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "etlmon/distance/mapped_targets.hpp"
+#include "etlmon/hosted/mapped_targets.hpp"
 
 namespace {
 

@@ -3,7 +3,7 @@
 #include <iostream>
 #include <string>
 
-#include "check/reserved.hpp"
+#include "check/names/reserved.hpp"
 
 int main(int argc, char** argv) {
     if (argc != 2) return 2;

@@ -3,12 +3,12 @@
 # scope are refused for specs, and their macros for everything. CHECK_NAMES prints those of its
 # names that etlc allows. The compiler finds the clashes: a namespace, or a field, of each name is
 # declared after all headers. ETLC_UPDATE=1 adds what this machine's headers declare beyond the
-# standards to compiler/check/library_names.inc.
+# standards to compiler/check/names/library_names.inc.
 set -euo pipefail
 check_names=$1
 cxx=$2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
-table=$here/../../compiler/check/library_names.inc
+table=$here/../../compiler/check/names/library_names.inc
 box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"

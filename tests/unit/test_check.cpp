@@ -9,8 +9,8 @@
 #include <random>
 #include <sstream>
 
-#include "check/provenance.hpp"
-#include "check/reserved.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "check/names/reserved.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <random>
 
-#include "check/adaptation.hpp"
-#include "check/decimal.hpp"
-#include "check/provenance.hpp"
+#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "check/numbers/decimal.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

@@ -6,8 +6,8 @@
 #include <functional>
 #include <limits>
 
-#include "check/conformal.hpp"
-#include "check/consistency.hpp"
+#include "check/guarantees/conformal.hpp"
+#include "check/guarantees/consistency.hpp"
 
 namespace etlc::check {
 namespace {

@@ -8,9 +8,9 @@
 #include <limits>
 #include <random>
 
-#include "check/decimal.hpp"
-#include "check/duration.hpp"
-#include "check/model.hpp"
+#include "check/model/model.hpp"
+#include "check/numbers/decimal.hpp"
+#include "check/numbers/duration.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

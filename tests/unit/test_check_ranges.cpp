@@ -6,7 +6,7 @@
 #include <cmath>
 #include <random>
 
-#include "check/range_arithmetic.hpp"
+#include "check/numbers/range_arithmetic.hpp"
 #include "checking.hpp"
 
 namespace etlc::check {

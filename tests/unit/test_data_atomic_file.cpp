@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "data/atomic_file.hpp"
+#include "data/files/atomic_file.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

@@ -5,9 +5,9 @@
 #include <cmath>
 #include <locale>
 
-#include "data/csv.hpp"
 #include "data/number.hpp"
-#include "data/trace_formats.hpp"
+#include "data/traces/csv.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

@@ -7,8 +7,8 @@
 #include <fstream>
 #include <set>
 
-#include "data/episodes.hpp"
-#include "data/trace_formats.hpp"
+#include "data/traces/episodes.hpp"
+#include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {
 namespace {

@@ -5,9 +5,9 @@
 
 #include <filesystem>
 
-#include "data/array.hpp"
-#include "data/file.hpp"
-#include "data/hash.hpp"
+#include "data/arrays/array.hpp"
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
 #include "data/quote.hpp"
 #include "npy_bytes.hpp"
 

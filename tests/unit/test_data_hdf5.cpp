@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "data/episodes.hpp"
-#include "data/hdf5.hpp"
+#include "data/traces/episodes.hpp"
+#include "data/traces/hdf5.hpp"
 
 namespace etlc::data {
 namespace {

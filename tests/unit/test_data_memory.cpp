@@ -4,8 +4,8 @@
 
 #include <fstream>
 
-#include "data/array.hpp"
-#include "data/trace_formats.hpp"
+#include "data/arrays/array.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

@@ -5,8 +5,8 @@
 #include <bit>
 #include <cmath>
 
-#include "data/array.hpp"
-#include "data/elements.hpp"
+#include "data/arrays/array.hpp"
+#include "data/arrays/elements.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

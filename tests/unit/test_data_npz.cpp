@@ -2,7 +2,7 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include "data/array.hpp"
+#include "data/arrays/array.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

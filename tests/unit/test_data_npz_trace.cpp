@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "data/trace_formats.hpp"
+#include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

@@ -5,7 +5,7 @@
 #include <bit>
 #include <random>
 
-#include "data/overlap.hpp"
+#include "data/traces/overlap.hpp"
 
 namespace etlc::data {
 namespace {

@@ -2,7 +2,7 @@
 // own kernels.
 #include <algorithm>
 
-#include "etlmon/distance/dynamic_enclosed.hpp"
+#include "etlmon/hosted/dynamic_enclosed.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "plan/kernels.hpp"

@@ -4,7 +4,7 @@
 // everything above works on one type; a NaN delta is unknown, which is the whole range.
 #pragma once
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "etlmon/distance/enclosed.hpp"
 #include "etlmon/temporal/adaptation.hpp"
 

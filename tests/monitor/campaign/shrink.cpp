@@ -7,7 +7,7 @@
 #include <sstream>
 #include <vector>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "loading.hpp"
 
 namespace etlc::tests {

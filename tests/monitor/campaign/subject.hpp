@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "check/model.hpp"
+#include "check/model/model.hpp"
 #include "random_spec.hpp"
 #include "reference/reference.hpp"
 

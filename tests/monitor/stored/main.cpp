@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "etlmon/distance/mapped_targets.hpp"
+#include "etlmon/hosted/mapped_targets.hpp"
 #include "run.hpp"
 #include "stored.hpp"
 

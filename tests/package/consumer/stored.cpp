@@ -1,7 +1,7 @@
 // A monitor whose targets lie in a file.
 #include <cstdio>
 
-#include "etlmon/distance/mapped_targets.hpp"
+#include "etlmon/hosted/mapped_targets.hpp"
 #include "reach.hpp"
 
 int main() {

@@ -1,0 +1,186 @@
+#include "calibrate/episodes/admission.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "data/files/file.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using diag::Code;
+
+constexpr std::string_view kHowToAllow =
+    "where the recordings are other ones all the same, --allow-overlap REASON says why, in the "
+    "thresholds file and beside every guarantee";
+
+constexpr std::string_view kCalibrateOnOthers =
+    "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better "
+    "there than they will be";
+
+/// The episodes that are refused for one reason.
+class Refusals {
+public:
+    Refusals(Code code, std::vector<std::string> notes) : code_(code), notes_(std::move(notes)) {}
+
+    void add(const Recorded& episode, std::string message) {
+        all_.push_back({&episode, std::move(message)});
+    }
+
+    void report(diag::Sink& sink) const {
+        constexpr std::size_t kMostReported = 10;
+        const std::size_t reported = std::min(all_.size(), kMostReported);
+        for (std::size_t i = 0; i < reported; ++i) {
+            auto& error = sink.report(data::in_file({code_, all_[i].message}, all_[i].of->path));
+            if (i > 0) continue;  // the notes are those of all
+            for (const std::string& note : notes_) error.note(note);
+            if (all_.size() > reported)
+                error.note(fmt::format("{} episodes are refused for this; {} are shown",
+                                       all_.size(), reported));
+        }
+    }
+
+private:
+    struct Refusal {
+        const Recorded* of;
+        std::string message;
+    };
+    Code code_;
+    std::vector<std::string> notes_;
+    std::vector<Refusal> all_;
+};
+
+/// Looks at one episode after the other.
+class Admission {
+public:
+    Admission(const check::Model& model, const thresholds::File& before, const std::string& reason)
+        : model_(model), seen_(before, before.episodes), allows_(!reason.empty()) {
+        passed_over_.reason = reason;
+    }
+
+    void look_at(const Recorded& episode) {
+        const bool overlaps = look_at_seen(episode);
+        passed_over_.overlapping += look_at_earlier(episode) || overlaps ? 1 : 0;
+        if (episode.leak && allows_) ++passed_over_.leaked;
+        if (episode.leak && !allows_)
+            (of_scalars(*episode.leak) ? scalar_leaks_ : leaks_)
+                .add(episode, text(model_, *episode.leak));
+    }
+
+    thresholds::Allowance conclude(diag::Sink& sink) && {
+        for (const Refusals* refusals :
+             {&seen_before_, &seen_in_part_, &repeated_, &overlapping_, &leaks_, &scalar_leaks_})
+            refusals->report(sink);
+        return std::move(passed_over_);
+    }
+
+private:
+    /// These two say whether an overlap was passed over.
+    bool look_at_seen(const Recorded& episode) {
+        const auto found = seen_.find(episode);
+        if (!found) return false;
+        if (allows_ && !found->equal) return true;
+        const std::string one = "an episode that thresholds of predicates were calibrated on";
+        if (found->equal)
+            seen_before_.add(episode, "is " + one);
+        else
+            seen_in_part_.add(episode, text(*found) + " " + one);
+        return false;
+    }
+
+    bool look_at_earlier(const Recorded& episode) {
+        const auto found = recordings_.find(episode.content);
+        recordings_.add(episode.content);
+        paths_.push_back(episode.path);
+        if (!found) return false;
+        const std::string other = data::in_quotes(paths_[found->other]);
+        if (found->equal)
+            repeated_.add(episode, "is the same episode as " + other);
+        else if (!allows_)
+            overlapping_.add(episode, text(*found) + " " + other);
+        return allows_ && !found->equal;
+    }
+
+    bool of_scalars(const Leak& leak) const {
+        return model_.distances[leak.distance].point_is_vector;
+    }
+
+    const check::Model& model_;
+    Seen seen_;
+    data::Recordings recordings_;
+    std::vector<std::string> paths_;  ///< in the order of recordings_
+    bool allows_;
+    thresholds::Allowance passed_over_;
+    Refusals seen_before_{Code::not_disjoint, {std::string(kCalibrateOnOthers)}};
+    Refusals seen_in_part_{Code::not_disjoint,
+                           {std::string(kCalibrateOnOthers), std::string(kHowToAllow)}};
+    Refusals repeated_{
+        Code::duplicate_episode,
+        {"demonstrations have to be independent recordings: one that counts twice voids the "
+         "guarantee"}};
+    Refusals overlapping_{
+        Code::overlapping_episodes,
+        {"demonstrations have to be independent recordings: parts of one count twice",
+         std::string(kHowToAllow)}};
+    Refusals leaks_{
+        Code::target_in_data,
+        {"targets have to come from other recordings: at a distance of 0 this one voids the "
+         "guarantee",
+         std::string(kHowToAllow)}};
+    Refusals scalar_leaks_{
+        Code::target_in_data,
+        {"targets have to come from other recordings: at a distance of 0 this one voids the "
+         "guarantee",
+         "where these scalars may well come to lie there, write the rows into the spec: only those "
+         "of a file are taken for recorded ones"}};
+};
+
+}  // namespace
+
+std::string text(const check::Model& model, const Leak& leak) {
+    return fmt::format("step {} is row {} of target '{}', from which '{}' measures", leak.frame,
+                       leak.row, model.targets[model.distances[leak.distance].target].name,
+                       model.predicates[leak.predicate].shown());
+}
+
+std::string text(const data::Overlap& overlap) {
+    return fmt::format("shares about {:.0f} % of its content with", 100 * overlap.share);
+}
+
+Seen::Seen(const thresholds::File& file, const std::vector<std::string>& episodes)
+    : hashes_(episodes) {
+    std::sort(hashes_.begin(), hashes_.end());
+    for (const std::string& hash : hashes_)
+        if (const auto known = file.recordings.find(hash); known != file.recordings.end())
+            recordings_.add(known->second);
+}
+
+std::optional<data::Overlap> Seen::find(const Recorded& episode) const {
+    if (std::binary_search(hashes_.begin(), hashes_.end(), episode.hash))
+        return data::Overlap{0, 1, true};
+    return recordings_.find(episode.content);
+}
+
+thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
+                            const thresholds::File& before, const std::string& reason,
+                            diag::Sink& sink) {
+    Admission admission(model, before, reason);
+    for (const Recorded* episode : episodes) admission.look_at(*episode);
+    return std::move(admission).conclude(sink);
+}
+
+void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,
+            thresholds::File& file) {
+    for (const Recorded* episode : episodes) file.recordings[episode->hash] = episode->content;
+    if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
+}
+
+std::string remark_on(const thresholds::Allowance& allowance) {
+    const bool idle = !allowance.reason.empty() && allowance.overlapping + allowance.leaked == 0;
+    return idle ? "\n--allow-overlap was not needed: nothing overlaps\n" : "";
+}
+
+}  // namespace etlc::calibrate

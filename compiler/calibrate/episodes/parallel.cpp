@@ -1,0 +1,72 @@
+#include "calibrate/episodes/parallel.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <map>
+#include <new>
+#include <system_error>
+#include <thread>
+#include <utility>
+
+#include "data/quote.hpp"
+#include "data/traces/trace.hpp"
+
+namespace etlc::calibrate {
+
+void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink) {
+    constexpr std::size_t kMostKinds = 10;
+    std::map<std::pair<diag::Code, std::string>, std::size_t> known;
+    std::vector<std::vector<std::string>> kinds;  // paths, in order of the first
+    std::vector<diag::Failure> failures;
+    for (const Fault& fault : faults) {
+        const auto [at, is_new] =
+            known.try_emplace({fault.failure.code, fault.failure.message}, kinds.size());
+        if (is_new) {
+            kinds.emplace_back();
+            failures.push_back(fault.failure);
+        }
+        kinds[at->second].push_back(fault.path);
+    }
+    std::size_t told = 0;
+    for (std::size_t i = 0; i < std::min(kinds.size(), kMostKinds); ++i) {
+        const std::vector<std::string>& paths = kinds[i];
+        told += paths.size();
+        auto& error = sink.report(data::in_trace(failures[i], paths.front()));
+        if (paths.size() > 1)
+            error.note(fmt::format("this is wrong with {} of {} episodes, also with {}",
+                                   paths.size(), episodes,
+                                   data::listed({paths.begin() + 1, paths.end()})));
+        if (i + 1 == kMostKinds && told < faults.size())
+            error.note(fmt::format("of {} episodes, {} more are wrong in other ways", episodes,
+                                   faults.size() - told));
+    }
+}
+
+std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work) {
+    std::exception_ptr first;
+    std::mutex ending;
+    const auto guarded = [&] {
+        try {
+            work();
+        } catch (...) {
+            const std::lock_guard lock(ending);
+            if (!first) first = std::current_exception();
+        }
+    };
+    const std::size_t wanted =
+        std::max(1U, asked > 0 ? asked : std::thread::hardware_concurrency());
+    const std::size_t threads = std::min(wanted, most);
+    std::vector<std::thread> others;
+    try {
+        if (threads > 1) others.reserve(threads - 1);
+        while (others.size() + 1 < threads) others.emplace_back(guarded);
+    } catch (const std::system_error&) {  // the system allows no more threads
+    } catch (const std::bad_alloc&) {     // nor does memory
+    }
+    guarded();
+    for (std::thread& other : others) other.join();
+    return first;
+}
+
+}  // namespace etlc::calibrate

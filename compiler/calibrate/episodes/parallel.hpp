@@ -1,0 +1,71 @@
+// Episodes, several at a time.
+// Takes: what reads one episode, a copy for every thread. Gives: what it made of each, in the order
+// of the paths. Keeps true: the order, and which failures are reported, do not depend on the number
+// of threads. Threads that cannot be made are done without, and so are those for which memory is
+// too short, as long as one can work.
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <exception>
+#include <functional>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/files/file.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::calibrate {
+
+/// What is wrong with an episode.
+struct Fault {
+    std::string path;
+    diag::Failure failure;
+};
+
+/// Reports each kind of fault once, with the other episodes that have it, out of `episodes`.
+void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink);
+
+/// `work` in this thread and in others: in as many as asked for (0: as the machine has cores), at
+/// most `most`, and no more than can be started. All have returned at the end. Gives: the first
+/// exception that ended one of them.
+std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::function<void()>& work);
+
+/// `make()` gives the reader of a thread, whose `score(path)` a diag::Result<T>. Nothing where an
+/// episode cannot be read: the sink then says why. Of the request it uses `jobs` and `progress`.
+template <class T, class Request, class Make>
+std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& paths,
+                                            const Request& request, diag::Sink& sink, Make make) {
+    std::vector<std::optional<diag::Result<T>>> results(paths.size());
+    std::atomic<std::size_t> next = 0;
+    std::size_t done = 0;
+    std::mutex reporting;
+    const auto work = [&] {
+        const auto reader = make();
+        for (std::size_t i = next++; i < paths.size(); i = next++) {
+            results[i].emplace(data::within_memory([&] { return reader->score(paths[i]); }));
+            const std::lock_guard lock(reporting);
+            ++done;
+            if (request.progress) request.progress(done, paths.size());
+        }
+    };
+    const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);
+    if (failure && done < paths.size()) std::rethrow_exception(failure);
+
+    std::vector<T> all;
+    std::vector<Fault> faults;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (*results[i])
+            all.push_back(std::move(**results[i]));
+        else
+            faults.push_back({paths[i], results[i]->failure()});
+    }
+    report(faults, paths.size(), sink);
+    if (!faults.empty()) return std::nullopt;
+    return all;
+}
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,206 @@
+#include "calibrate/episodes/recording.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "data/quote.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using check::kNone;
+using data::Channel;
+using diag::Code;
+using diag::Failure;
+
+Channel channel_of(const check::Input& input) {
+    const auto kind = input.type == check::InputType::boolean ? Channel::Kind::boolean
+                      : input.is_embedding()                  ? Channel::Kind::vector
+                                                              : Channel::Kind::scalar;
+    return {input.name, kind, input.dimension};
+}
+
+Index truth_of(const check::Model& model, Index predicate) {
+    for (const check::Truth& truth : model.truths)
+        if (truth.predicate == predicate) return truth.formula;
+    return kNone;
+}
+
+std::string array_name(const check::Model& model, Index predicate) {
+    return "truth." + model.predicates[predicate].name;
+}
+
+/// What an episode is opened with: the inputs, then an array of labels for every predicate.
+std::vector<Channel> channels_of(const Wanted& wanted, const std::vector<Index>& inputs,
+                                 const std::vector<bool>& required) {
+    std::vector<Channel> channels;
+    for (const Index input : inputs) {
+        channels.push_back(channel_of(wanted.model->inputs[input]));
+        channels.back().optional = !required[input];
+    }
+    for (const Index predicate : wanted.predicates)
+        channels.push_back({array_name(*wanted.model, predicate), Channel::Kind::boolean, 1, true});
+    return channels;
+}
+
+/// Inputs that are wanted, and those that truths read.
+std::vector<Index> inputs_of(const Wanted& wanted, const TruthEvaluator& truths) {
+    std::set<Index> inputs(wanted.inputs.begin(), wanted.inputs.end());
+    inputs.insert(truths.inputs().begin(), truths.inputs().end());
+    return {inputs.begin(), inputs.end()};
+}
+
+std::vector<Index> formulas_of(const check::Model& model, const std::vector<Index>& predicates) {
+    std::vector<Index> formulas;
+    for (const Index predicate : predicates)
+        if (truth_of(model, predicate) != kNone) formulas.push_back(truth_of(model, predicate));
+    return formulas;
+}
+
+/// `absent`: what opening the episode says where the array has to be there.
+Failure no_label(const check::Model& model, Index predicate, const Failure& absent) {
+    return {Code::no_label,
+            fmt::format("does not say when '{}' holds, nor does a truth in the spec: {}",
+                        model.predicates[predicate].name, absent.message),
+            absent.line, absent.column};
+}
+
+}  // namespace
+
+std::vector<Index> identity_inputs(const check::Model& model) {
+    std::set<std::pair<std::string, Index>> calibrated;
+    std::set<std::pair<std::string, Index>> all;
+    for (const check::Predicate& predicate : model.predicates) {
+        for (const Index input : predicate.inputs) {
+            const std::pair<std::string, Index> named{model.inputs[input].name, input};
+            all.insert(named);
+            if (predicate.threshold.origin != check::ThresholdOrigin::literal)
+                calibrated.insert(named);
+        }
+    }
+    std::vector<Index> result;
+    for (const auto& [name, input] : calibrated.empty() ? all : calibrated) result.push_back(input);
+    return result;
+}
+
+diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
+                                             const data::NamesInFile& names) {
+    std::vector<Index> asked;
+    std::vector<Channel> channels;
+    for (Index p = 0; p < model.predicates.size(); ++p) {
+        if (model.predicates[p].name.empty() || truth_of(model, p) != kNone) continue;
+        asked.push_back(p);
+        channels.push_back({array_name(model, p), Channel::Kind::boolean, 1, true});
+    }
+    std::vector<Index> labelled;
+    for (const check::Truth& truth : model.truths) labelled.push_back(truth.predicate);
+    if (!asked.empty()) {
+        for (const Index input : identity_inputs(model))  // which tell the number of steps
+            channels.push_back(channel_of(model.inputs[input]));
+        const auto trace = data::open_trace(path, data::renamed(channels, names));
+        if (!trace) return trace.failure();
+        for (std::size_t i = 0; i < asked.size(); ++i)
+            if ((*trace)->has(i)) labelled.push_back(asked[i]);
+    }
+    std::sort(labelled.begin(), labelled.end());
+    return labelled;
+}
+
+diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open) {
+    const check::Model& model = *wanted.model;
+    const TruthEvaluator all(model, formulas_of(model, wanted.predicates));
+    const std::vector<Index> inputs = inputs_of(wanted, all);
+    std::vector<bool> required(model.inputs.size());
+    for (const Index input : wanted.inputs) required[input] = true;
+
+    // What only truths read may be absent where arrays stand in for them.
+    std::vector<data::HashedInput> identity;
+    for (const Index input : wanted.identity)
+        identity.push_back(
+            {static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) -
+                                      inputs.begin()),
+             model.inputs[input].name, model.inputs[input].is_embedding()});
+    Recording result(model, std::move(identity));
+    auto trace = open(channels_of(wanted, inputs, required));
+    if (!trace) return trace.failure();
+    result.trace_ = std::move(*trace);
+    result.sources_.resize(model.predicates.size());
+    std::vector<Index> by_formula;
+    for (std::size_t i = 0; i < wanted.predicates.size(); ++i) {
+        const Index predicate = wanted.predicates[i];
+        Source& source = result.sources_[predicate];
+        source.channel = inputs.size() + i;
+        source.from_array = result.trace_->has(source.channel);
+        source.formula = source.from_array ? kNone : truth_of(model, predicate);
+        if (!source.from_array && source.formula == kNone) {
+            std::vector<Channel> channels = channels_of(wanted, inputs, required);
+            channels[source.channel].optional = false;
+            const auto required_too = open(channels);
+            return no_label(model, predicate,
+                            required_too ? Failure{Code::no_label, "the file has changed meanwhile"}
+                                         : required_too.failure());
+        }
+        if (!source.from_array) by_formula.push_back(predicate);
+    }
+    result.truth_ = std::make_unique<TruthEvaluator>(model, formulas_of(model, by_formula));
+    bool complete = true;
+    for (const Index input : result.truth_->inputs()) {
+        const auto channel = std::lower_bound(inputs.begin(), inputs.end(), input) - inputs.begin();
+        complete = complete && result.trace_->has(static_cast<std::size_t>(channel));
+        required[input] = true;
+    }
+    if (!complete) {  // the message about what is lacking is that of the file's format
+        trace = open(channels_of(wanted, inputs, required));
+        if (!trace) return trace.failure();
+    }
+    result.channel_inputs_ = inputs;
+    for (const Index input : inputs)
+        result.narrowed_.push_back(std::find(wanted.inputs.begin(), wanted.inputs.end(), input) !=
+                                   wanted.inputs.end());
+    result.samples_.resize(model.inputs.size());
+    result.frame_.resize(model.inputs.size());
+    return result;
+}
+
+diag::Result<bool> Recording::next() {
+    auto more = trace_->next(sample_);
+    if (more && !*more && frames_ == 0) return data::no_steps();
+    if (!more || !*more) return more;
+    const auto narrowed = narrow();
+    if (!narrowed) return narrowed;
+    hash_.add(sample_);
+    for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
+        std::vector<double>& recorded = frame_[channel_inputs_[c]];
+        std::swap(recorded, sample_.values[c]);
+        if (!sample_.present[c]) recorded.clear();
+    }
+    truth_->step(frame_);
+    ++frames_;
+    return true;
+}
+
+diag::Result<bool> Recording::narrow() {
+    for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
+        if (!narrowed_[c]) continue;
+        const Index input = channel_inputs_[c];
+        std::string why;
+        auto sample =
+            plan::narrow(model_->inputs[input], sample_.present[c], sample_.values[c], why);
+        if (!sample) return Failure{Code::trace_value, fmt::format("step {}: {}", frames_, why)};
+        samples_[input] = std::move(*sample);
+    }
+    return true;
+}
+
+Label Recording::label(Index predicate) const {
+    const Source& source = sources_[predicate];
+    if (!source.from_array) return (*truth_)[source.formula];
+    const double value = sample_.values[source.channel][0];
+    if (!sample_.present[source.channel] || value != value) return Label::unknown;
+    return value != 0 ? Label::yes : Label::no;
+}
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,90 @@
+// One recorded episode, a frame after the other: what the monitor would have been given, and what
+// was true. Takes: what is wanted of an episode, and how to open it. Gives: per frame the samples
+// in the monitor's precision and the label of every predicate; at the end a hash of the content.
+// Keeps true: memory is that of one frame (and of the windows of truths); a Boolean array
+// `truth.NAME` in the episode stands in for the spec's `truth NAME`.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "calibrate/episodes/truth.hpp"
+#include "check/model/model.hpp"
+#include "data/traces/episodes.hpp"
+#include "data/traces/trace.hpp"
+#include "plan/evaluate/inputs.hpp"
+
+namespace etlc::calibrate {
+
+struct Wanted {
+    const check::Model* model = nullptr;
+    std::vector<Index> inputs;      ///< whose samples are wanted, of the model
+    std::vector<Index> predicates;  ///< whose labels are wanted: named ones
+    std::vector<Index> identity;    ///< inputs that the hash is made of, all of them wanted too
+};
+
+/// The inputs that predicates with a calibrated threshold read, in order of their names: two
+/// episodes with equal samples of these give equal scores, whatever else they hold. Without such a
+/// predicate, the inputs of all.
+std::vector<Index> identity_inputs(const check::Model& model);
+
+/// The predicates whose truth is known: from the spec, or from an array in the episode of that
+/// path. Failures do not name the path.
+diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const std::string& path,
+                                             const data::NamesInFile& names);
+
+/// Opens an episode with these channels.
+using Opener =
+    std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
+
+class Recording {
+public:
+    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an
+    /// array. They do not name the episode.
+    static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
+
+    /// The next frame; false at the end of the episode.
+    diag::Result<bool> next();
+
+    /// Of this frame, by index of the model's inputs; those not wanted are not there.
+    const std::vector<plan::Sample>& samples() const { return samples_; }
+    /// Of this frame: one of the wanted predicates.
+    Label label(Index predicate) const;
+    /// Whether its labels come from an array of the episode.
+    bool from_array(Index predicate) const { return sources_[predicate].from_array; }
+
+    std::uint64_t frames() const { return frames_; }
+    /// Number of frames where the file tells it beforehand, else 0.
+    std::uint64_t length() const { return trace_->length(); }
+    /// Of the frames so far, over the inputs of `identity`.
+    std::string hash() const { return hash_.text(); }
+    data::EpisodeContent content() const { return hash_.content(); }
+
+private:
+    struct Source {
+        bool from_array = false;
+        std::size_t channel = 0;  ///< of the array
+        Index formula = check::kNone;
+    };
+
+    Recording(const check::Model& model, std::vector<data::HashedInput> identity)
+        : model_(&model), hash_(std::move(identity)) {}
+
+    diag::Result<bool> narrow();
+
+    const check::Model* model_;
+    data::EpisodeHash hash_;
+    std::unique_ptr<data::Trace> trace_;
+    std::vector<Index> channel_inputs_;  ///< per channel of an input, that input
+    std::vector<bool> narrowed_;         ///< per such channel: its samples are wanted
+    std::vector<Source> sources_;        ///< per predicate of the model
+    std::unique_ptr<TruthEvaluator> truth_;
+    data::Sample sample_;
+    std::vector<plan::Sample> samples_;
+    Frame frame_;
+    std::uint64_t frames_ = 0;
+};
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,193 @@
+#include "calibrate/episodes/truth.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+
+#include "calibrate/episodes/exact_distance.hpp"
+
+namespace etlc::calibrate {
+
+namespace {
+
+using check::Expr;
+using check::Formula;
+using check::Input;
+
+constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+
+Label negate(Label label) {
+    if (label == Label::unknown) return label;
+    return label == Label::yes ? Label::no : Label::yes;
+}
+
+Label label_of(bool value) {
+    return value ? Label::yes : Label::no;
+}
+
+/// "A sample with any element not finite, or a scalar outside its declared range, counts as
+/// missing": the monitor sees float32, so that is what has to be finite and in range.
+bool usable(const Input& input, const std::vector<double>& sample) {
+    if (sample.empty()) return false;
+    return std::all_of(sample.begin(), sample.end(), [&](double x) {
+        const auto narrowed = static_cast<float>(x);
+        return std::isfinite(narrowed) &&
+               (!input.has_range || (input.range.low <= narrowed && narrowed <= input.range.high));
+    });
+}
+
+}  // namespace
+
+TruthEvaluator::TruthEvaluator(const check::Model& model, const std::vector<Index>& formulas)
+    : model_(model) {
+    std::vector<bool> wanted(model.formulas.size());
+    for (const Index formula : formulas) wanted[formula] = true;
+    std::set<Index> inputs;
+    for (Index i = static_cast<Index>(wanted.size()); i-- > 0;) {
+        if (!wanted[i]) continue;
+        const Formula& formula = model.formulas[i];
+        for (const Index operand : formula.operands) wanted[operand] = true;
+        order_.push_back(i);
+        if (formula.kind == Formula::Kind::boolean_input) inputs.insert(formula.index);
+        if (formula.kind != Formula::Kind::predicate) continue;
+        const std::vector<Index>& read = model.predicates[formula.index].inputs;
+        inputs.insert(read.begin(), read.end());
+    }
+    std::reverse(order_.begin(), order_.end());
+    inputs_.assign(inputs.begin(), inputs.end());
+    reset();
+}
+
+void TruthEvaluator::reset() {
+    frame_ = 0;
+    labels_.assign(model_.formulas.size(), Label::unknown);
+    memories_.assign(model_.formulas.size(), {});
+    values_.assign(model_.inputs.size(), {});
+    held_.assign(model_.inputs.size(), {});
+    ages_.assign(model_.inputs.size(), 0);
+}
+
+void TruthEvaluator::step(const Frame& frame) {
+    ++frame_;
+    take_inputs(frame);
+    for (const Index index : order_) labels_[index] = value(index);
+}
+
+void TruthEvaluator::take_inputs(const Frame& frame) {
+    for (const Index i : inputs_) {
+        const Input& input = model_.inputs[i];
+        if (usable(input, frame[i])) {
+            held_[i] = frame[i];
+            ages_[i] = 0;
+            if (input.type == check::InputType::i8)
+                for (double& x : held_[i]) x *= static_cast<double>(input.scale);
+            values_[i] = held_[i];
+            continue;
+        }
+        values_[i] = ages_[i] < input.hold ? held_[i] : std::vector<double>{};
+        ages_[i] += ages_[i] < input.hold ? 1 : 0;
+    }
+}
+
+Label TruthEvaluator::value(Index index) {
+    using enum Formula::Kind;
+    const Formula& formula = model_.formulas[index];
+    const auto at = [&](std::size_t i) { return labels_[formula.operands[i]]; };
+    const auto fold = [&](auto combine) {
+        Label result = at(0);
+        for (std::size_t i = 1; i < formula.operands.size(); ++i) result = combine(result, at(i));
+        return result;
+    };
+    const auto both = [](Label a, Label b) { return std::min(a, b); };
+    const auto either = [](Label a, Label b) { return std::max(a, b); };
+    switch (formula.kind) {
+        case constant_true: return Label::yes;
+        case constant_false: return Label::no;
+        case predicate: return compare(model_.predicates[formula.index]);
+        case boolean_input: {
+            const std::vector<double>& sample = values_[formula.index];
+            return sample.empty() ? Label::unknown : label_of(sample[0] != 0);
+        }
+        case negation: return negate(at(0));
+        case conjunction: return fold(both);
+        case disjunction: return fold(either);
+        case implication: return either(negate(at(0)), at(1));
+        case equivalence: return both(either(negate(at(0)), at(1)), either(negate(at(1)), at(0)));
+        case previous:
+        case once: return in_the_past(formula, memories_[index], Label::yes, at(0));
+        case historically:
+            return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
+        case since: return in_the_past(formula, memories_[index], at(0), at(1));
+        default: return Label::unknown;  // no future operator stands in a truth
+    }
+}
+
+/// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j,
+/// k])": yes where g was yes at such a j and f has been yes since, possible where neither was no.
+Label TruthEvaluator::in_the_past(const Formula& formula, Memory& memory, Label f, Label g) const {
+    memory.delayed.push_back(g);
+    if (memory.delayed.size() > formula.low) {
+        const std::uint64_t at = frame_ - formula.low;
+        if (memory.delayed.front() == Label::yes) memory.last_yes = at;
+        if (memory.delayed.front() != Label::no) memory.last_possible = at;
+        memory.delayed.pop_front();
+    }
+    if (f != Label::yes) memory.f_not_yes = frame_;
+    if (f == Label::no) memory.f_no = frame_;
+    const bool bounded = formula.high != check::kUnbounded && formula.high < frame_;
+    const std::uint64_t first = bounded ? frame_ - formula.high : 1;
+    if (memory.last_yes >= std::max(first, memory.f_not_yes)) return Label::yes;
+    return memory.last_possible >= std::max(first, memory.f_no) ? Label::unknown : Label::no;
+}
+
+Label TruthEvaluator::compare(const check::Predicate& predicate) const {
+    const bool present = std::none_of(predicate.inputs.begin(), predicate.inputs.end(),
+                                      [&](Index input) { return values_[input].empty(); });
+    const double delta = present ? expression(predicate.expression) : kUnknown;
+    if (std::isnan(delta)) return Label::unknown;
+    const double epsilon = predicate.threshold.value64;
+    switch (predicate.comparison) {
+        case check::Comparison::less_equal: return label_of(delta <= epsilon);
+        case check::Comparison::less: return label_of(delta < epsilon);
+        case check::Comparison::greater_equal: return label_of(delta >= epsilon);
+        case check::Comparison::greater: return label_of(delta > epsilon);
+    }
+    return Label::unknown;
+}
+
+double TruthEvaluator::expression(const Expr& e) const {
+    const auto at = [&](std::size_t i) { return expression(e.arguments[i]); };
+    const auto fold = [&](auto combine) {
+        double result = at(0);
+        for (std::size_t i = 1; i < e.arguments.size(); ++i) {
+            const double next = at(i);
+            result = std::isnan(result) || std::isnan(next) ? kUnknown : combine(result, next);
+        }
+        return result;
+    };
+    switch (e.kind) {
+        case Expr::Kind::number: return e.number;
+        case Expr::Kind::scalar: return values_[e.index][0];
+        case Expr::Kind::distance: return measure(model_.distances[e.index]);
+        case Expr::Kind::negate: return -at(0);
+        case Expr::Kind::add: return at(0) + at(1);
+        case Expr::Kind::subtract: return at(0) - at(1);
+        case Expr::Kind::multiply: return at(0) * at(1);
+        case Expr::Kind::divide: return at(0) / at(1);
+        case Expr::Kind::abs: return std::abs(at(0));
+        case Expr::Kind::sqrt: return std::sqrt(at(0));
+        case Expr::Kind::min: return fold([](double a, double b) { return std::min(a, b); });
+        case Expr::Kind::max: return fold([](double a, double b) { return std::max(a, b); });
+    }
+    return kUnknown;
+}
+
+double TruthEvaluator::measure(const check::Distance& distance) const {
+    std::vector<double> point;
+    for (const Index input : distance.point)
+        point.insert(point.end(), values_[input].begin(), values_[input].end());
+    return exact_distance(model_, distance, point).value_or(kUnknown);
+}
+
+}  // namespace etlc::calibrate

@@ -1,0 +1,178 @@
+#include "check/formulas/formulas.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/predicates/predicates.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+using Kind = Formula::Kind;
+
+struct Correspondence {
+    ast::Formula::Kind written;
+    Kind kind;
+    std::string_view word;
+};
+
+constexpr std::array kOperators = std::to_array<Correspondence>({
+    {ast::Formula::Kind::constant_true, Kind::constant_true, "true"},
+    {ast::Formula::Kind::constant_false, Kind::constant_false, "false"},
+    {ast::Formula::Kind::negation, Kind::negation, "!"},
+    {ast::Formula::Kind::conjunction, Kind::conjunction, "&&"},
+    {ast::Formula::Kind::disjunction, Kind::disjunction, "||"},
+    {ast::Formula::Kind::implication, Kind::implication, "->"},
+    {ast::Formula::Kind::equivalence, Kind::equivalence, "<->"},
+    {ast::Formula::Kind::next, Kind::next, "X"},
+    {ast::Formula::Kind::eventually, Kind::eventually, "F"},
+    {ast::Formula::Kind::always, Kind::always, "G"},
+    {ast::Formula::Kind::until, Kind::until, "U"},
+    {ast::Formula::Kind::weak_until, Kind::weak_until, "W"},
+    {ast::Formula::Kind::release, Kind::release, "R"},
+    {ast::Formula::Kind::previous, Kind::previous, "Y"},
+    {ast::Formula::Kind::once, Kind::once, "O"},
+    {ast::Formula::Kind::historically, Kind::historically, "H"},
+    {ast::Formula::Kind::since, Kind::since, "S"},
+});
+
+Kind kind_of(ast::Formula::Kind written) {
+    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
+                                    [&](const auto& row) { return row.written == written; });
+    return found->kind;
+}
+
+class FormulaCheck {
+public:
+    explicit FormulaCheck(Context& context) : c_(context) {}
+
+    Index build(const ast::Formula& written) {
+        if (written.kind == ast::Formula::Kind::name) return named(written);
+        if (written.kind == ast::Formula::Kind::comparison)
+            return leaf(Kind::predicate, comparison_predicate(c_, written), written);
+        Formula formula;
+        formula.kind = kind_of(written.kind);
+        formula.span = written.span;
+        bool good = set_interval(formula, written);
+        std::uint32_t depth = 0;
+        for (const ast::FormulaPtr& operand : written.operands) {
+            const Index index = build(*operand);
+            formula.operands.push_back(index);
+            if (index == kNone)
+                good = false;
+            else
+                depth = std::max(depth, c_.depths[index]);
+        }
+        if (!good) return kNone;
+        if (depth >= kMaxDepth) return too_deep(written.span);
+        return add(std::move(formula), written.operator_span, depth + 1);
+    }
+
+private:
+    Index add(Formula formula, Span operator_span, std::uint32_t depth) {
+        c_.model.formulas.push_back(std::move(formula));
+        c_.operator_spans.push_back(operator_span);
+        c_.depths.push_back(depth);
+        return static_cast<Index>(c_.model.formulas.size() - 1);
+    }
+
+    /// An atom; `index` may be kNone.
+    Index leaf(Kind kind, Index index, const ast::Formula& written) {
+        if (index == kNone) return kNone;
+        Formula formula;
+        formula.kind = kind;
+        formula.index = index;
+        formula.span = written.span;
+        return add(std::move(formula), written.span, 1);
+    }
+
+    Index too_deep(Span span) {
+        c_.report(Code::formula_too_deep, span,
+                  fmt::format("a formula of more than {} levels, its lets written out", kMaxDepth));
+        return kNone;
+    }
+
+    bool set_interval(Formula& formula, const ast::Formula& written) {
+        if (formula.kind == Kind::next || formula.kind == Kind::previous)
+            formula.low = formula.high = 1;
+        if (!written.interval) return true;
+        const auto steps = interval_steps(c_, *written.interval);
+        if (!steps) return false;
+        formula.low = steps->low;
+        formula.high = steps->high;
+        return true;
+    }
+
+    Index named(const ast::Formula& written) {
+        const ast::Name name{written.name, written.span};
+        const Reference* found =
+            find(c_, name, {NameKind::predicate, NameKind::let, NameKind::input},
+                 "a predicate, a let or a bool input");
+        if (found == nullptr || found->kind == NameKind::unreadable) return kNone;
+        const Entity& entity = c_.scope.entity(*found);
+        switch (found->kind) {
+            case NameKind::predicate:
+                return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
+            case NameKind::let: return entity.broken ? kNone : c_.model.lets[found->index].formula;
+            case NameKind::input: return entity.broken ? kNone : input(found->index, written);
+            case NameKind::target:
+            case NameKind::monitor:
+            case NameKind::unreadable: break;
+        }
+        auto& error =
+            c_.report(Code::wrong_kind, written.span,
+                      fmt::format("'{}' is {}; expected a predicate, a let or a bool input",
+                                  written.name, word_with_article(found->kind)));
+        error.note(entity.span, fmt::format("'{}' is declared here", written.name));
+        if (found->kind == NameKind::monitor)
+            error.note("a formula that is used more than once is given a name with let");
+        if (found->kind == NameKind::target)
+            error.note(fmt::format(
+                "a predicate measures a distance to it: min l2(INPUT, {}) <= 0.5", written.name));
+        return kNone;
+    }
+
+    Index input(Index index, const ast::Formula& written) {
+        const Input& input = c_.model.inputs[index];
+        if (input.type == InputType::boolean) return leaf(Kind::boolean_input, index, written);
+        auto& error =
+            c_.report(Code::not_a_formula, written.span,
+                      fmt::format("'{}' is {}, which is neither true nor false", written.name,
+                                  input.is_embedding() ? "an embedding" : "a scalar"));
+        error.note(input.is_embedding()
+                       ? fmt::format("compare its distance to a target: min l2({}, TARGET) <= 0.5",
+                                     written.name)
+                       : fmt::format("compare it with a number: {} > 0.5", written.name));
+        return kNone;
+    }
+
+    Context& c_;
+};
+
+}  // namespace
+
+Index check_formula(Context& context, const ast::Formula& formula) {
+    return FormulaCheck(context).build(formula);
+}
+
+std::string_view operator_word(Kind kind) {
+    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
+                                    [&](const auto& row) { return row.kind == kind; });
+    return found == kOperators.end() ? "" : found->word;
+}
+
+bool looks_ahead(Kind kind) {
+    return kind == Kind::next || kind == Kind::eventually || kind == Kind::always ||
+           kind == Kind::until || kind == Kind::weak_until || kind == Kind::release;
+}
+
+bool looks_back(Kind kind) {
+    return kind == Kind::previous || kind == Kind::once || kind == Kind::historically ||
+           kind == Kind::since;
+}
+
+}  // namespace etlc::check

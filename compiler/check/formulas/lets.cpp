@@ -1,0 +1,126 @@
+// Lets: named sub-formulas, built after those that they name.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/formulas/formulas.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+/// A name in a let's formula that means another let, and where it stands.
+struct Use {
+    Index let;
+    Span span;
+};
+
+std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
+    std::vector<Use> uses;
+    std::vector<const ast::Formula*> pending{&formula};
+    while (!pending.empty()) {
+        const ast::Formula& next = *pending.back();
+        pending.pop_back();
+        for (const ast::FormulaPtr& operand : next.operands) pending.push_back(operand.get());
+        if (next.kind != ast::Formula::Kind::name) continue;
+        const Reference* found = c.scope.find(next.name);
+        if (found != nullptr && found->kind == NameKind::let)
+            uses.push_back({found->index, next.span});
+    }
+    std::sort(uses.begin(), uses.end(),
+              [](const Use& a, const Use& b) { return a.span.begin < b.span.begin; });
+    return uses;
+}
+
+/// Depth-first over the lets without recursion: a chain of lets may be as long as the spec.
+class LetOrder {
+public:
+    explicit LetOrder(Context& context) : c_(context) {
+        for_each_declaration<ast::Let>(c_.spec, [&](const ast::Let& let, Index) {
+            uses_.push_back(lets_in(c_, *let.formula));
+        });
+        states_.resize(uses_.size());
+    }
+
+    std::vector<Index> run() {
+        for (Index let = 0; let < uses_.size(); ++let)
+            if (states_[let].mark == Mark::untouched) visit(let);
+        return std::move(order_);
+    }
+
+private:
+    enum class Mark : std::uint8_t { untouched, open, done };
+    struct State {
+        Mark mark = Mark::untouched;
+        std::size_t next_use = 0;
+    };
+
+    void visit(Index root) {
+        open(root);
+        while (!path_.empty()) {
+            const Index let = path_.back();
+            State& state = states_[let];
+            if (state.next_use == uses_[let].size()) {
+                state.mark = Mark::done;
+                order_.push_back(let);
+                path_.pop_back();
+                continue;
+            }
+            const Use& use = uses_[let][state.next_use++];
+            if (states_[use.let].mark == Mark::untouched)
+                open(use.let);
+            else if (states_[use.let].mark == Mark::open)
+                report_cycle(use);
+        }
+    }
+
+    void open(Index let) {
+        states_[let].mark = Mark::open;
+        path_.push_back(let);
+    }
+
+    /// The use closes a circle: from the let it names, along the path, and back.
+    void report_cycle(const Use& use) {
+        const auto begin = std::find(path_.begin(), path_.end(), use.let);
+        if (std::all_of(begin, path_.end(), [&](Index let) { return entity(let).broken; })) return;
+        constexpr std::ptrdiff_t kShown = 20;
+        std::string text;
+        for (auto at = begin; at != path_.end() && at - begin < kShown; ++at)
+            text += entity(*at).name + " -> ";
+        if (path_.end() - begin > kShown) text += "... -> ";
+        text += entity(use.let).name;
+        auto& error =
+            c_.report(Code::let_cycle, entity(use.let).span,
+                      fmt::format("'{}' is defined by itself: {}", entity(use.let).name, text));
+        error.note(use.span, "here the circle closes");
+        for (auto at = begin; at != path_.end(); ++at) entity(*at).broken = true;
+    }
+
+    Entity& entity(Index let) { return c_.scope.entity(NameKind::let, let); }
+
+    Context& c_;
+    std::vector<std::vector<Use>> uses_;
+    std::vector<State> states_;
+    std::vector<Index> path_;
+    std::vector<Index> order_;
+};
+
+}  // namespace
+
+void check_lets(Context& c) {
+    std::vector<const ast::Let*> written;
+    for_each_declaration<ast::Let>(c.spec, [&](const ast::Let& let, Index) {
+        written.push_back(&let);
+        c.model.lets.push_back({let.name.text, kNone, let.name.span});
+    });
+    for (const Index let : LetOrder(c).run()) {
+        const Index formula = check_formula(c, *written[let]->formula);
+        c.model.lets[let].formula = formula;
+        if (formula == kNone) c.scope.entity(NameKind::let, let).broken = true;
+    }
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,237 @@
+// Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
+#include <fmt/format.h>
+
+#include "check/formulas/formulas.hpp"
+#include "check/formulas/horizons.hpp"
+#include "check/guarantees/calibrated.hpp"
+#include "check/guarantees/guarantees.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+class MonitorCheck {
+public:
+    explicit MonitorCheck(Context& context) : c_(context), reaches_(reaches(context.model)) {}
+
+    void sliding(Monitor& monitor, Span name) {
+        const Reach& reach = reaches_[monitor.formula];
+        if (reach.unbounded != kNone) {
+            report_all(monitor, &Reach::unbounded, reported_unbounded_,
+                       [&](Index at) { report_unbounded(monitor, name, at); });
+            return;
+        }
+        if (reach.horizon > kMaxBound) {
+            c_.report(Code::horizon_too_large, name,
+                      fmt::format("'{}' looks further ahead than {} steps: the sum of the upper "
+                                  "bounds along its deepest path",
+                                  monitor.name, kMaxBound));
+            return;
+        }
+        monitor.horizon = static_cast<std::uint32_t>(reach.horizon);
+    }
+
+    void prefix(const Monitor& monitor, Span name) {
+        if (reaches_[monitor.formula].past_over_future == kNone) return;
+        report_all(monitor, &Reach::past_over_future, reported_past_,
+                   [&](Index at) { report_past(monitor, name, at); });
+    }
+
+    void truth(const Truth& truth, Span name) {
+        const Index future = reaches_[truth.formula].future;
+        if (future == kNone) return;
+        const Entity& predicate = c_.scope.entity(NameKind::predicate, truth.predicate);
+        note_use(
+            c_.report(
+                Code::future_in_truth, c_.operator_spans[future],
+                fmt::format(
+                    "{} looks ahead; the truth of '{}' may only look at the present and the past",
+                    word(future), predicate.name)),
+            truth.span, name, future, fmt::format("the truth of '{}' is here", predicate.name));
+    }
+
+private:
+    std::string_view word(Index formula) const {
+        return operator_word(c_.model.formulas[formula].kind);
+    }
+
+    /// Where the operator stands in a let, where it is used as well.
+    void note_use(diag::Diagnostic& error, Span user, Span shown, Index at,
+                  std::string text) const {
+        const Span place = c_.operator_spans[at];
+        const bool inside = user.begin <= place.begin && place.end <= user.end;
+        if (!inside) error.note(shown, std::move(text));
+    }
+
+    /// Calls `report` for each node below the monitor that `what` of its own reach names, once in
+    /// all monitors.
+    template <class Report>
+    void report_all(const Monitor& monitor, Index Reach::*what, std::vector<bool>& visited,
+                    Report report) {
+        visited.resize(c_.model.formulas.size());
+        std::vector<Index> pending{monitor.formula};
+        while (!pending.empty()) {
+            const Index at = pending.back();
+            pending.pop_back();
+            if (visited[at] || reaches_[at].*what == kNone) continue;
+            visited[at] = true;
+            if (reaches_[at].*what == at) report(at);
+            for (const Index operand : c_.model.formulas[at].operands) pending.push_back(operand);
+        }
+    }
+
+    void report_unbounded(const Monitor& monitor, Span name, Index at) {
+        auto& error = c_.report(Code::unbounded_future, c_.operator_spans[at],
+                                fmt::format("{} looks ahead without bound, and a sliding verdict "
+                                            "waits for all that it looks at",
+                                            word(at)));
+        note_use(error, monitor.span, name, at,
+                 fmt::format("sliding monitor '{}' uses it", monitor.name));
+        error.note(c_.model.formulas[at].kind == Formula::Kind::weak_until
+                       ? "W has no bounded form; p W[0, b] q is written (p U[0, b] q) || G[0, b] p"
+                       : "give it an interval, such as [0, 20], or leave out 'sliding'");
+    }
+
+    void report_past(const Monitor& monitor, Span name, Index at) {
+        Index future = kNone;
+        for (const Index operand : c_.model.formulas[at].operands)
+            if (future == kNone) future = reaches_[operand].future;
+        auto& error = c_.report(
+            Code::past_over_future, c_.operator_spans[at],
+            fmt::format(
+                "{} looks back over an operand that looks ahead, which a prefix monitor cannot do",
+                word(at)));
+        error.note(c_.operator_spans[future], fmt::format("{} looks ahead here", word(future)));
+        note_use(error, monitor.span, name, at, fmt::format("monitor '{}' uses it", monitor.name));
+        error.note("a sliding monitor can, where the future is bounded");
+    }
+
+    Context& c_;
+    std::vector<Reach> reaches_;
+    std::vector<bool> reported_unbounded_;
+    std::vector<bool> reported_past_;
+};
+
+/// The node of a predicate that `is` so, at or below `root`; kNone where there is none.
+template <class Is>
+Index predicate_node(const Model& model, Index root, Is is) {
+    std::vector<bool> visited(model.formulas.size());
+    std::vector<Index> pending{root};
+    while (!pending.empty()) {
+        const Index at = pending.back();
+        pending.pop_back();
+        if (visited[at]) continue;
+        visited[at] = true;
+        const Formula& formula = model.formulas[at];
+        if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
+        pending.insert(pending.end(), formula.operands.begin(), formula.operands.end());
+    }
+    return kNone;
+}
+
+/// A shift is guaranteed for the thresholds that it was fitted with.
+void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
+    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
+        return c.model.predicates[predicate].threshold.adaptation.has_value();
+    });
+    if (at == kNone) return;
+    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+             fmt::format("'{}' is calibrated as a whole, which takes thresholds that stay; that of "
+                         "'{}' is adaptive",
+                         monitor.name, c.model.predicates[c.model.formulas[at].index].name))
+        .note(c.model.formulas[at].span, "it is used here");
+}
+
+/// What says of an embedding has a truth by its name. Held against itself, it could not but agree.
+void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
+    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
+        return c.model.predicates[predicate].name.empty() && !is_own_truth(c.model, predicate);
+    });
+    if (at == kNone) return;
+    const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
+    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+             fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
+                         "'{}' has no name by "
+                         "which a truth could be given",
+                         monitor.name, comparison))
+        .note(c.model.formulas[at].span, "it is used here")
+        .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth "
+                          "near = ...;', or an "
+                          "array truth.near in the episodes",
+                          comparison));
+}
+
+/// The predicate that the truth is of; kNone where there is none, or another truth of it.
+Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Span>& first) {
+    const Reference* before = c.scope.find(declaration.predicate.text);
+    const bool used = before != nullptr && c.scope.entity(*before).used;
+    const Index predicate = resolve(c, declaration.predicate, NameKind::predicate);
+    if (before != nullptr)
+        c.scope.entity(*before).used = used;  // a truth alone is no use of its predicate
+    if (before == nullptr || before->kind != NameKind::predicate) return kNone;
+    const auto [at, is_new] = first.try_emplace(before->index, declaration.predicate.span);
+    if (is_new) return predicate;
+    c.report(Code::duplicate_truth, declaration.predicate.span,
+             fmt::format("a second truth of '{}'", declaration.predicate.text))
+        .note(at->second, "the first is here");
+    return kNone;
+}
+
+}  // namespace
+
+void check_truths(Context& c) {
+    std::map<Index, Span> first;
+    std::vector<Truth> truths;
+    for_each_declaration<ast::Truth>(c.spec, [&](const ast::Truth& declaration, Index) {
+        const Index predicate = predicate_of(c, declaration, first);
+        const Index formula = check_formula(c, *declaration.formula);
+        if (predicate != kNone && formula != kNone)
+            truths.push_back({predicate, formula, declaration.span});
+    });
+    MonitorCheck check(c);
+    for (const Truth& truth : truths) {
+        check.truth(truth, first.at(truth.predicate));
+        const Index calibrated = predicate_node(c.model, truth.formula, [&](Index predicate) {
+            return c.model.predicates[predicate].threshold.origin != ThresholdOrigin::literal;
+        });
+        if (calibrated == kNone) continue;
+        c.report(Code::calibrated_in_truth, c.model.formulas[calibrated].span,
+                 fmt::format(
+                     "the truth of '{}' uses '{}', whose threshold is calibrated; truth is exact",
+                     c.model.predicates[truth.predicate].name,
+                     c.model.predicates[c.model.formulas[calibrated].index].name));
+    }
+    c.model.truths = std::move(truths);
+}
+
+void check_monitors(Context& c) {
+    for_each_declaration<ast::Monitor>(c.spec, [&](const ast::Monitor& declaration, Index index) {
+        Monitor monitor;
+        monitor.name = declaration.name.text;
+        monitor.span = declaration.span;
+        monitor.sliding = declaration.sliding;
+        monitor.formula = check_formula(c, *declaration.formula);
+        if (declaration.calibrated)
+            monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
+        if (monitor.formula == kNone) c.scope.entity(NameKind::monitor, index).broken = true;
+        c.model.monitors.push_back(std::move(monitor));
+    });
+    MonitorCheck check(c);
+    for (Index i = 0; i < c.model.monitors.size(); ++i) {
+        Monitor& monitor = c.model.monitors[i];
+        const Span name = c.scope.entity(NameKind::monitor, i).span;
+        if (monitor.formula == kNone) continue;
+        if (monitor.sliding)
+            check.sliding(monitor, name);
+        else
+            check.prefix(monitor, name);
+        if (!monitor.calibration) continue;
+        refuse_moving_thresholds(c, monitor);
+        refuse_comparisons_without_truth(c, monitor);
+    }
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,181 @@
+#include "check/formulas/time.hpp"
+
+#include <fmt/format.h>
+
+#include "check/numbers/duration.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+std::string_view rate_word(const ast::Rate& rate) {
+    return rate.is_period ? "period" : "rate";
+}
+
+Quantity quantity(const ast::Rate& rate) {
+    return {Decimal::parse(rate.number.text), rate.unit};
+}
+
+bool has_too_many_digits(Context& c, const ast::Number& number) {
+    const std::size_t digits = Decimal::parse(number.text).digits.size();
+    if (digits <= kMaxTimeDigits) return false;
+    c.report(Code::time_too_precise, number.span,
+             fmt::format("a time of {} significant digits; at most {} are computed exactly", digits,
+                         kMaxTimeDigits));
+    return true;
+}
+
+/// A period between a picosecond and about three years; the length of a step is also kept as a
+/// double.
+bool has_usable_length(Context& c, const ast::Rate& rate) {
+    const double length = seconds(quantity(rate));
+    if (length >= 1e-12 && length <= 1e8) return true;
+    c.report(Code::rate_out_of_range, rate.number.span,
+             fmt::format("a step of {:.3g} s; expected one between 1e-12 s and 1e8 s", length));
+    return false;
+}
+
+bool is_usable(Context& c, const ast::Rate& rate) {
+    if (has_too_many_digits(c, rate.number)) return false;
+    if (!Decimal::parse(rate.number.text).is_positive()) {
+        c.report(Code::rate_out_of_range, rate.number.span,
+                 fmt::format("the {} is {}; expected a positive number", rate_word(rate),
+                             rate.number.text));
+        return false;
+    }
+    return has_usable_length(c, rate);
+}
+
+// ---- bounds -------------------------------------------------------------------------------------
+
+bool is_infinite(const ast::Bound& bound) {
+    return bound.number.text == "inf" || bound.number.text == "-inf";
+}
+
+/// A bare 0 is zero steps and zero time alike.
+bool has_no_unit_of_its_own(const ast::Bound& bound) {
+    return is_infinite(bound) ||
+           (bound.unit.empty() && Decimal::parse(bound.number.text).is_zero());
+}
+
+std::string bound_text(const ast::Bound& bound) {
+    return bound.unit.empty() ? bound.number.text : bound.number.text + " " + bound.unit;
+}
+
+void report_too_large(Context& c, const ast::Bound& bound) {
+    c.report(Code::bound_too_large, bound.span,
+             fmt::format("{} is more than {} steps, the largest bound there is", bound_text(bound),
+                         kMaxBound))
+        .note("without an upper bound the interval is written [a, inf]");
+}
+
+std::optional<std::uint32_t> whole_steps(Context& c, const ast::Bound& bound) {
+    const Decimal value = Decimal::parse(bound.number.text);
+    if (value.negative || !value.is_whole()) {
+        auto& error =
+            c.report(Code::bound_not_whole, bound.span,
+                     fmt::format("the bound {} is not a whole number of steps", bound_text(bound)));
+        if (!value.negative) error.note("a duration has a unit: us, ms, s or min");
+        return std::nullopt;
+    }
+    const auto steps = value.whole(kMaxBound);
+    if (!steps) report_too_large(c, bound);
+    return steps ? std::optional(static_cast<std::uint32_t>(*steps)) : std::nullopt;
+}
+
+void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) {
+    const ast::Rate& rate = *c.step.rate;
+    const Quantity step = quantity(rate);
+    const auto name = [&](std::uint64_t steps) {
+        return fmt::format("{} ({} step{})", duration_text(steps, step, bound.unit), steps,
+                           steps == 1 ? "" : "s");
+    };
+    c.report(Code::duration_not_whole, bound.span,
+             fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",
+                         bound_text(bound), name(below), name(below + 1)))
+        .note(rate.span,
+              fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit));
+}
+
+std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound) {
+    if (c.step.broken || has_too_many_digits(c, bound.number)) return std::nullopt;
+    const Decimal value = Decimal::parse(bound.number.text);
+    if (value.negative) {
+        c.report(Code::bound_not_whole, bound.span,
+                 fmt::format("the bound {} is negative", bound_text(bound)));
+        return std::nullopt;
+    }
+    if (c.step.rate == nullptr) {
+        if (!c.incomplete)
+            c.report(Code::no_rate, bound.span,
+                     fmt::format("{} is a duration, but the spec has no rate or period that says "
+                                 "how long a step is",
+                                 bound_text(bound)))
+                .note("add a line such as 'rate 20 Hz;' or 'period 50 ms;'");
+        return std::nullopt;
+    }
+    const StepCount count = count_steps({value, bound.unit}, quantity(*c.step.rate));
+    if (count.too_many) report_too_large(c, bound);
+    if (!count.too_many && !count.whole) report_not_whole(c, bound, count.floor);
+    return count.whole ? std::optional(static_cast<std::uint32_t>(count.floor)) : std::nullopt;
+}
+
+std::optional<std::uint32_t> bound_steps(Context& c, const ast::Bound& bound) {
+    if (is_infinite(bound)) return kUnbounded;
+    return bound.unit.empty() ? whole_steps(c, bound) : duration_steps(c, bound);
+}
+
+}  // namespace
+
+void check_rate(Context& c) {
+    const ast::Rate* first = nullptr;
+    for_each_declaration<ast::Rate>(c.spec, [&](const ast::Rate& rate, Index) {
+        if (first == nullptr) {
+            first = &rate;
+            return;
+        }
+        c.report(Code::duplicate_rate, rate.span,
+                 fmt::format("a second {}; the length of a step is given once", rate_word(rate)))
+            .note(first->span, "it is given here");
+    });
+    if (first == nullptr) return;
+    if (!is_usable(c, *first)) {
+        c.step.broken = true;
+        return;
+    }
+    c.step.rate = first;
+    c.model.step_seconds = seconds(quantity(*first));
+}
+
+std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
+    const ast::Bound& low = interval.low;
+    const ast::Bound& high = interval.high;
+    if (is_infinite(low) || high.number.text == "-inf") {
+        c.report(Code::bound_not_finite, is_infinite(low) ? low.span : high.span,
+                 fmt::format("{} cannot stand here; only the upper bound may be inf",
+                             bound_text(is_infinite(low) ? low : high)));
+        return std::nullopt;
+    }
+    if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
+        low.unit.empty() != high.unit.empty()) {
+        c.report(Code::mixed_interval, interval.span,
+                 fmt::format("one bound is in steps and one is a duration: {} and {}",
+                             bound_text(low), bound_text(high)));
+        return std::nullopt;
+    }
+    const auto low_steps = bound_steps(c, low);
+    const auto high_steps = bound_steps(c, high);
+    if (!low_steps || !high_steps) return std::nullopt;
+    if (*low_steps > *high_steps) {
+        c.report(Code::interval_reversed, interval.span,
+                 fmt::format("the lower bound {} is above the upper bound {}", bound_text(low),
+                             bound_text(high)));
+        return std::nullopt;
+    }
+    return Steps{*low_steps, *high_steps};
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,98 @@
+// What is legal and surely not meant: declarations without use, predicates without choice.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "check/formulas/formula_warnings.hpp"
+#include "check/numbers/decimal.hpp"
+#include "check/predicates/predicates.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+void warn_of_unused(Context& c) {
+    for (const NameKind kind :
+         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let}) {
+        for (const Entity& entity : c.scope.all(kind)) {
+            if (entity.used) continue;
+            c.report(Code::unused_declaration, entity.span,
+                     fmt::format("{} '{}' is not used", word(kind), entity.name));
+        }
+    }
+}
+
+enum class Outcome : std::uint8_t { varies, always, never };
+
+Outcome outcome(const Predicate& predicate, float epsilon) {
+    const auto [low, high] = predicate.delta;
+    switch (predicate.comparison) {
+        case Comparison::less_equal:
+            return high <= epsilon ? Outcome::always
+                   : low > epsilon ? Outcome::never
+                                   : Outcome::varies;
+        case Comparison::less:
+            return high < epsilon   ? Outcome::always
+                   : low >= epsilon ? Outcome::never
+                                    : Outcome::varies;
+        case Comparison::greater_equal:
+            return low >= epsilon   ? Outcome::always
+                   : high < epsilon ? Outcome::never
+                                    : Outcome::varies;
+        case Comparison::greater:
+            return low > epsilon     ? Outcome::always
+                   : high <= epsilon ? Outcome::never
+                                     : Outcome::varies;
+    }
+    return Outcome::varies;
+}
+
+void warn_of_constant_predicates(Context& c) {
+    for (const Predicate& predicate : c.model.predicates) {
+        if (predicate.text.empty() || std::isnan(predicate.threshold.value))
+            continue;  // broken, or not yet calibrated
+        const Range epsilon = predicate.threshold.range();
+        const Outcome found = outcome(predicate, epsilon.low);
+        if (found == Outcome::varies || found != outcome(predicate, epsilon.high)) continue;
+        const Range& delta = predicate.delta;
+        const std::string values = delta.low == delta.high
+                                       ? fmt::format("{:.9g}", delta.low)
+                                       : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
+        c.report(Code::constant_predicate, predicate.span,
+                 fmt::format("the comparison is {} true: its left side is {}",
+                             found == Outcome::always ? "always" : "never", values));
+    }
+}
+
+void warn_of_same_predicates(Context& c) {
+    std::map<std::string, const Entity*> first;
+    for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
+        const Predicate& predicate = c.model.predicates[i];
+        const Entity& entity = c.scope.entity(NameKind::predicate, i);
+        if (entity.broken || entity.duplicate ||
+            predicate.threshold.origin != ThresholdOrigin::literal)
+            continue;
+        const std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
+        const auto [before, is_new] = first.try_emplace(text, &entity);
+        if (is_new) continue;
+        c.report(
+             Code::same_definition, entity.span,
+             fmt::format("'{}' is the same predicate as '{}'", entity.name, before->second->name))
+            .note(before->second->span, fmt::format("'{}' is declared here", before->second->name));
+    }
+}
+
+}  // namespace
+
+void warn(Context& c) {
+    // A name that was misspelt in its only use is no second cause.
+    if (!c.sink.has_errors()) warn_of_unused(c);
+    warn_of_constant_predicates(c);
+    warn_of_same_predicates(c);
+    warn_about_formulas(c);
+}
+
+}  // namespace etlc::check

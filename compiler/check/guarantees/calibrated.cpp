@@ -1,0 +1,186 @@
+#include "check/guarantees/calibrated.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <set>
+
+#include "check/guarantees/adaptation.hpp"
+#include "check/numbers/decimal.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+struct Method {
+    std::string_view name;
+    ThresholdOrigin origin;
+    std::vector<std::string> arguments;
+};
+
+const std::vector<Method>& methods() {
+    static const std::vector<Method> all{
+        {"f1", ThresholdOrigin::f1, {}},
+        {"conformal", ThresholdOrigin::conformal, {"alpha"}},
+        {"class_conditional", ThresholdOrigin::class_conditional, {"alpha"}},
+        {"adaptive", ThresholdOrigin::adaptive, {"alpha", "gamma", "lo", "hi"}},
+    };
+    return all;
+}
+
+const Method* find_method(Context& c, const ast::Name& name) {
+    std::vector<std::string> names;
+    for (const Method& method : methods()) {
+        if (method.name == name.text) return &method;
+        names.emplace_back(method.name);
+    }
+    auto& error = c.report(Code::unknown_method, name.span,
+                           fmt::format("'{}' is not a calibration method; expected {}", name.text,
+                                       diag::alternatives(names)));
+    if (const auto near = diag::nearest_name(name.text, names))
+        error.note(fmt::format("did you mean '{}'?", *near));
+    return nullptr;
+}
+
+bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
+    const auto* number = std::get_if<ast::Number>(&argument.value);
+    const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
+                           Decimal::parse(number->text) < Decimal::parse("1");
+    if (open_unit) return true;
+    const auto [text, span] = number != nullptr
+                                  ? std::pair(number->text, number->span)
+                                  : std::pair(std::get<ast::Name>(argument.value).text,
+                                              std::get<ast::Name>(argument.value).span);
+    c.report(Code::calibration_argument, span,
+             fmt::format("alpha = {}; expected a number between 0 and 1, neither of them", text));
+    return false;
+}
+
+/// The arguments are those of the method, each once.
+bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& method) {
+    std::set<std::string_view> given;
+    const std::size_t errors = c.sink.errors();
+    for (const ast::Calibrated::Argument& argument : written.arguments) {
+        const std::string& key = argument.key.text;
+        const auto& known = method.arguments;
+        if (std::find(known.begin(), known.end(), key) == known.end())
+            c.report(Code::calibration_argument, argument.key.span,
+                     known.empty() ? fmt::format("{} has no arguments", method.name)
+                                   : fmt::format("{} has no argument '{}'; expected {}",
+                                                 method.name, key, diag::alternatives(known)));
+        else if (!given.insert(key).second)
+            c.report(Code::calibration_argument, argument.key.span,
+                     fmt::format("{} is given twice", key));
+    }
+    return c.sink.errors() == errors;
+}
+
+/// The text of alpha, empty for a method without; nothing where an argument had an error.
+std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
+                                    const Method& method) {
+    const std::size_t errors = c.sink.errors();
+    arguments_fit(c, written, method);
+    std::string alpha;
+    for (const ast::Calibrated::Argument& argument : written.arguments)
+        if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
+            alpha = std::get<ast::Number>(argument.value).text;
+    if (c.sink.errors() > errors) return std::nullopt;
+    if (!method.arguments.empty() && alpha.empty()) {
+        c.report(Code::calibration_argument, written.span,
+                 fmt::format("{} needs its error rate; expected {}", method.name,
+                             method.origin == ThresholdOrigin::adaptive
+                                 ? std::string(kAdaptiveForm)
+                                 : fmt::format("calibrated({}, alpha = 0.1)", method.name)));
+        return std::nullopt;
+    }
+    return alpha;
+}
+
+Threshold uncalibrated(const ast::Calibrated& written, const Method& method,
+                       const std::string& alpha) {
+    Threshold threshold;
+    threshold.origin = method.origin;
+    threshold.alpha = alpha;
+    threshold.text = alpha.empty() ? fmt::format("calibrated({})", method.name)
+                                   : fmt::format("calibrated({}, alpha = {})", method.name, alpha);
+    threshold.value64 = std::numeric_limits<double>::quiet_NaN();
+    threshold.value = std::numeric_limits<float>::quiet_NaN();
+    threshold.span = written.span;
+    return threshold;
+}
+
+constexpr std::string_view kMonitorForm =
+    "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
+
+/// The value of `against`, where it is one.
+std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
+    const auto* name = std::get_if<ast::Name>(&argument.value);
+    for (const Against against : {Against::missed_alarm, Against::missed_success})
+        if (name != nullptr && name->text == word(against)) return against;
+    const Span span = name != nullptr ? name->span : std::get<ast::Number>(argument.value).span;
+    c.report(Code::calibration_argument, span,
+             "expected against = missed_alarm or against = missed_success");
+    return std::nullopt;
+}
+
+}  // namespace
+
+std::string_view word(Against against) {
+    return against == Against::missed_alarm ? "missed_alarm" : "missed_success";
+}
+
+std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
+                                                           const ast::Calibrated& written) {
+    const Method* method = find_method(c, written.method);
+    if (method == nullptr) return std::nullopt;
+    if (method->origin != ThresholdOrigin::conformal) {
+        c.report(Code::unknown_method, written.method.span,
+                 fmt::format("a monitor is calibrated by conformal; '{}' is for predicates",
+                             method->name))
+            .note(fmt::format("expected {}", kMonitorForm));
+        return std::nullopt;
+    }
+    std::optional<Against> against;
+    ast::Calibrated rest = written;
+    std::erase_if(rest.arguments,
+                  [](const auto& argument) { return argument.key.text == "against"; });
+    const std::size_t errors = c.sink.errors();
+    for (const ast::Calibrated::Argument& argument : written.arguments) {
+        if (argument.key.text != "against") continue;
+        if (against)
+            c.report(Code::calibration_argument, argument.key.span, "against is given twice");
+        against = against_of(c, argument);
+    }
+    const auto alpha = alpha_of(c, rest, *method);
+    if (!alpha || c.sink.errors() > errors) return std::nullopt;
+    if (!against) {
+        c.report(Code::calibration_argument, written.span,
+                 fmt::format("a monitor is calibrated against one kind of error; expected {}",
+                             kMonitorForm));
+        return std::nullopt;
+    }
+    MonitorCalibration result{uncalibrated(written, *method, *alpha), *against};
+    result.threshold.text =
+        fmt::format("calibrated(conformal, alpha = {}, against = {})", *alpha, word(*against));
+    return result;
+}
+
+std::optional<Threshold> check_calibrated(Context& c, const ast::Calibrated& written) {
+    const Method* method = find_method(c, written.method);
+    if (method == nullptr) return std::nullopt;
+    const auto alpha = alpha_of(c, written, *method);
+    if (!alpha) return std::nullopt;
+    Threshold threshold = uncalibrated(written, *method, *alpha);
+    if (method->origin != ThresholdOrigin::adaptive) return threshold;
+    threshold.adaptation = check_adaptation(c, written, *alpha);
+    if (!threshold.adaptation) return std::nullopt;
+    const Adaptation& moves = *threshold.adaptation;
+    threshold.text = fmt::format("calibrated(adaptive, alpha = {}, gamma = {}, lo = {}, hi = {})",
+                                 *alpha, moves.gamma, moves.lo, moves.hi);
+    return threshold;
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,119 @@
+#include "check/guarantees/consistency.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+#include "check/guarantees/conformal.hpp"
+#include "check/numbers/decimal.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using thresholds::Entry;
+using Found = std::optional<Contradiction>;
+
+/// One score a demonstration, all of them kept; the other methods pool frames and keep the score
+/// that was taken.
+bool keeps_all(const Entry& entry) {
+    return entry.method == "conformal" || entry.method == "adaptive";
+}
+
+std::string plural(std::uint64_t n, std::string_view noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
+}
+
+/// As a number, and no longer than a line bears.
+std::string shown(const std::string& alpha) {
+    constexpr std::size_t kLongest = 40;
+    const std::string text = Decimal::parse(alpha).text();
+    return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
+}
+
+Found counts(const Entry& entry, const std::string& place) {
+    const std::uint64_t kept = keeps_all(entry) ? entry.n : 1;
+    if (entry.n == 0 || entry.n > kMaxScores)
+        return Contradiction{
+            fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
+    if (entry.scores.size() != kept)
+        return Contradiction{fmt::format(
+            "'{}.scores' has {}, expected {}", place, plural(entry.scores.size(), "element"),
+            keeps_all(entry) ? fmt::format("n of them, which is {}", kept)
+                             : "1, the score that was taken")};
+    for (std::size_t i = 1; i < entry.scores.size(); ++i)
+        if (entry.scores[i] < entry.scores[i - 1])
+            return Contradiction{
+                fmt::format("'{0}.scores[{1}]' is {2}, expected at least {3}, the score before it",
+                            place, i, entry.scores[i], entry.scores[i - 1])};
+    if (entry.method == "f1") return std::nullopt;
+    const std::uint64_t k = rank(entry.alpha, entry.n);
+    if (k > entry.n)
+        return Contradiction{
+            fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place,
+                        entry.n, scores_needed(entry.alpha), shown(entry.alpha))};
+    if (k != entry.k)
+        return Contradiction{
+            fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
+                        entry.k, k, shown(entry.alpha), plural(entry.n, "score"))};
+    return std::nullopt;
+}
+
+Found episodes_of(const Entry& entry, const std::string& place,
+                  const std::vector<std::string>& episodes) {
+    const std::string list = entry.against.empty() ? "episodes" : place + ".episodes";
+    const std::uint64_t least = keeps_all(entry) ? entry.n : 1;
+    if (episodes.size() < least)
+        return Contradiction{fmt::format(
+            "'{}' has {}, expected at least {}{}", list, plural(episodes.size(), "element"), least,
+            keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
+    std::set<std::string> seen;
+    for (std::size_t i = 0; i < episodes.size(); ++i)
+        if (!seen.insert(episodes[i]).second)
+            return Contradiction{fmt::format(
+                "'{}[{}]' is '{}', which stands in it before; expected each episode once", list, i,
+                episodes[i])};
+    return std::nullopt;
+}
+
+Found threshold(const Entry& entry, const std::string& place, bool upper_bound) {
+    const bool f1 = entry.method == "f1";
+    const std::uint64_t at = keeps_all(entry) ? at_rank(entry.k, entry.n, upper_bound) : 0;
+    const double score = entry.scores[at];
+    const float expected = f1 ? static_cast<float>(score) : beyond(score, upper_bound);
+    if (entry.epsilon == expected) return std::nullopt;
+    return Contradiction{
+        fmt::format("'{0}.epsilon' is {1:.9g}, expected {2:.9g}: {3} '{0}.scores[{4}]', {5:.17g}",
+                    place, entry.epsilon, expected, f1 ? "that is" : "the first float32 beyond", at,
+                    score),
+        true};
+}
+
+}  // namespace
+
+Found contradiction(const Entry& entry, const std::string& place, bool upper_bound,
+                    const std::vector<std::string>& episodes) {
+    if (Found found = counts(entry, place)) return found;
+    if (Found found = episodes_of(entry, place, episodes)) return found;
+    return threshold(entry, place, upper_bound);
+}
+
+std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
+                                          const thresholds::File& file) {
+    const std::set<std::string> known(file.episodes.begin(), file.episodes.end());
+    data::Recordings recordings;
+    for (const std::string& episode : known)
+        if (const auto found = file.recordings.find(episode); found != file.recordings.end())
+            recordings.add(found->second);
+    for (const std::string& episode : episodes) {
+        if (known.contains(episode)) return episode;
+        const auto recording = file.recordings.find(episode);
+        if (recording == file.recordings.end()) continue;
+        const auto overlap = recordings.find(recording->second);
+        if (overlap && (overlap->equal || file.allowances.empty())) return episode;
+    }
+    return std::nullopt;
+}
+
+}  // namespace etlc::check

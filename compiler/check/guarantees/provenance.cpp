@@ -1,0 +1,148 @@
+#include "check/guarantees/provenance.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "data/arrays/array.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+std::string weights_hash(const Distance& distance) {
+    return data::content_hash({distance.weights.size()}, distance.weights);
+}
+
+using Hashes = std::map<std::string, std::string>;
+
+/// Samples that are taken as they are need no hash: what is left of the declaration is in the
+/// episode.
+void add_input(const Input& input, Hashes& hashes) {
+    const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
+    if (!narrowed && !input.has_range && input.hold == 0) return;
+    hashes[input.name] = data::content_hash({static_cast<std::uint64_t>(input.type), input.hold},
+                                            {input.scale, input.range.low, input.range.high});
+}
+
+void add_distances(const Model& model, const Expr& expression, Hashes& hashes) {
+    if (expression.kind == Expr::Kind::distance) {
+        const Distance& distance = model.distances[expression.index];
+        const Target& target = model.targets[distance.target];
+        hashes[target.name] = target.hash;
+        if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
+    }
+    for (const Expr& argument : expression.arguments) add_distances(model, argument, hashes);
+}
+
+void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
+    add_distances(model, model.predicates[predicate].expression, hashes);
+    for (const Index input : model.predicates[predicate].inputs)
+        add_input(model.inputs[input], hashes);
+}
+
+std::vector<bool> reachable(const Model& model, Index root) {
+    std::vector<bool> seen(root + 1, false);
+    seen[root] = true;
+    for (Index i = root + 1; i-- > 0;) {
+        if (!seen[i]) continue;
+        for (const Index operand : model.formulas[i].operands) seen[operand] = true;
+    }
+    return seen;
+}
+
+/// Indices of what stands at the atoms of this kind.
+std::set<Index> atoms_in(const Model& model, const std::vector<bool>& seen, Formula::Kind kind) {
+    std::set<Index> found;
+    for (Index i = 0; i < seen.size(); ++i)
+        if (seen[i] && model.formulas[i].kind == kind) found.insert(model.formulas[i].index);
+    return found;
+}
+
+std::set<Index> predicates_in(const Model& model, const std::vector<bool>& seen) {
+    return atoms_in(model, seen, Formula::Kind::predicate);
+}
+
+void add_flags(const Model& model, const std::vector<bool>& seen, Hashes& hashes) {
+    for (const Index input : atoms_in(model, seen, Formula::Kind::boolean_input))
+        add_input(model.inputs[input], hashes);
+}
+
+/// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
+std::string text_with_definitions(const Model& model, Index formula,
+                                  const std::vector<bool>& seen) {
+    std::string text = print(model, formula);
+    std::string_view separator = " where ";
+    const auto epsilon = [](const Threshold& threshold) {
+        const bool literal = threshold.origin == ThresholdOrigin::literal;
+        return literal ? threshold.text
+                       : fmt::format("{:.9g} from {}", threshold.value, threshold.text);
+    };
+    const auto define = [&](const std::string& name, const std::string& definition) {
+        text += separator;
+        text += name + " = " + definition;
+        separator = ", ";
+    };
+    for (const Index index : predicates_in(model, seen)) {
+        const Predicate& predicate = model.predicates[index];
+        if (!predicate.name.empty())
+            define(predicate.name, predicate.text + epsilon(predicate.threshold));
+    }
+    if (lets_are_written_out(model, formula)) return text;
+    for (const Let& let : model.lets) {
+        const bool named = let.formula < seen.size() && seen[let.formula] && let.formula != formula;
+        if (named) define(let.name, print(model, let.formula));
+    }
+    return text;
+}
+
+}  // namespace
+
+std::string_view method_name(ThresholdOrigin origin) {
+    switch (origin) {
+        case ThresholdOrigin::f1: return "f1";
+        case ThresholdOrigin::conformal: return "conformal";
+        case ThresholdOrigin::class_conditional: return "class_conditional";
+        case ThresholdOrigin::adaptive: return "adaptive";
+        case ThresholdOrigin::literal: break;
+    }
+    return "";
+}
+
+Provenance provenance(const Model& model, Index predicate) {
+    Provenance result;
+    result.predicate = model.predicates[predicate].text;
+    add_predicate(model, predicate, result.targets);
+    for (const Truth& truth : model.truths) {
+        if (truth.predicate != predicate || truth.formula == kNone) continue;
+        const std::vector<bool> seen = reachable(model, truth.formula);
+        result.truth = text_with_definitions(model, truth.formula, seen);
+        for (const Index index : predicates_in(model, seen))
+            add_predicate(model, index, result.truth_targets);
+        add_flags(model, seen, result.truth_targets);
+    }
+    return result;
+}
+
+std::vector<Index> predicates_of(const Model& model, Index formula) {
+    const std::set<Index> found = predicates_in(model, reachable(model, formula));
+    return {found.begin(), found.end()};
+}
+
+Provenance provenance(const Model& model, const Monitor& monitor) {
+    Provenance result;
+    const std::vector<bool> seen = reachable(model, monitor.formula);
+    result.predicate = text_with_definitions(model, monitor.formula, seen);
+    add_flags(model, seen, result.targets);
+    for (const Index predicate : predicates_of(model, monitor.formula)) {
+        Provenance of = provenance(model, predicate);
+        result.targets.merge(of.targets);
+        result.targets.merge(of.truth_targets);
+        if (of.truth.empty()) continue;
+        if (!result.truth.empty()) result.truth += "; ";
+        result.truth += model.predicates[predicate].name + ": " + of.truth;
+    }
+    return result;
+}
+
+}  // namespace etlc::check

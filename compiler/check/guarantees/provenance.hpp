@@ -1,0 +1,42 @@
+// What a calibrated threshold depends on, besides the demonstrations.
+// Takes: a predicate of the model. Gives: the texts and hashes that `etlc calibrate` writes beside
+// its epsilon and that check/ compares when it reads one back. Keeps true: two specs with equal
+// provenance ask for the same threshold from the same demonstrations.
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "check/model/model.hpp"
+
+namespace etlc::check {
+
+struct Provenance {
+    std::string predicate;  ///< canonical text without the threshold
+    std::string truth;  ///< canonical text of the truth formula, its predicates and lets written
+                        ///< out; empty: none
+    /// Content hashes: of every target that the predicate measures against, by its name; of the
+    /// weights of a mahalanobis distance, by the distance's text; of what an input's declaration
+    /// makes of its samples (float16 or int8, its scale, range and hold), by the input's name,
+    /// where it takes them as they are not.
+    std::map<std::string, std::string> targets;
+    /// The same of what the truth formula measures and reads.
+    std::map<std::string, std::string> truth_targets;
+};
+
+Provenance provenance(const Model& model, Index predicate);
+
+/// How a thresholds file calls the method: "conformal"; empty for a literal threshold.
+std::string_view method_name(ThresholdOrigin origin);
+
+/// The same of a calibrated monitor: `predicate` is its formula with the predicates and their
+/// thresholds written out, `truth` the truths of those that have one, `targets` all that either
+/// measures.
+Provenance provenance(const Model& model, const Monitor& monitor);
+
+/// The predicates in a formula, ascending.
+std::vector<Index> predicates_of(const Model& model, Index formula);
+
+}  // namespace etlc::check

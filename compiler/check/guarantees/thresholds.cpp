@@ -1,0 +1,289 @@
+// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this
+// spec.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+
+#include "check/check.hpp"
+#include "check/guarantees/adaptation.hpp"
+#include "check/guarantees/calibrated.hpp"
+#include "check/guarantees/consistency.hpp"
+#include "check/guarantees/provenance.hpp"
+#include "check/numbers/decimal.hpp"
+#include "check/steps.hpp"
+#include "data/files/file.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+std::vector<Index> calibrated_predicates(Context& c) {
+    std::vector<Index> found;
+    for (Index i = 0; i < c.model.predicates.size(); ++i) {
+        const Predicate& predicate = c.model.predicates[i];
+        const bool sound = predicate.name.empty() || !c.scope.entity(NameKind::predicate, i).broken;
+        if (sound && predicate.threshold.origin != ThresholdOrigin::literal) found.push_back(i);
+    }
+    return found;
+}
+
+/// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
+std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
+                                                const Threshold& first) {
+    const bool is_default = c.options.thresholds_path.empty();
+    const std::string path =
+        is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
+    std::error_code error;
+    if (is_default && !std::filesystem::exists(path, error)) {
+        c.report(Code::thresholds_missing, first.span,
+                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}",
+                             name, path))
+            .note(
+                "'etlc calibrate' makes one from labelled demonstrations; --thresholds names "
+                "another");
+        return std::nullopt;
+    }
+    auto file = thresholds::read(path);
+    if (!file) {
+        c.sink.report(data::in_file(file.failure(), path))
+            .note(first.span, fmt::format("the threshold of '{}' is calibrated", name));
+        return std::nullopt;
+    }
+    c.dependencies.insert(path);
+    return std::move(*file);
+}
+
+bool same_number(const std::string& a, const std::string& b) {
+    return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
+}
+
+/// What differs between the spec and what the entry was calibrated for, a sentence each.
+class Differences {
+public:
+    /// `what`: predicate or formula.
+    Differences(const Model& model, const Threshold& threshold, std::string_view what,
+                Provenance now, const thresholds::Entry& entry)
+        : model_(model), threshold_(threshold), what_(what), entry_(entry), now_(std::move(now)) {}
+
+    std::vector<std::string> find() && {
+        const std::string_view method = method_name(threshold_.origin);
+        if (entry_.method != method)
+            add("method", entry_.method, method);
+        else if (!same_number(entry_.alpha, threshold_.alpha))
+            add("alpha", entry_.alpha, threshold_.alpha);
+        if (entry_.predicate != now_.predicate) add(what_, entry_.predicate, now_.predicate);
+        add_changed(now_.targets);
+        const bool by_array = entry_.truth == "array" && what_ == "predicate";
+        if (!by_array && entry_.truth != now_.truth)
+            add("truth", entry_.truth, now_.truth.empty() ? "none" : now_.truth);
+        else if (!by_array)
+            add_changed(now_.truth_targets);
+        add_gone(by_array);
+        return std::move(found_);
+    }
+
+private:
+    void add(std::string_view what, std::string_view then, std::string_view now) {
+        found_.push_back(
+            fmt::format("the {} was: {}; it is: {}", what, trimmed(then), trimmed(now)));
+    }
+
+    static std::string_view trimmed(std::string_view text) {
+        while (text.ends_with(' ')) text.remove_suffix(1);
+        return text;
+    }
+
+    void add_changed(const std::map<std::string, std::string>& hashes) {
+        for (const auto& [name, hash] : hashes) {
+            const auto then = entry_.targets.find(name);
+            // A target that the entry does not know belongs to a predicate that has changed, which
+            // has been said.
+            if (then == entry_.targets.end() && found_.empty())
+                found_.push_back(is_input(name)
+                                     ? fmt::format("the declaration of '{}' changed", name)
+                                     : fmt::format("it does not say for which {} of '{}'",
+                                                   what_is_hashed(name), name));
+            if (then != entry_.targets.end() && then->second != hash)
+                found_.push_back(fmt::format("the {} of '{}' changed", what_is_hashed(name), name));
+        }
+    }
+
+    /// What the entry was calibrated with, and is no more.
+    void add_gone(bool by_array) {
+        if (!found_.empty()) return;  // which has said so
+        for (const auto& [name, hash] : entry_.targets)
+            if (!now_.targets.contains(name) && (by_array || !now_.truth_targets.contains(name)))
+                found_.push_back(
+                    is_input(name)
+                        ? fmt::format("the declaration of '{}' changed", name)
+                        : fmt::format("it was calibrated with '{}', which does not come into it",
+                                      name));
+    }
+
+    bool is_input(const std::string& name) const {
+        return std::any_of(model_.inputs.begin(), model_.inputs.end(),
+                           [&](const Input& input) { return input.name == name; });
+    }
+
+    std::string_view what_is_hashed(const std::string& name) const {
+        const bool target =
+            std::any_of(model_.targets.begin(), model_.targets.end(),
+                        [&](const Target& declared) { return declared.name == name; });
+        return target ? "values" : is_input(name) ? "declaration" : "weights";
+    }
+
+    const Model& model_;
+    const Threshold& threshold_;
+    std::string_view what_;
+    const thresholds::Entry& entry_;
+    Provenance now_;
+    std::vector<std::string> found_;
+};
+
+constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
+
+/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for
+/// something else, which `differences` finds.
+template <class Compare>
+const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
+                                    const std::string& path,
+                                    const std::map<std::string, thresholds::Entry>& entries,
+                                    Compare differences) {
+    const auto found = entries.find(name);
+    if (found == entries.end()) {
+        c.report(Code::threshold_missing, threshold.span,
+                 fmt::format("{} has no threshold for '{}'", path, name))
+            .note(std::string(kAgain));
+        return nullptr;
+    }
+    const std::vector<std::string> all = differences(found->second);
+    if (all.empty()) return &found->second;
+    auto& error = c.report(
+        Code::threshold_stale, threshold.span,
+        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
+    for (const std::string& difference : all) error.note(difference);
+    error.note(std::string(kAgain));
+    return nullptr;
+}
+
+/// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
+void take(Context& c, const thresholds::Entry& entry, const std::string& place,
+          Threshold& threshold, bool upper_bound, const std::string& path,
+          const std::vector<std::string>& episodes) {
+    if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
+        auto& error =
+            c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
+        error.note(threshold.span, "it is for this");
+        if (found->by_hand)
+            error.note(
+                "a threshold that is chosen by hand is written into the spec, as in 'l2(z, goal) "
+                "<= 0.35'");
+        error.note(std::string(kAgain));
+        return;
+    }
+    threshold.value = entry.epsilon;
+    threshold.value64 = static_cast<double>(entry.epsilon);
+    threshold.n = entry.n;
+    threshold.k = entry.k;
+}
+
+void take_threshold(Context& c, Index index, const thresholds::File& file) {
+    Predicate& predicate = c.model.predicates[index];
+    Threshold& threshold = predicate.threshold;
+    const thresholds::Entry* entry = find_entry(
+        c, predicate.name, threshold, file.path, file.predicates,
+        [&](const thresholds::Entry& found) {
+            return Differences(c.model, threshold, "predicate", provenance(c.model, index), found)
+                .find();
+        });
+    if (entry == nullptr) return;
+    take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path,
+         file.episodes);
+    if (!threshold.adaptation || std::isnan(threshold.value)) return;
+    const auto begin = start(*threshold.adaptation, threshold.value, predicate.upper_bound());
+    if (!begin) {
+        c.report(Code::start_out_of_range, threshold.span, outside(predicate, threshold.value))
+            .note(
+                "give it lo and hi with room on both sides of the threshold; a new calibration is "
+                "not needed");
+        return;
+    }
+    threshold.value = *begin;
+    threshold.value64 = static_cast<double>(*begin);
+}
+
+void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
+    MonitorCalibration& calibration = *monitor.calibration;
+    Threshold& shift = calibration.threshold;
+    const thresholds::Entry* entry = find_entry(
+        c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
+            auto found =
+                Differences(c.model, shift, "formula", provenance(c.model, monitor), of).find();
+            if (of.against != word(calibration.against))
+                found.push_back(fmt::format("it was against: {}; it is: {}", of.against,
+                                            word(calibration.against)));
+            return found;
+        });
+    if (entry == nullptr) return;
+    const std::string place = "monitors." + monitor.name;
+    if (const auto shared = shared_episode(entry->episodes, file)) {
+        c.sink
+            .report(data::in_file(
+                {Code::not_disjoint,
+                 fmt::format("'{}' has '{}', which is one of 'episodes', or most of one: those "
+                             "that thresholds of predicates were calibrated on",
+                             place + ".episodes", *shared)},
+                file.path))
+            .note(shift.span, "it is for this")
+            .note(
+                "calibrate monitors on other episodes: fitted on the same ones, the thresholds are "
+                "better there "
+                "than they will be");
+        return;
+    }
+    take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path,
+         entry->episodes);
+}
+
+std::vector<Monitor*> calibrated_monitors(Context& c) {
+    std::vector<Monitor*> found;
+    for (Monitor& monitor : c.model.monitors)
+        if (monitor.calibration && monitor.formula != kNone) found.push_back(&monitor);
+    return found;
+}
+
+}  // namespace
+
+std::string default_thresholds_path(const std::string& spec_path) {
+    std::filesystem::path path(spec_path);
+    if (path.extension() == ".etl") path.replace_extension();
+    path += ".thresholds.json";
+    return path.string();
+}
+
+void check_thresholds(Context& c) {
+    if (c.options.allow_uncalibrated) return;
+    const std::vector<Index> predicates = calibrated_predicates(c);
+    const std::vector<Monitor*> monitors =
+        c.options.allow_uncalibrated_monitors ? std::vector<Monitor*>{} : calibrated_monitors(c);
+    if (predicates.empty() && monitors.empty()) return;
+    const auto file =
+        predicates.empty()
+            ? read_thresholds(c, monitors[0]->name, monitors[0]->calibration->threshold)
+            : read_thresholds(c, c.model.predicates[predicates[0]].name,
+                              c.model.predicates[predicates[0]].threshold);
+    if (!file) return;
+    for (const thresholds::Allowance& allowance : file->allowances)
+        c.model.reservations.push_back(thresholds::text(allowance));
+    const std::size_t errors = c.sink.errors();
+    for (const Index index : predicates) take_threshold(c, index, *file);
+    if (c.sink.errors() > errors) return;  // a monitor's shift is for the thresholds in it
+    for (Monitor* monitor : monitors) take_shift(c, *monitor, *file);
+}
+
+}  // namespace etlc::check

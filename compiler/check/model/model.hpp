@@ -1,0 +1,277 @@
+// The typed spec: names resolved, numbers rounded, data loaded, everything checked.
+// Takes its form from check/check.cpp. Gives: reference/, ir/, calibrate/ and evaluate/ all they
+// need; none of them sees the AST. Keeps true: every index is in range; every formula is
+// well-typed; a Formula's operands have smaller indices than itself (the formulas are a DAG in
+// topological order, a `let` is the node it names, not a copy).
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "source/source.hpp"
+
+namespace etlc::check {
+
+using source::Span;
+using Index = std::uint32_t;
+inline constexpr Index kNone = std::numeric_limits<Index>::max();
+
+// ---- what the monitor sees ----------------------------------------------------------------------
+
+enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
+
+/// Closed interval of float32 values, rounded outward from the decimal text.
+struct Range {
+    float low = -std::numeric_limits<float>::infinity();
+    float high = std::numeric_limits<float>::infinity();
+};
+
+struct Input {
+    std::string name;
+    InputType type = InputType::scalar;
+    std::uint32_t dimension = 1;  ///< of embeddings
+    float scale = 1.0F;           ///< i8: value = scale x integer
+    Range range;                  ///< scalars; a sample outside counts as missing
+    bool has_range = false;
+    std::uint32_t hold =
+        0;  ///< at most so many missing samples in a row are replaced by the last present one
+    Span span;
+
+    bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
+};
+
+/// Z_target: rows x dimension float32, row-major, all finite.
+struct Target {
+    std::string name;
+    std::uint32_t rows = 0;
+    std::uint32_t dimension = 0;
+    std::vector<float> values;
+    std::string
+        origin;  ///< "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec
+    std::string path;  ///< of the file it was read from, for dependency files; empty for a literal
+    std::string hash;  ///< content hash of shape and values, data::content_hash
+    Span span;
+};
+
+// ---- what is measured ---------------------------------------------------------------------------
+
+enum class Metric : std::uint8_t {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) id,
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+};
+enum class Aggregation : std::uint8_t { min, max, mean, kth };
+
+/// d aggregated over a target set: AGG DIST(point, target).
+struct Distance {
+    std::vector<Index> point;  ///< one embedding input, or the scalar inputs of a vector
+    bool point_is_vector = false;
+    Index target = 0;
+    Metric metric = Metric::l2;
+    Aggregation aggregation = Aggregation::min;
+    std::uint32_t kth = 1;       ///< the n-th smallest, from 1, for Aggregation::kth
+    std::vector<float> weights;  ///< mahalanobis: D x D row-major symmetric positive definite, or
+                                 ///< its D diagonal elements
+    bool weights_diagonal = false;
+    std::string weights_path;  ///< file the weights came from, for dependency files; empty: literal
+                               ///< or a target
+    std::string text;          ///< canonical text, "min l2(z, goal_a)"
+    Span span;
+};
+
+/// EXPR, evaluated in float32, each operation rounded once, in the order given.
+struct Expr {
+    enum class Kind : std::uint8_t {
+        number,
+        scalar,
+        distance,
+        negate,
+        add,
+        subtract,
+        multiply,
+        divide,
+        abs,
+        sqrt,
+        min,
+        max
+    };
+    Kind kind = Kind::number;
+    std::string text;    ///< number: its decimal text
+    double number = 0;   ///< the decimal text rounded to double: only truth formulas use it
+    float number32 = 0;  ///< the decimal text rounded once to float32
+    Index index = 0;     ///< scalar: input; distance: distance
+    std::vector<Expr> arguments;
+    Span span;
+};
+
+enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
+
+/// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
+/// formula's value is true
+/// (+inf) or false (-inf).
+enum class Values : std::uint8_t { robustness, boolean };
+
+enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
+
+/// How an adaptive threshold follows labels: by `widen` towards more detections after a positive
+/// frame that it missed, by `tighten` the other way after one that it found, and never out of
+/// `range`. All are multiples of `grid`, a power of two, and the ends of the range at most 2^24
+/// times it, so no float32 sum of them is rounded.
+struct Adaptation {
+    std::string gamma;  ///< decimal texts, as written
+    std::string lo;
+    std::string hi;
+    Range range;        ///< [lo, hi], rounded outward
+    float widen = 0;    ///< gamma (1 - alpha), rounded up
+    float tighten = 0;  ///< gamma alpha, rounded down
+    float grid = 0;
+};
+
+struct Threshold {
+    ThresholdOrigin origin = ThresholdOrigin::literal;
+    std::string text;    ///< literal: its decimal text; calibrated: "calibrated(conformal, alpha =
+                         ///< 0.10)" as canonical text
+    std::string alpha;   ///< decimal text, where the method has one
+    double value64 = 0;  ///< the literal's text rounded to double: only truth formulas use it
+    float value = 0;  ///< epsilon; NaN where uncalibrated is allowed (calibrate reads such a model)
+    std::uint64_t n = 0;                   ///< calibrated: how many scores it was chosen among
+    std::uint64_t k = 0;                   ///< and its rank among them; 0 for f1
+    std::optional<Adaptation> adaptation;  ///< of adaptive ones, whose `value` is where they start
+    Span span;
+
+    /// Every value that it may come to have.
+    Range range() const { return adaptation ? adaptation->range : Range{value, value}; }
+};
+
+/// Definition "Embedding Predicate": (Z_target, d, epsilon, CMP, a), or EXPR CMP epsilon in
+/// general. Robustness is epsilon - delta for <= and <, delta - epsilon for >= and >, one float32
+/// subtraction, with the epsilon of that step.
+struct Predicate {
+    std::string name;  ///< empty for a comparison that stands in a formula
+    std::string text;  ///< canonical text without the threshold: "min l2(z, goal_a) <= "
+    Expr expression;
+    Comparison comparison = Comparison::less_equal;
+    Threshold threshold;
+    Range delta;       ///< of the expression, by interval arithmetic, rounded outward
+    Range robustness;  ///< of epsilon - delta or delta - epsilon for any epsilon it may have,
+                       ///< rounded outward
+    std::vector<Index> inputs;  ///< all inputs it reads, ascending
+    Span span;
+
+    bool upper_bound() const {
+        return comparison == Comparison::less_equal || comparison == Comparison::less;
+    }
+    bool strict() const {
+        return comparison == Comparison::less || comparison == Comparison::greater;
+    }
+    /// What messages call it: its name, or what it says.
+    std::string shown() const { return name.empty() ? text + threshold.text : name; }
+    /// A plain aggregated distance, not a general expression: it has a nearest row.
+    bool plain_distance() const { return expression.kind == Expr::Kind::distance; }
+};
+
+// ---- what must hold -----------------------------------------------------------------------------
+
+inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
+
+struct Formula {
+    /// The operators of the language after desugaring words; `next` and `previous` stay as written.
+    enum class Kind : std::uint8_t {
+        constant_true,
+        constant_false,
+        predicate,
+        boolean_input,
+        negation,
+        conjunction,
+        disjunction,
+        implication,
+        equivalence,
+        next,
+        eventually,
+        always,
+        until,
+        weak_until,
+        release,
+        previous,
+        once,
+        historically,
+        since,
+    };
+    Kind kind = Kind::constant_true;
+    Index index = 0;              ///< predicate or boolean_input
+    std::vector<Index> operands;  ///< formulas; conjunction and disjunction have two or more
+    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next and previous
+    std::uint32_t high = kUnbounded;
+    Span span;
+};
+
+/// Which error a calibrated monitor is guaranteed against.
+enum class Against : std::uint8_t { missed_alarm, missed_success };
+
+/// `calibrated(conformal, alpha = 0.1, against = missed_alarm)` behind a formula: rho, lower and
+/// upper are less by threshold.value.
+struct MonitorCalibration {
+    Threshold threshold;
+    Against against = Against::missed_alarm;
+};
+
+struct Monitor {
+    std::string name;
+    Index formula = 0;
+    bool sliding = false;
+    std::uint32_t horizon = 0;  ///< sliding: steps of delay; 0 otherwise
+    std::optional<MonitorCalibration> calibration{};
+    Span span;
+};
+
+struct Truth {
+    Index predicate = 0;
+    Index formula = 0;  ///< over recorded inputs; past operators only
+    Span span;
+};
+
+struct Let {
+    std::string name;
+    Index formula = 0;
+    Span span;
+};
+
+struct Model {
+    std::string name;         ///< of the spec
+    source::File file;        ///< for the lines that comments quote
+    double step_seconds = 0;  ///< 0: no rate was given
+    std::vector<Input> inputs;
+    std::vector<Target> targets;
+    std::vector<Distance> distances;    ///< equal ones stand once
+    std::vector<Predicate> predicates;  ///< named ones first, in order of declaration, then those
+                                        ///< that stand in formulas
+    std::vector<Formula> formulas;
+    std::vector<Let> lets;
+    std::vector<Truth> truths;
+    std::vector<Monitor> monitors;
+    std::vector<std::string> dependencies;  ///< paths of every file loaded, for --depfile, sorted
+    /// What the thresholds' guarantees rest on besides exchangeable episodes, in words: that
+    /// episodes which overlap were allowed, and why.
+    std::vector<std::string> reservations;
+};
+
+/// The formula as canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)".
+/// Lets are written out, except in formulas of more than kMaxPrinted operators and atoms: there the
+/// names of lets stand below the top.
+std::string print(const Model& model, Index formula);
+inline constexpr std::uint64_t kMaxPrinted = 1000;
+bool lets_are_written_out(const Model& model, Index formula);
+
+/// The formula for people to read: lets are written out, and parts of a long one left out
+/// (check/model/elision.hpp).
+std::string shown(const Model& model, Index formula);
+
+/// The expression as canonical text: equal values of numbers are written alike.
+std::string print(const Model& model, const Expr& expression);
+
+}  // namespace etlc::check

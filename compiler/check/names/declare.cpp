@@ -1,0 +1,67 @@
+// First step: which names there are, and whether they can be borne.
+#include <fmt/format.h>
+
+#include "check/names/reserved.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bool is_namespace) {
+    if (name.text.empty()) return;
+    const auto why = why_forbidden(name.text, is_namespace);
+    if (!why) return;
+    std::string suggestion = allowed_name(name.text, kind, is_namespace);
+    while (!is_namespace && c.scope.find(suggestion) != nullptr) suggestion += "1";
+    c.report(Code::forbidden_name, name.span, fmt::format("'{}' {}", name.text, *why))
+        .note(fmt::format("another name would do, for example '{}'", suggestion));
+}
+
+void declare(Context& c, NameKind kind, const ast::Name& name) {
+    if (name.text.empty()) {
+        c.scope.declare(kind, name);
+        return;
+    }
+    const Entity* first = c.scope.declare(kind, name);
+    if (first == nullptr) return;
+    c.report(Code::duplicate_name, name.span, fmt::format("'{}' is declared twice", name.text))
+        .note(first->span, fmt::format("'{}' is declared here first", name.text));
+}
+
+void declare_all(Context& c) {
+    for (const ast::Declaration& declaration : c.spec.declarations) {
+        if (const auto* input = std::get_if<ast::Input>(&declaration))
+            for (const ast::Name& name : input->names) declare(c, NameKind::input, name);
+        if (const auto* target = std::get_if<ast::Target>(&declaration))
+            declare(c, NameKind::target, target->name);
+        if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))
+            declare(c, NameKind::predicate, predicate->name);
+        if (const auto* let = std::get_if<ast::Let>(&declaration))
+            declare(c, NameKind::let, let->name);
+        if (const auto* monitor = std::get_if<ast::Monitor>(&declaration))
+            declare(c, NameKind::monitor, monitor->name);
+    }
+    for (const ast::Name& name : c.spec.unreadable)
+        if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
+}
+
+}  // namespace
+
+void declare_names(Context& c) {
+    declare_all(c);
+    c.model.name = c.spec.name.text;
+    check_spelling(c, c.spec.name, "spec", true);
+    for (const NameKind kind :
+         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor})
+        for (const Entity& entity : c.scope.all(kind))
+            if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
+    if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)
+        c.report(Code::no_monitor, c.spec.name.span,
+                 "the spec has no monitor, so there is nothing to compile")
+            .note("add a line such as 'monitor m = G p;'");
+}
+
+}  // namespace etlc::check

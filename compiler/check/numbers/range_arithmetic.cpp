@@ -1,0 +1,141 @@
+#include "check/numbers/range_arithmetic.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "etlmon/distance/distances.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+constexpr float kInfinity = std::numeric_limits<float>::infinity();
+
+/// A real number: a double and the sign of what the double lacks of it.
+struct Exact {
+    double value;
+    double rest = 0;
+};
+
+float down(Exact x) {
+    const auto nearest = static_cast<float>(x.value);
+    const auto back = static_cast<double>(nearest);
+    const bool above = back > x.value || (back == x.value && x.rest < 0);
+    return above ? std::nextafter(nearest, -kInfinity) : nearest;
+}
+
+float up(Exact x) {
+    const auto nearest = static_cast<float>(x.value);
+    const auto back = static_cast<double>(nearest);
+    const bool below = back < x.value || (back == x.value && x.rest > 0);
+    return below ? std::nextafter(nearest, kInfinity) : nearest;
+}
+
+/// Knuth's TwoSum: the rest is what rounding the sum lost.
+Exact sum(float a, float b) {
+    const double x = a, y = b, s = x + y;
+    if (std::isinf(s)) return {s};
+    const double y_part = s - x;
+    return {s, (x - (s - y_part)) + (y - y_part)};
+}
+
+/// Exact in double. An infinite end stands for finite values without bound, so 0 x inf is 0.
+Exact product(float a, float b) {
+    if (a == 0 || b == 0) return {0};
+    return {static_cast<double>(a) * static_cast<double>(b)};
+}
+
+/// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound
+/// them.
+Exact quotient(float a, float b) {
+    if (std::isinf(b)) return {0};
+    const double x = a, y = b, q = x / y;
+    if (std::isinf(q)) return {q};
+    const double remainder = std::fma(-q, y, x);
+    return {q, y > 0 ? remainder : -remainder};
+}
+
+template <class Operation>
+Range hull_of_corners(const Range& a, const Range& b, Operation operation) {
+    Range result{kInfinity, -kInfinity};
+    for (const float x : {a.low, a.high}) {
+        for (const float y : {b.low, b.high}) {
+            const Exact corner = operation(x, y);
+            result.low = std::min(result.low, down(corner));
+            result.high = std::max(result.high, up(corner));
+        }
+    }
+    return result;
+}
+
+float sqrt_down(float x) {
+    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
+    const double square = static_cast<double>(root) * static_cast<double>(root);  // exact: 48 bits
+    return square > static_cast<double>(x) ? std::nextafter(root, 0.0F) : root;
+}
+
+float sqrt_up(float x) {
+    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
+    const double square = static_cast<double>(root) * static_cast<double>(root);
+    return square < static_cast<double>(x) ? std::nextafter(root, kInfinity) : root;
+}
+
+}  // namespace
+
+bool holds(const Range& range, float value) {
+    return range.low <= value && value <= range.high;
+}
+
+Range negate(const Range& a) {
+    return {0.0F - a.high, 0.0F - a.low};  // 0 rather than -0
+}
+
+Range add(const Range& a, const Range& b) {
+    return {down(sum(a.low, b.low)), up(sum(a.high, b.high))};
+}
+
+Range subtract(const Range& a, const Range& b) {
+    return add(a, negate(b));
+}
+
+Range multiply(const Range& a, const Range& b) {
+    return hull_of_corners(a, b, product);
+}
+
+Range divide(const Range& a, const Range& b) {
+    if (holds(b, 0.0F)) return kEverything;
+    return hull_of_corners(a, b, quotient);
+}
+
+Range abs(const Range& a) {
+    if (a.low >= 0) return a;
+    if (a.high <= 0) return negate(a);
+    return {0.0F, std::max(-a.low, a.high)};
+}
+
+Range sqrt(const Range& a) {
+    if (a.high < 0) return kEverything;
+    return {sqrt_down(std::max(a.low, 0.0F)), sqrt_up(a.high)};
+}
+
+Range min(const std::vector<Range>& ranges) {
+    Range result = ranges.front();
+    for (const Range& range : ranges)
+        result = {std::min(result.low, range.low), std::min(result.high, range.high)};
+    return result;
+}
+
+Range max(const std::vector<Range>& ranges) {
+    Range result = ranges.front();
+    for (const Range& range : ranges)
+        result = {std::max(result.low, range.low), std::max(result.high, range.high)};
+    return result;
+}
+
+Range range_of(Metric metric) {
+    if (metric == Metric::cosine) return {0.0F, etlmon::Cosine::kHighest};
+    if (metric == Metric::angular) return {0.0F, etlmon::Angular::kHighest};
+    return {0.0F, kInfinity};
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,33 @@
+// Interval arithmetic on float32 ranges, rounded outward.
+// Takes: the ranges of an operation's operands. Gives: a range that holds every result that the
+// operation can have on them in float32, whether each operation is rounded or two are fused. Keeps
+// true: low <= high, neither is a NaN; an operand outside a function's domain (sqrt of a negative
+// number) gives no result, so only the defined part counts.
+#pragma once
+
+#include <vector>
+
+#include "check/model/model.hpp"
+
+namespace etlc::check {
+
+inline constexpr Range kEverything{};
+
+bool holds(const Range& range, float value);
+
+Range negate(const Range& a);
+Range add(const Range& a, const Range& b);
+Range subtract(const Range& a, const Range& b);
+Range multiply(const Range& a, const Range& b);
+/// Everything where the divisor can be zero.
+Range divide(const Range& a, const Range& b);
+Range abs(const Range& a);
+/// Everything where no element of `a` has a square root.
+Range sqrt(const Range& a);
+Range min(const std::vector<Range>& ranges);
+Range max(const std::vector<Range>& ranges);
+
+/// What an aggregated distance can be: cosine [0, 2], angular [0, pi], the others [0, inf].
+Range range_of(Metric metric);
+
+}  // namespace etlc::check

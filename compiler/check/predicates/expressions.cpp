@@ -1,0 +1,129 @@
+#include "check/predicates/expressions.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/numbers/decimal.hpp"
+#include "check/numbers/range_arithmetic.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+using Kind = Expr::Kind;
+
+Kind kind_of(ast::Expr::Kind kind) {
+    switch (kind) {
+        case ast::Expr::Kind::number: return Kind::number;
+        case ast::Expr::Kind::name: return Kind::scalar;
+        case ast::Expr::Kind::distance: return Kind::distance;
+        case ast::Expr::Kind::negate: return Kind::negate;
+        case ast::Expr::Kind::add: return Kind::add;
+        case ast::Expr::Kind::subtract: return Kind::subtract;
+        case ast::Expr::Kind::multiply: return Kind::multiply;
+        case ast::Expr::Kind::divide: return Kind::divide;
+        case ast::Expr::Kind::abs: return Kind::abs;
+        case ast::Expr::Kind::sqrt: return Kind::sqrt;
+        case ast::Expr::Kind::min: return Kind::min;
+        case ast::Expr::Kind::max: return Kind::max;
+    }
+    return Kind::number;
+}
+
+bool set_number(Context& c, Expr& result, const ast::Expr& written) {
+    const std::size_t errors = c.sink.errors();
+    result.text = written.text;
+    result.number = to_double(written.text);
+    result.number32 = number32(c, {written.text, written.span});
+    return c.sink.errors() == errors;
+}
+
+bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
+    result.index = resolve(c, {written.text, written.span}, NameKind::input);
+    if (result.index == kNone) return false;
+    const Input& input = c.model.inputs[result.index];
+    if (input.type == InputType::scalar) return true;
+    auto& error = c.report(Code::operand_not_scalar, written.span,
+                           fmt::format("'{}' is {}; expected a scalar", written.text,
+                                       input.is_embedding() ? "an embedding" : "a bool"));
+    if (input.is_embedding())
+        error.note(
+            fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
+    if (!input.is_embedding()) error.note("a bool stands in formulas as it is");
+    return false;
+}
+
+std::optional<Expr> build(Context& c, const ast::Expr& written) {
+    Expr result;
+    result.kind = kind_of(written.kind);
+    result.span = written.span;
+    bool good = true;
+    if (result.kind == Kind::number) good = set_number(c, result, written);
+    if (result.kind == Kind::scalar) good = set_scalar(c, result, written);
+    if (result.kind == Kind::distance) {
+        result.index = check_distance(c, *written.distance);
+        good = result.index != kNone;
+    }
+    for (const ast::ExprPtr& argument : written.arguments) {
+        auto built = build(c, *argument);
+        if (built) result.arguments.push_back(std::move(*built));
+        good = good && built.has_value();
+    }
+    return good ? std::optional(std::move(result)) : std::nullopt;
+}
+
+void collect_inputs(const Model& model, const Expr& expression, std::vector<Index>& inputs) {
+    if (expression.kind == Kind::scalar) inputs.push_back(expression.index);
+    if (expression.kind == Kind::distance) {
+        const std::vector<Index>& point = model.distances[expression.index].point;
+        inputs.insert(inputs.end(), point.begin(), point.end());
+    }
+    for (const Expr& argument : expression.arguments) collect_inputs(model, argument, inputs);
+}
+
+bool is_zero(const Range& range) {
+    return range.low == 0 && range.high == 0;
+}
+
+}  // namespace
+
+std::optional<Expr> check_expression(Context& context, const ast::Expr& expression) {
+    return build(context, expression);
+}
+
+Range range_of(const Model& model, const Expr& expression, const Expr*& undefined) {
+    std::vector<Range> arguments;
+    for (const Expr& argument : expression.arguments)
+        arguments.push_back(range_of(model, argument, undefined));
+    switch (expression.kind) {
+        case Kind::number: return {expression.number32, expression.number32};
+        case Kind::scalar: return model.inputs[expression.index].range;
+        case Kind::distance: return range_of(model.distances[expression.index].metric);
+        case Kind::negate: return negate(arguments[0]);
+        case Kind::add: return add(arguments[0], arguments[1]);
+        case Kind::subtract: return subtract(arguments[0], arguments[1]);
+        case Kind::multiply: return multiply(arguments[0], arguments[1]);
+        case Kind::divide:
+            if (is_zero(arguments[1])) undefined = &expression;
+            return divide(arguments[0], arguments[1]);
+        case Kind::abs: return abs(arguments[0]);
+        case Kind::sqrt:
+            if (arguments[0].high < 0) undefined = &expression;
+            return sqrt(arguments[0]);
+        case Kind::min: return min(arguments);
+        case Kind::max: return max(arguments);
+    }
+    return kEverything;
+}
+
+std::vector<Index> inputs_of(const Model& model, const Expr& expression) {
+    std::vector<Index> inputs;
+    collect_inputs(model, expression, inputs);
+    std::sort(inputs.begin(), inputs.end());
+    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
+    return inputs;
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,158 @@
+// What the monitor sees: types, ranges, hold.
+#include <fmt/format.h>
+
+#include <cmath>
+
+#include "check/numbers/decimal.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+/// Of an embedding: a float32 vector of this length is 4 MiB.
+constexpr std::uint32_t kMaxDimension = 1U << 20U;
+/// Steps for which a sample may stand in for later ones.
+constexpr std::uint32_t kMaxHold = kMaxBound;
+
+/// Checks one declaration, whose names share everything but the name.
+class InputCheck {
+public:
+    InputCheck(Context& context, const ast::Input& declaration)
+        : c_(context), declaration_(declaration) {}
+
+    Input run() {
+        Input input;
+        input.type = type();
+        input.dimension = dimension();
+        input.scale = scale();
+        set_range(input);
+        input.hold = hold();
+        return input;
+    }
+
+    bool broken() const { return broken_; }
+
+private:
+    diag::Diagnostic& report(Code code, Span span, std::string message) {
+        broken_ = true;
+        return c_.report(code, span, std::move(message));
+    }
+
+    bool is_embedding() const { return declaration_.type.dimension.has_value(); }
+
+    InputType type() const {
+        switch (declaration_.type.kind) {
+            case ast::Type::Kind::f32: return is_embedding() ? InputType::f32 : InputType::scalar;
+            case ast::Type::Kind::f16: return InputType::f16;
+            case ast::Type::Kind::i8: return InputType::i8;
+            case ast::Type::Kind::boolean: return InputType::boolean;
+        }
+        return InputType::scalar;
+    }
+
+    std::uint32_t dimension() {
+        if (!is_embedding()) return 1;
+        const ast::Number& number = *declaration_.type.dimension;
+        const auto value = Decimal::parse(number.text).whole(kMaxDimension);
+        if (value && *value > 0) return static_cast<std::uint32_t>(*value);
+        report(Code::dimension_out_of_range, number.span,
+               fmt::format("the dimension {} is not a whole number from 1 to {}", number.text,
+                           kMaxDimension));
+        return 1;
+    }
+
+    float scale() {
+        const ast::Type& type = declaration_.type;
+        if (type.scale) return positive_scale(*type.scale);
+        if (type.kind == ast::Type::Kind::i8)
+            report(Code::scale_form, type.span,
+                   "an i8 embedding without a scale; expected i8[D] scale S, where value = S x "
+                   "integer");
+        return 1.0F;
+    }
+
+    float positive_scale(const ast::Number& number) {
+        if (!Decimal::parse(number.text).is_positive()) {
+            report(Code::scale_form, number.span,
+                   fmt::format("the scale is {}; expected a positive number", number.text));
+            return 1.0F;
+        }
+        const std::size_t errors = c_.sink.errors();
+        const float value = number32(c_, number);
+        if (c_.sink.errors() > errors) broken_ = true;
+        if (std::isfinite(value * 128.0F)) return value;
+        report(Code::scale_form, number.span,
+               fmt::format("128 times the scale {} is beyond float32", number.text));
+        return 1.0F;
+    }
+
+    void set_range(Input& input) {
+        if (!declaration_.range) return;
+        const ast::Range& range = *declaration_.range;
+        if (input.type != InputType::scalar) {
+            report(Code::range_form, range.span,
+                   fmt::format("only f32 scalars have a range; this input is {}",
+                               input.type == InputType::boolean ? "a bool" : "an embedding"));
+            return;
+        }
+        input.has_range = true;
+        const bool low_is_infinite = range.low.text == "inf" || range.low.text == "-inf";
+        const bool high_is_infinite = range.high.text == "inf" || range.high.text == "-inf";
+        const bool reversed = range.low.text == "inf" || range.high.text == "-inf" ||
+                              (!low_is_infinite && !high_is_infinite &&
+                               Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
+        if (reversed) {
+            report(
+                Code::range_form, range.span,
+                fmt::format("the range [{}, {}] holds no number", range.low.text, range.high.text));
+            return;
+        }
+        if (!low_is_infinite) check_size(range.low);
+        if (!high_is_infinite) check_size(range.high);
+        input.range = {round_down(range.low.text), round_up(range.high.text)};
+    }
+
+    void check_size(const ast::Number& number) {
+        float value = 0;
+        if (to_float(number.text, value) != Fit::overflow) return;
+        report(Code::number_overflow, number.span,
+               fmt::format("{} is beyond the largest float32; an open end is written {}inf",
+                           number.text, number.text.starts_with('-') ? "-" : ""));
+    }
+
+    std::uint32_t hold() {
+        if (!declaration_.hold) return 0;
+        const ast::Number& number = *declaration_.hold;
+        if (const auto steps = Decimal::parse(number.text).whole(kMaxHold))
+            return static_cast<std::uint32_t>(*steps);
+        report(Code::hold_out_of_range, number.span,
+               fmt::format("hold {} is not a whole number of steps from 0 to {}", number.text,
+                           kMaxHold));
+        return 0;
+    }
+
+    Context& c_;
+    const ast::Input& declaration_;
+    bool broken_ = false;
+};
+
+}  // namespace
+
+void check_inputs(Context& c) {
+    for_each_declaration<ast::Input>(c.spec, [&](const ast::Input& declaration, Index) {
+        InputCheck check(c, declaration);
+        Input input = check.run();
+        for (const ast::Name& name : declaration.names) {
+            input.name = name.text;
+            input.span = name.span;
+            c.scope.entity(NameKind::input, static_cast<Index>(c.model.inputs.size())).broken =
+                check.broken();
+            c.model.inputs.push_back(input);
+        }
+    });
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,255 @@
+#include "data/files/atomic_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <climits>
+#include <cstdio>
+#include <filesystem>
+#include <utility>
+
+#include "data/files/file.hpp"
+
+namespace etlc::data {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr unsigned kMostNames =
+    1000;                        ///< of temporary files, before the folder counts as full of them
+constexpr int kMostLinks = 40;   ///< in a chain of symbolic links, as in Linux
+constexpr int kMostTurns = 200;  ///< that a commit waits for others, kTurnMicroseconds each
+constexpr unsigned kTurnMicroseconds = 5000;
+
+/// The file that a chain of symbolic links ends at, whether it exists or not; empty where the chain
+/// does not end.
+fs::path behind_links(fs::path path) {
+    for (int i = 0; i < kMostLinks; ++i) {
+        std::string target(PATH_MAX, '\0');
+        const ssize_t size = ::readlink(path.c_str(), target.data(), target.size());
+        if (size < 0) return path;
+        target.resize(static_cast<std::size_t>(size));
+        path = path.parent_path() / target;
+    }
+    return {};
+}
+
+std::string temporary_name(unsigned number) {
+    return fmt::format(".etlc-{}-{}.part", ::getpid(), number);
+}
+
+/// "folder/", "folder" and the like: nothing that a file could be called.
+bool names_no_file(const fs::path& path) {
+    return !path.has_filename() || path.filename() == "." || path.filename() == "..";
+}
+
+/// Held while names in a folder change hands.
+class Turn {
+public:
+    /// Waits for a second at most: the lock keeps files of two calls apart, but nothing hangs on
+    /// it.
+    explicit Turn(int folder)
+        : folder_(uninterrupted(
+              [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
+        for (int i = 0; folder_ && i < kMostTurns; ++i) {
+            if (::flock(*folder_, LOCK_EX | LOCK_NB) == 0 ||
+                (errno != EWOULDBLOCK && errno != EINTR))
+                return;
+            ::usleep(kTurnMicroseconds);
+        }
+    }
+
+private:
+    Descriptor folder_;
+};
+
+}  // namespace
+
+AtomicFile::AtomicFile(std::string name, Descriptor folder, Descriptor file, diag::Code code)
+    : name_(std::move(name)), folder_(std::move(folder)), file_(std::move(file)), code_(code) {}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : state_(std::exchange(other.state_, State::direct)),
+      name_(std::move(other.name_)),
+      temporary_(std::move(other.temporary_)),
+      folder_(std::move(other.folder_)),
+      file_(std::move(other.file_)),
+      code_(other.code_) {}
+
+AtomicFile::~AtomicFile() {
+    take_back();
+}
+
+diag::Result<AtomicFile> AtomicFile::create(const std::string& path, diag::Code code) {
+    const auto refuse = [&](int error) {
+        // A missing file is no obstacle to writing; ENOENT is about its folder.
+        const bool no_folder = error == ENOENT || error == ENOTDIR;
+        return diag::Failure{code, fmt::format("cannot be written: {}",
+                                               no_folder ? "no such folder" : error_words(error))};
+    };
+    const auto directly = [&](int descriptor) -> diag::Result<AtomicFile> {
+        if (descriptor < 0) return refuse(errno);
+        return AtomicFile({}, Descriptor(), Descriptor(descriptor), code);
+    };
+    // They are written where they stand: behind them may be a file that others write to as well.
+    if (path == "/dev/stdout")
+        return directly(::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    if (path == "/dev/stderr")
+        return directly(::fcntl(STDERR_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1));
+    struct stat status {};
+    const bool exists = ::stat(path.c_str(), &status) == 0;
+    if (exists && S_ISDIR(status.st_mode)) return refuse(EISDIR);
+    if (exists && !S_ISREG(status.st_mode))
+        return directly(uninterrupted([&] { return ::open(path.c_str(), O_WRONLY | O_CLOEXEC); }));
+    if (exists && ::access(path.c_str(), W_OK) != 0) return refuse(errno);
+
+    const fs::path target = behind_links(path);
+    if (target.empty()) return refuse(ELOOP);
+    if (names_no_file(target)) return refuse(ENOENT);
+    const fs::path parent = target.has_parent_path() ? target.parent_path() : fs::path(".");
+    Descriptor folder(
+        uninterrupted([&] { return ::open(parent.c_str(), O_PATH | O_DIRECTORY | O_CLOEXEC); }));
+    if (!folder) return refuse(errno);
+    AtomicFile file(target.filename().string(), std::move(folder), Descriptor(), code);
+    if (!file.open_temporary(exists ? 0600 : 0666)) return refuse(errno);
+    if (exists) file.copy_permissions(status);
+    return file;
+}
+
+bool AtomicFile::open_temporary(mode_t mode) {
+    const auto open = [&](const char* name, int flags) {
+        return uninterrupted(
+            [&] { return ::openat(*folder_, name, O_WRONLY | O_CLOEXEC | flags, mode); });
+    };
+    // A nameless file gets its name by way of /proc.
+    if (::access("/proc/self/fd", X_OK) == 0) file_ = Descriptor(open(".", O_TMPFILE));
+    state_ = State::nameless;
+    if (file_) return true;
+    for (unsigned i = 0; i < kMostNames; ++i) {
+        std::string name = temporary_name(i);
+        file_ = Descriptor(open(name.c_str(), O_CREAT | O_EXCL));
+        if (file_) {
+            state_ = State::temporary;
+            temporary_ = std::move(name);
+            return true;
+        }
+        if (errno != EEXIST) return false;
+    }
+    return false;
+}
+
+void AtomicFile::copy_permissions(const struct stat& of) {
+    mode_t mode = of.st_mode & 0777;
+    // Where the group cannot be kept, the group that the new file has instead may do no more than
+    // everybody.
+    if (::fchown(*file_, of.st_uid, of.st_gid) != 0 &&
+        ::fchown(*file_, static_cast<uid_t>(-1), of.st_gid) != 0)
+        mode &= ~static_cast<mode_t>(S_IRWXG) | (mode & S_IRWXO) << 3U;
+    static_cast<void>(
+        ::fchmod(*file_, mode));  // it stays 0600: less than what was there may, never more
+}
+
+std::optional<diag::Failure> AtomicFile::failed(int error) const {
+    return diag::Failure{code_, fmt::format("cannot be written: {}", error_words(error))};
+}
+
+std::optional<diag::Failure> AtomicFile::write(std::string_view bytes) {
+    if (!write_all(*file_, bytes)) return failed(errno);
+    return {};
+}
+
+std::optional<diag::Failure> AtomicFile::finish() {
+    const int copy = ::fcntl(*file_, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+    if (copy < 0 || ::close(copy) != 0) return failed(errno);
+    return {};
+}
+
+bool AtomicFile::link_as(const char* name) {
+    const std::string nameless = fmt::format("/proc/self/fd/{}", *file_);
+    return ::linkat(AT_FDCWD, nameless.c_str(), *folder_, name, AT_SYMLINK_FOLLOW) == 0;
+}
+
+bool AtomicFile::name_temporarily() {
+    for (unsigned i = 0; i < kMostNames; ++i) {
+        std::string name = temporary_name(i);
+        if (link_as(name.c_str())) {
+            state_ = State::temporary;
+            temporary_ = std::move(name);
+            return true;
+        }
+        if (errno != EEXIST) return false;
+    }
+    return false;
+}
+
+std::optional<diag::Failure> AtomicFile::place() {
+    if (state_ == State::direct) return {};
+    if (state_ == State::nameless && link_as(name_.c_str())) {
+        state_ = State::made;
+        return {};
+    }
+    if (state_ == State::nameless && (errno != EEXIST || !name_temporarily())) return failed(errno);
+    struct stat status {};
+    const bool exists = ::fstatat(*folder_, name_.c_str(), &status, AT_SYMLINK_NOFOLLOW) == 0;
+    if (exists && S_ISDIR(status.st_mode))
+        return failed(EISDIR);  // with which a name could be exchanged, too
+    if (::renameat2(*folder_, temporary_.c_str(), *folder_, name_.c_str(), RENAME_EXCHANGE) == 0) {
+        state_ = State::exchanged;
+        return {};
+    }
+    // There is nothing under the name, or the file system cannot exchange names.
+    if (::renameat(*folder_, temporary_.c_str(), *folder_, name_.c_str()) != 0)
+        return failed(errno);
+    state_ = exists ? State::kept : State::made;
+    return {};
+}
+
+void AtomicFile::keep() {
+    if (state_ == State::exchanged) ::unlinkat(*folder_, temporary_.c_str(), 0);
+    if (state_ != State::direct) state_ = State::kept;
+}
+
+void AtomicFile::take_back() {
+    if (state_ == State::exchanged &&
+        ::renameat2(*folder_, temporary_.c_str(), *folder_, name_.c_str(), RENAME_EXCHANGE) == 0)
+        state_ = State::temporary;
+    if (state_ == State::temporary) ::unlinkat(*folder_, temporary_.c_str(), 0);
+    if (state_ == State::made) ::unlinkat(*folder_, name_.c_str(), 0);
+    state_ = State::direct;
+}
+
+std::optional<diag::Failure> AtomicFile::commit() {
+    if (auto uncommitted = commit_all({this})) return uncommitted->failure;
+    return {};
+}
+
+std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
+    std::size_t n = 0;
+    const auto all = [&](auto step) -> std::optional<Uncommitted> {
+        for (n = 0; n < files.size(); ++n)
+            if (auto failure = (files[n]->*step)()) return Uncommitted{n, *failure};
+        return {};
+    };
+    if (auto uncommitted = all(&AtomicFile::finish)) return uncommitted;
+    const Turn turn(files.empty() ? -1 : *files.back()->folder_);
+    if (auto uncommitted = all(&AtomicFile::place)) {
+        while (n > 0) files[--n]->take_back();
+        return uncommitted;
+    }
+    for (AtomicFile* file : files) file->keep();
+    return {};
+}
+
+std::optional<diag::Failure> write_file_atomically(const std::string& path, std::string_view bytes,
+                                                   diag::Code code) {
+    auto file = AtomicFile::create(path, code);
+    if (!file) return file.failure();
+    if (auto failure = file->write(bytes)) return failure;
+    return file->commit();
+}
+
+}  // namespace etlc::data

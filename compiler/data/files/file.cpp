@@ -1,0 +1,78 @@
+#include "data/files/file.hpp"
+
+#include <fmt/format.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+
+namespace etlc::data {
+namespace {
+
+struct CloseFile {
+    void operator()(std::FILE* file) const { std::fclose(file); }
+};
+
+}  // namespace
+
+std::string error_words(int error) {
+    switch (error) {
+        case ENOENT:
+        case ENOTDIR: return "no such file";
+        case EISDIR: return "is a directory, expected a file";
+        case EACCES:
+        case EPERM: return "permission denied";
+        case ENOSPC: return "no space left on the device";
+        case ENOMEM: return "not enough memory";
+        case EBADF: return "it is closed";
+        case EFBIG: return "larger than a file may be";
+        default: return std::strerror(error);
+    }
+}
+
+std::optional<std::string> why_unreadable(const std::string& path) {
+    struct stat status {};
+    if (::stat(path.c_str(), &status) != 0) return error_words(errno);
+    if (S_ISDIR(status.st_mode)) return error_words(EISDIR);
+    if (::access(path.c_str(), R_OK) != 0) return error_words(errno);
+    return {};
+}
+
+diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code) {
+    if (auto why = why_unreadable(path)) return diag::Failure{code, *why};
+    const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
+    if (!file) return diag::Failure{code, error_words(errno)};
+    std::string bytes;
+    std::array<char, 1U << 16U> buffer;
+    for (;;) {
+        const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get());
+        if (bytes.size() + n > limit)
+            return diag::Failure{
+                code, fmt::format("is larger than {} bytes, the most that is read", limit)};
+        bytes.append(buffer.data(), n);
+        if (n < buffer.size()) break;
+    }
+    if (std::ferror(file.get()) != 0)
+        return diag::Failure{code, fmt::format("cannot be read: {}", error_words(errno))};
+    return bytes;
+}
+
+diag::Failure out_of_memory() {
+    return {diag::Code::out_of_memory, "there is not enough memory to read it"};
+}
+
+diag::Diagnostic in_file(const diag::Failure& failure, const std::string& path) {
+    diag::Diagnostic result{};
+    result.code = failure.code;
+    result.message = failure.message;
+    result.file = path;
+    result.line = failure.line;
+    result.column = failure.column;
+    return result;
+}
+
+}  // namespace etlc::data

@@ -1,0 +1,81 @@
+#include "data/files/hash.hpp"
+
+#include <fmt/format.h>
+
+#include <bit>
+#include <string>
+#include <vector>
+
+#include "data/arrays/array.hpp"
+#include "etlmon/distance/checksum.hpp"
+
+namespace etlc::data {
+namespace {
+
+using namespace etlmon::detail;
+
+std::uint64_t little_endian(const char* bytes, int n) {
+    std::uint64_t result = 0;
+    for (int i = 0; i < n; ++i)
+        result |= static_cast<std::uint64_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+    return result;
+}
+
+/// Whole stripes of 32 bytes; `bytes` keeps what is left.
+std::uint64_t stripes(std::string_view& bytes, std::uint64_t seed) {
+    const std::size_t whole = bytes.size() / 32 * 32;
+    XxhLanes lanes(seed);
+    lanes.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), whole);
+    bytes.remove_prefix(whole);
+    return lanes.merged();
+}
+
+/// What is left after the stripes, fewer than 32 bytes, and the mixing at the end.
+std::uint64_t finish(std::uint64_t hash, std::string_view bytes) {
+    for (; bytes.size() >= 8; bytes.remove_prefix(8))
+        hash = rotated(hash ^ xxh_round(0, little_endian(bytes.data(), 8)), 27) * kXxhPrime1 +
+               kXxhPrime4;
+    if (bytes.size() >= 4) {
+        hash = rotated(hash ^ (little_endian(bytes.data(), 4) * kXxhPrime1), 23) * kXxhPrime2 +
+               kXxhPrime3;
+        bytes.remove_prefix(4);
+    }
+    for (; !bytes.empty(); bytes.remove_prefix(1))
+        hash = rotated(hash ^ (little_endian(bytes.data(), 1) * kXxhPrime5), 11) * kXxhPrime1;
+    return xxh_finish(hash);
+}
+
+void append(std::string& bytes, std::uint64_t value, int n) {
+    for (int i = 0; i < n; ++i) bytes.push_back(static_cast<char>((value >> (8 * i)) & 0xff));
+}
+
+}  // namespace
+
+std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed) {
+    const std::uint64_t length = bytes.size();
+    const std::uint64_t hash = length >= 32 ? stripes(bytes, seed) : seed + kXxhPrime5;
+    return finish(hash + length, bytes);
+}
+
+std::string content_hash(const std::vector<std::uint64_t>& shape,
+                         const std::vector<float>& values) {
+    constexpr std::size_t kPieceBytes = 1U << 16U;
+    std::string bytes;
+    append(bytes, shape.size(), 8);
+    for (const std::uint64_t n : shape) append(bytes, n, 8);
+    const std::uint64_t length = bytes.size() + 4 * values.size();
+    XxhLanes lanes(0);
+    for (const float value : values) {
+        append(bytes, std::bit_cast<std::uint32_t>(value), 4);
+        if (bytes.size() < kPieceBytes) continue;
+        const std::size_t whole = bytes.size() / 32 * 32;
+        lanes.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), whole);
+        bytes.erase(0, whole);
+    }
+    const std::size_t whole = bytes.size() / 32 * 32;
+    lanes.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), whole);
+    const std::uint64_t hash = length >= 32 ? lanes.merged() : kXxhPrime5;
+    return fmt::format("{:016x}", finish(hash + length, std::string_view(bytes).substr(whole)));
+}
+
+}  // namespace etlc::data

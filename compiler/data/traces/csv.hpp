@@ -1,0 +1,72 @@
+// Rows of a .csv file, one at a time: RFC 4180, with LF or CRLF line ends and an optional UTF-8
+// byte order mark. Takes: a stream of bytes. Gives: the cells of a row with their line and column.
+// Blanks around unquoted cells are dropped. Keeps true: memory is one row, at most kMaxRowBytes;
+// nothing is guessed: a stray quote or a lone CR is an error.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/files/bytes.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::data {
+
+/// Of one row, without its line end.
+inline constexpr std::size_t kMaxRowBytes = 4U << 20U;
+
+class CsvReader {
+public:
+    explicit CsvReader(std::unique_ptr<ByteSource> source);
+
+    /// Reads the next row; false at the end of the file. An empty line is a row of one empty cell.
+    diag::Result<bool> next();
+
+    std::size_t cells() const { return cells_.size(); }
+    std::string_view cell(std::size_t i) const;
+    bool empty(std::size_t i) const { return cells_[i].begin == cells_[i].end; }
+    /// Where cell `i` begins, both from 1; columns count code points.
+    std::uint32_t line(std::size_t i) const { return cells_[i].line; }
+    std::uint32_t column(std::size_t i) const { return cells_[i].column; }
+    /// The line that the row begins on.
+    std::uint32_t row_line() const { return row_line_; }
+
+private:
+    struct Cell {
+        std::size_t begin = 0;  ///< in row_
+        std::size_t end = 0;
+        std::uint32_t line = 1;
+        std::uint32_t column = 1;
+    };
+    static constexpr int kEnd = -1;
+    static constexpr int kError = -2;
+
+    int peek();
+    void advance();
+    bool take_line_end();
+    void read_cell();
+    void read_quoted();
+    void read_plain();
+    void check_length();
+    void skip_byte_order_mark();
+    void fail(std::string message, std::uint32_t line, std::uint32_t column);
+
+    std::unique_ptr<ByteSource> source_;
+    std::array<char, 1U << 16U> buffer_;
+    std::size_t at_ = 0;
+    std::size_t filled_ = 0;
+    std::uint32_t line_ = 1;
+    std::uint32_t column_ = 1;
+    std::string row_;
+    std::vector<Cell> cells_;
+    std::uint32_t row_line_ = 1;
+    bool started_ = false;
+    std::optional<diag::Failure> failure_;
+};
+
+}  // namespace etlc::data

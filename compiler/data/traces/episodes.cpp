@@ -1,0 +1,147 @@
+#include "data/traces/episodes.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <filesystem>
+#include <set>
+#include <system_error>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/traces/hdf5.hpp"
+
+namespace etlc::data {
+namespace {
+
+namespace fs = std::filesystem;
+using diag::Code;
+
+constexpr std::string_view kPatternCharacters = "*?[";
+constexpr std::string_view kExpected = "expected files that end in .npz, .csv or .h5";
+
+bool is_directory(const std::string& path) {
+    std::error_code error;
+    return fs::is_directory(path, error);
+}
+
+/// The traces in a folder, not in those below it.
+diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
+    std::vector<std::string> files;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+        const std::string path = it->path().string();
+        if (is_trace(path) && !is_directory(path)) files.push_back(path);
+    }
+    if (error)
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("cannot be read: {}", error.message())};
+    if (files.empty())
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("holds no episodes, {}", kExpected)};
+    return files;
+}
+
+/// What matches; folders among it stand for the traces in them.
+diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
+    glob_t found{};
+    const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
+    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    if (status == GLOB_NOMATCH)
+        return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
+    if (status != 0)
+        return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
+    std::vector<std::string> files;
+    for (const std::string& path : paths) {
+        if (!is_directory(path)) {
+            files.push_back(path);
+            continue;
+        }
+        const auto inside = in_folder(path);
+        if (inside) files.insert(files.end(), inside->begin(), inside->end());
+    }
+    if (files.empty())
+        return diag::Failure{Code::unreadable_trace,
+                             fmt::format("only folders match, without episodes, {}", kExpected)};
+    return files;
+}
+
+/// A path that exists is what it says, whatever characters are in it.
+diag::Result<std::vector<std::string>> expand(const std::string& argument) {
+    if (is_directory(argument)) return in_folder(argument);
+    const auto why = why_unreadable(argument);
+    if (!why) return std::vector<std::string>{argument};
+    if (argument.find_first_of(kPatternCharacters) != std::string::npos) return matching(argument);
+    return diag::Failure{Code::unreadable_trace, *why};
+}
+
+}  // namespace
+
+std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
+                                       const std::string& groups, diag::Sink& sink) {
+    std::vector<std::string> episodes;
+    std::set<std::string> seen;
+    for (const std::string& argument : arguments) {
+        auto files = expand(argument);
+        if (!files) {
+            sink.report(in_file(files.failure(), argument));
+            continue;
+        }
+        std::sort(files->begin(), files->end());
+        for (const std::string& file : *files) {
+            if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
+            if (groups.empty() || !is_hdf5(file)) {
+                episodes.push_back(file);
+                continue;
+            }
+            const auto found = list_hdf5(file, groups);
+            if (!found) sink.report(in_file(found.failure(), file));
+            if (found)
+                for (const std::string& group : *found) episodes.push_back(file + ":" + group);
+        }
+    }
+    return episodes;
+}
+
+EpisodeHash::EpisodeHash(std::vector<HashedInput> inputs) : inputs_(std::move(inputs)) {
+    for (const HashedInput& input : inputs_) readers_.emplace_back(input.is_vector);
+}
+
+void EpisodeHash::add(const Sample& sample) {
+    constexpr std::uint32_t kNaN = 0x7fc00000;  // one pattern of bits for all that is missing
+    const auto bits_of = [](double value) {
+        const auto narrowed = static_cast<float>(value);
+        const auto bits = narrowed == narrowed ? std::bit_cast<std::uint32_t>(narrowed) : kNaN;
+        return std::endian::native == std::endian::big ? __builtin_bswap32(bits) : bits;
+    };
+    bits_.clear();
+    for (std::size_t i = 0; i < inputs_.size(); ++i) {
+        const std::vector<double>& values = sample.values[inputs_[i].channel];
+        const bool present = sample.present[inputs_[i].channel];
+        const std::size_t begin = bits_.size();
+        bits_.resize(begin + values.size());
+        std::transform(values.begin(), values.end(), bits_.begin() + static_cast<long>(begin),
+                       [&](double value) { return bits_of(present ? value : NAN); });
+        readers_[i].add(bits_.data() + begin, values.size());
+    }
+    const std::string_view bytes(reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size());
+    hash_ = xxh64(bytes, hash_);
+    ++steps_;
+}
+
+std::string EpisodeHash::text() const {
+    return fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
+}
+
+EpisodeContent EpisodeHash::content() const {
+    EpisodeContent result;
+    for (std::size_t i = 0; i < inputs_.size(); ++i)
+        result[inputs_[i].name] = readers_[i].content();
+    return result;
+}
+
+}  // namespace etlc::data

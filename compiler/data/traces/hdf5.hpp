@@ -1,0 +1,27 @@
+// HDF5 files (.h5, .hdf5), read by a program of its own, etlc-read-hdf5: libhdf5 is not safe on
+// hostile files. Takes: a file and a group in it. Gives: the groups that match a pattern, and the
+// group's datasets as a trace. Keeps true: whatever the file does to the reader, here it is a
+// failure with an E08 code; the reader's memory and time are limited, and links out of the file are
+// not followed.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "data/traces/trace.hpp"
+
+namespace etlc::data {
+
+bool is_hdf5(const std::string& path);
+
+/// The groups whose path matches the pattern, "data/*", sorted bytewise: "data/demo_0", ...
+diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
+                                                 const std::string& pattern);
+
+/// The datasets that the channels name, relative to the group; an empty group is the root.
+diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
+                                                     const std::string& group,
+                                                     const std::vector<Channel>& channels);
+
+}  // namespace etlc::data

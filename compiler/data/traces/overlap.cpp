@@ -1,0 +1,152 @@
+#include "data/traces/overlap.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+#include <string_view>
+
+#include "data/files/hash.hpp"
+
+namespace etlc::data {
+namespace {
+
+constexpr std::size_t kAtLeastKept = 64;
+constexpr std::uint32_t kAlwaysKept = (1U << 28U) - 1;
+
+/// Each unit once, and of them those that a sketch keeps.
+void sift(std::vector<std::uint32_t>& units) {
+    std::sort(units.begin(), units.end());
+    units.erase(std::unique(units.begin(), units.end()), units.end());
+    if (units.size() <= kAtLeastKept) return;
+    const std::uint32_t greatest = std::max(units[kAtLeastKept - 1], kAlwaysKept);
+    units.erase(std::upper_bound(units.begin(), units.end(), greatest), units.end());
+}
+
+/// Up to where the sketch has all units.
+std::uint32_t complete_to(const Sketch& sketch) {
+    return sketch.size() < kAtLeastKept ? UINT32_MAX
+                                        : std::max(sketch[kAtLeastKept - 1], kAlwaysKept);
+}
+
+std::string_view bytes_of(const std::uint32_t* bits, std::size_t n) {
+    return {reinterpret_cast<const char*>(bits), 4 * n};
+}
+
+bool equal_in_common(const EpisodeContent& a, const EpisodeContent& b) {
+    bool any = false;
+    for (const auto& [name, content] : a) {
+        const auto other = b.find(name);
+        if (other == b.end()) continue;
+        if (other->second.hash != content.hash) return false;
+        any = true;
+    }
+    return any;
+}
+
+/// In the input in which it is least, of those that tell.
+std::optional<double> share_in_common(const EpisodeContent& a, const EpisodeContent& b) {
+    std::optional<double> least;
+    for (const auto& [name, content] : a) {
+        const auto other = b.find(name);
+        if (other == b.end()) continue;
+        const auto here = share(content.sketch, other->second.sketch);
+        if (here) least = std::min(least.value_or(1), *here);
+    }
+    return least;
+}
+
+}  // namespace
+
+void ContentReader::add(const std::uint32_t* bits, std::size_t n) {
+    const std::uint64_t sample = xxh64(bytes_of(bits, n));
+    std::array<char, 8> bytes{};
+    for (unsigned i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(sample >> (8 * i));
+    hash_ = xxh64({bytes.data(), bytes.size()}, hash_);
+    if (!is_vector_) run_[steps_ % kRun] = bits[0];
+    ++steps_;
+    if (is_vector_) {
+        add_unit(sample);
+    } else if (steps_ >= kRun && run_tells()) {
+        std::array<std::uint32_t, kRun> in_order{};
+        for (std::size_t i = 0; i < kRun; ++i) in_order[i] = run_[(steps_ + i) % kRun];
+        add_unit(xxh64(bytes_of(in_order.data(), kRun)));
+    }
+}
+
+bool ContentReader::run_tells() const {
+    std::array<std::uint32_t, kRun> sorted = run_;
+    std::sort(sorted.begin(), sorted.end());
+    return std::unique(sorted.begin(), sorted.end()) - sorted.begin() >= std::ptrdiff_t{kRun / 2};
+}
+
+void ContentReader::add_unit(std::uint64_t hash) {
+    constexpr std::size_t kRoom = 1024;
+    const auto unit = static_cast<std::uint32_t>(hash >> 32U);
+    if (unit > greatest_) return;
+    units_.push_back(unit);
+    if (units_.size() < room_) return;
+    sift(units_);
+    greatest_ = complete_to(units_);
+    room_ = 2 * units_.size() + kRoom;
+}
+
+InputContent ContentReader::content() const {
+    InputContent result;
+    result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
+    result.sketch = units_;
+    sift(result.sketch);
+    return result;
+}
+
+std::optional<double> share(const Sketch& a, const Sketch& b) {
+    const std::uint32_t end = std::min(complete_to(a), complete_to(b));
+    const auto of_a = std::upper_bound(a.begin(), a.end(), end);
+    const auto of_b = std::upper_bound(b.begin(), b.end(), end);
+    const auto least = static_cast<std::size_t>(std::min(of_a - a.begin(), of_b - b.begin()));
+    if (least < kLeastUnits) return std::nullopt;
+    std::size_t common = 0;
+    for (auto x = a.begin(), y = b.begin(); x != of_a && y != of_b;) {
+        common += *x == *y ? 1 : 0;
+        const bool first = *x <= *y;
+        const bool second = *y <= *x;
+        x += first ? 1 : 0;
+        y += second ? 1 : 0;
+    }
+    return static_cast<double>(common) / static_cast<double>(least);
+}
+
+void Recordings::add(const EpisodeContent& content) {
+    const std::size_t episode = all_.size();
+    all_.push_back(content);
+    for (const auto& [name, of_input] : content) {
+        by_hash_[name][of_input.hash].push_back(episode);
+        auto& units = by_unit_[name];
+        for (const std::uint32_t unit : of_input.sketch) units[unit].push_back(episode);
+    }
+}
+
+std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
+    constexpr std::size_t kFewestInCommon = kLeastUnits / 2 + 1;
+    std::set<std::size_t> perhaps;
+    for (const auto& [name, of_input] : content) {
+        if (!by_hash_.contains(name)) continue;
+        const auto& hashes = by_hash_.at(name);
+        if (const auto found = hashes.find(of_input.hash); found != hashes.end())
+            for (const std::size_t episode : found->second)
+                if (equal_in_common(content, all_[episode])) return Overlap{episode, 1, true};
+        std::vector<std::size_t> in_common(all_.size());
+        const auto& units = by_unit_.at(name);
+        for (const std::uint32_t unit : of_input.sketch)
+            if (const auto found = units.find(unit); found != units.end())
+                for (const std::size_t episode : found->second)
+                    if (++in_common[episode] == kFewestInCommon) perhaps.insert(episode);
+    }
+    for (const std::size_t episode : perhaps) {
+        const auto shared = share_in_common(content, all_[episode]);
+        if (shared && *shared > 0.5) return Overlap{episode, *shared, false};
+    }
+    return std::nullopt;
+}
+
+}  // namespace etlc::data
