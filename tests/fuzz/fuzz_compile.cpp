@@ -35,7 +35,7 @@ void compile(const source::File& file, check::Values values) {
     require_proportion(file, sink);
     if (!compiled) return;
     for (const emit::Backend& backend : emit::backends())
-        require_proportion(backend.emit(compiled->plan, {"deep", "version", false, "targets.bin"}));
+        require_proportion(backend.emit(compiled->plan, {"deep", "version", "", "targets.bin"}));
     require_proportion(ir::print(*compiled->program));
     require_proportion(plan::print(compiled->plan));
 }
