@@ -37,11 +37,11 @@ struct Row {
     std::size_t state_bytes = 0;
     std::uint32_t operations = 0;
     Ways<std::optional<Routine>> plain;  ///< robustness by hand
-    std::optional<Routine>
-        rescan;  ///< the same, with windows gone through anew at each step, in a loop
+    /// The same, with windows gone through anew at each step, in a loop.
+    std::optional<Routine> rescan;
     std::optional<Routine> copilot;  ///< Copilot's monitor, called
-    Ways<Routine>
-        judge;  ///< the monitor on predicates that are ready; its user reads `robustness` alone
+    /// The monitor on predicates that are ready; its user reads `robustness` alone.
+    Ways<Routine> judge;
     Ways<Routine> rho;              ///< the monitor's whole step
     Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
     std::function<double()> worst;  ///< nanoseconds of its slowest step

@@ -94,8 +94,8 @@ struct Expr {
     Kind kind = Kind::number;
     std::string text;                    ///< number: its digits; name: the input
     std::unique_ptr<Distance> distance;  ///< kind distance
-    std::vector<ExprPtr>
-        arguments;  ///< operands, in order; add and multiply etc. are binary, left-associated
+    /// Operands, in order; add and multiply etc. are binary, left-associated.
+    std::vector<ExprPtr> arguments;
     Span span;
 };
 
@@ -143,8 +143,8 @@ struct Formula {
     };
     Kind kind = Kind::constant_true;
     std::string name;  ///< kind name
-    std::vector<FormulaPtr>
-        operands;  ///< conjunction and disjunction: two or more; implication etc.: left, right
+    /// Conjunction and disjunction: two or more; implication etc.: left, right.
+    std::vector<FormulaPtr> operands;
     std::optional<Interval> interval;
     ExprPtr left;  ///< comparison: EXPR CMP NUMBER
     Comparison comparison = Comparison::less_equal;
@@ -186,8 +186,8 @@ struct Input {
 
 struct Target {
     Name name;
-    std::variant<Load, MatrixLiteral, VectorLiteral>
-        value;  ///< a VectorLiteral is an error that check/ explains
+    /// A VectorLiteral is an error that check/ explains.
+    std::variant<Load, MatrixLiteral, VectorLiteral> value;
     Span span;
 };
 

@@ -22,8 +22,8 @@ struct Request {
     std::vector<std::string> data;  ///< files, folders and patterns
     std::string groups;  ///< of .h5 files, those that are episodes; empty: the file is one
     data::NamesInFile names;
-    std::string
-        allow_overlap;    ///< the reason for which overlaps are passed over; empty: they are not
+    /// The reason for which overlaps are passed over; empty: they are not.
+    std::string allow_overlap;
     unsigned jobs = 0;    ///< threads; 0: as many as the machine has
     std::string version;  ///< of etlc
     /// Called now and then, by any thread, never by two at once.

@@ -12,8 +12,8 @@
 namespace etlc::diag {
 
 struct SourceView {
-    std::string
-        text;  ///< the line, or a part of it around the span between "..." where it is very long
+    /// The line, or a part of it around the span between "..." where it is very long.
+    std::string text;
     std::string carets;  ///< blanks (tabs where the line has them), then ^~~~
 };
 

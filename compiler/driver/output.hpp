@@ -13,8 +13,8 @@ struct OutputPaths {
     std::string result;   ///< of what --emit names; - is standard output
     std::string depfile;  ///< empty: not asked for
     std::string targets;  ///< where large target sets go; empty: nowhere
-    bool targets_named =
-        false;  ///< by the call, which then expects the file even where nothing goes to it
+    /// By the call, which then expects the file even where nothing goes to it.
+    bool targets_named = false;
 };
 
 /// Whatever cannot be written is reported.

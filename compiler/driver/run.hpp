@@ -15,8 +15,8 @@ struct RunRequest {
     std::string trace;
     data::NamesInFile names;
     std::string output = "-";
-    bool finish =
-        false;  ///< also the positions that sliding monitors report after the end of the trace
+    /// Also the positions that sliding monitors report after the end of the trace.
+    bool finish = false;
 };
 
 /// False where the sink now says why not.

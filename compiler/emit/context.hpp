@@ -32,8 +32,8 @@ struct Demand {
     bool lazy = false;       ///< an atom, or made of such
     std::uint64_t work = 0;  ///< target elements that it may have to measure
     std::uint64_t asks = 1;  ///< of atoms and kept values, at most
-    bool keeps =
-        false;  ///< what it was found to be, since several ask: else asking doubles with each level
+    /// What it was found to be, since several ask: else asking doubles with each level.
+    bool keeps = false;
 };
 std::vector<Demand> demands(const plan::Plan& plan);
 

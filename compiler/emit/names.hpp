@@ -43,23 +43,22 @@ private:
 std::string identifier(std::string_view text, const std::string& otherwise);
 
 struct Names {
-    std::map<check::Index, std::string>
-        input_local;  ///< in measure(): this step's sample; of an embedding, a
-                      ///< pointer; none for what is read in place
-    std::map<check::Index, std::string>
-        direction_local;  ///< in measure(): of an embedding read in place, where
-                          ///< several distances need its length
-    std::map<check::Index, std::string>
-        input_buffer;  ///< in measure(): widened elements, or a flag as a word
+    /// In measure(): this step's sample; of an embedding, a pointer; none for what is read in
+    /// place.
+    std::map<check::Index, std::string> input_local;
+    /// In measure(): of an embedding read in place, where several distances need its length.
+    std::map<check::Index, std::string> direction_local;
+    /// In measure(): widened elements, or a flag as a word.
+    std::map<check::Index, std::string> input_buffer;
     std::map<check::Index, std::string> distance_local;  ///< in measure(): what the kernel gave
-    std::map<check::Index, std::string>
-        predicate_local;  ///< in measure(): delta of a predicate without telemetry
-    std::map<check::Index, std::string>
-        predicate_atom;                             ///< field of Atoms; of a Boolean class, a local
-    std::map<check::Index, std::string> flag_atom;  ///< likewise
+    /// In measure(): delta of a predicate without telemetry.
+    std::map<check::Index, std::string> predicate_local;
+    /// Field of Atoms; of a Boolean class, a local.
+    std::map<check::Index, std::string> predicate_atom;
+    std::map<check::Index, std::string> flag_atom;         ///< likewise
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
-    std::map<check::Index, std::string>
-        threshold_member;  ///< of adaptive predicates: the threshold as it is now
+    /// Of adaptive predicates: the threshold as it is now.
+    std::map<check::Index, std::string> threshold_member;
     std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
     std::map<check::Index, std::string> hold_member;
     struct OfStream {
@@ -77,15 +76,15 @@ struct Names {
         std::string count;                 ///< local: how many of these there are
     };
     std::vector<OfReading> readings;
-    std::map<std::size_t, std::string>
-        verdict_member;  ///< per monitor of the plan: a prefix monitor's last verdict
-    std::map<std::size_t, std::string>
-        open_local;  ///< per prefix monitor of a Boolean class: can still change
-    std::map<check::Index, std::string>
-        search_member;  ///< per distance whose stored set is searched
+    /// Per monitor of the plan: a prefix monitor's last verdict.
+    std::map<std::size_t, std::string> verdict_member;
+    /// Per prefix monitor of a Boolean class: can still change.
+    std::map<std::size_t, std::string> open_local;
+    /// Per distance whose stored set is searched.
+    std::map<check::Index, std::string> search_member;
     std::map<check::Index, std::string> target_array;  ///< per distance: its rows
-    std::map<check::Index, std::string>
-        narrow_array;  ///< per distance: its rows in float16 or int8
+    /// Per distance: its rows in float16 or int8.
+    std::map<check::Index, std::string> narrow_array;
     std::map<check::Index, std::string> weight_array;  ///< per distance
 };
 

@@ -34,8 +34,8 @@ struct Counts {
 };
 
 struct Rates {
-    std::optional<double>
-        f1;  ///< 2 TP / (2 TP + FP + misses): not defined where nothing is true or said
+    /// 2 TP / (2 TP + FP + misses): not defined where nothing is true or said.
+    std::optional<double> f1;
     std::optional<double> precision;  ///< TP / (TP + FP)
     std::optional<double> recall;     ///< TP / positives
     std::optional<double> agreement;  ///< (TP + TN) / total

@@ -65,8 +65,8 @@ struct MonitorScore {
     Score steps;
     Score episodes;
     Detection detection;
-    std::optional<Score>
-        ordering;  ///< sequential formulas: episodes in which every stage was truly visited
+    /// Sequential formulas: episodes in which every stage was truly visited.
+    std::optional<Score> ordering;
 };
 
 struct Evaluation {

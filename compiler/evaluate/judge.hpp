@@ -34,18 +34,18 @@ struct MonitorEpisode {
     Counts episode;  ///< one: the last verdict; of a sliding monitor, whether every position
                      ///< satisfies it
     std::optional<Turn> turn;
-    std::optional<Counts>
-        ordering;  ///< one: of sequential formulas, where every stage was truly visited
+    /// One: of sequential formulas, where every stage was truly visited.
+    std::optional<Counts> ordering;
 };
 
 struct EpisodeResult : calibrate::Recorded {
     std::vector<Counts> predicates;           ///< per labelled predicate
     std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
-    std::vector<std::uint64_t>
-        unmeasured;  ///< per labelled predicate: labelled frames whose distance is unknown
+    /// Per labelled predicate: labelled frames whose distance is unknown.
+    std::vector<std::uint64_t> unmeasured;
     std::vector<bool> from_array;  ///< per labelled predicate
-    std::vector<MonitorEpisode>
-        monitors;  ///< per monitor; of those that cannot be evaluated all is zero
+    /// Per monitor; of those that cannot be evaluated all is zero.
+    std::vector<MonitorEpisode> monitors;
 };
 
 /// Judges one episode after the other. Not shared between threads; all that it is given outlives
@@ -82,8 +82,8 @@ private:
     const calibrate::Leaks& leaks_;
     const data::NamesInFile& names_;
     std::vector<std::size_t> said_at_;  ///< per monitor, its index in plan_
-    std::vector<std::size_t>
-        truth_at_;          ///< per monitor of the ground truth, its index in truth_plan_
+    /// Per monitor of the ground truth, its index in truth_plan_.
+    std::vector<std::size_t> truth_at_;
     plan::Plan measuring_;  ///< of labelled predicates that no monitor uses
     plan::Evaluator monitor_;
     plan::Evaluator truth_;

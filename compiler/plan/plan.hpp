@@ -62,8 +62,8 @@ struct Stream {
     /// before the first position
     Value value{};
     std::uint32_t lag = 0;  ///< after step i the stream tells about position i - lag
-    std::uint32_t operand_lag =
-        0;  ///< and its operands about position i - operand_lag; a constant is of any lag
+    /// And its operands about position i - operand_lag; a constant is of any lag.
+    std::uint32_t operand_lag = 0;
     NodeId node = kNone;  ///< the formula it is, for comments; kNone for the values in between
 };
 
@@ -223,8 +223,8 @@ struct Limits {
     std::uint64_t state_bytes = 1U << 20U;  ///< and the stack of a step with it
     std::uint64_t code_bytes = 64U << 10U;
     std::uint64_t operations = 1U << 20U;
-    std::uint64_t inline_target_bytes =
-        256U << 10U;  ///< larger target sets go to a file beside the header
+    /// Larger target sets go to a file beside the header.
+    std::uint64_t inline_target_bytes = 256U << 10U;
 };
 
 /// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.

@@ -22,8 +22,8 @@ struct Entry {
     std::string method;  ///< f1, conformal, class_conditional
     std::string alpha;   ///< decimal text exactly as in the spec, a JSON number; empty for f1
     float epsilon = 0;   ///< finite
-    std::uint64_t n =
-        0;  ///< demonstrations (conformal) or frames (class_conditional, f1) that gave scores
+    /// Demonstrations (conformal) or frames (class_conditional, f1) that gave scores.
+    std::uint64_t n = 0;
     std::uint64_t k = 0;         ///< rank of the score taken, 1 to n; 0 for f1
     std::vector<double> scores;  ///< may be infinite, not NaN
     std::string predicate;  ///< canonical text, check::Predicate::text; of a monitor the text of
@@ -31,8 +31,8 @@ struct Entry {
     std::string truth;      ///< canonical text of the truth formula, or "array"
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
     std::string against;                         ///< monitors: missed_alarm or missed_success
-    std::vector<std::string>
-        episodes;  ///< monitors: hashes of the episodes that it was calibrated on
+    /// Monitors: hashes of the episodes that it was calibrated on.
+    std::vector<std::string> episodes;
 };
 
 /// That `etlc calibrate --allow-overlap REASON` passed over what it would have refused.
@@ -48,8 +48,8 @@ struct File {
     std::string etlc;  ///< version that wrote it
     std::map<std::string, Entry> predicates;
     std::map<std::string, Entry> monitors;
-    std::vector<std::string>
-        episodes;  ///< content hashes of the episodes behind `predicates`, 16 hex digits each
+    /// Content hashes of the episodes behind `predicates`, 16 hex digits each.
+    std::vector<std::string> episodes;
     /// Of the episodes behind predicates and monitors, by content hash, what tells them apart;
     /// those that are not in it, from another version, are told apart by their hashes alone.
     std::map<std::string, data::EpisodeContent> recordings;

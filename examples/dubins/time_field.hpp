@@ -36,8 +36,8 @@ private:
     float relax(const std::vector<Stencil>& moves);
 
     std::vector<float> values_;  ///< s, [heading][y][x]
-    std::vector<std::size_t>
-        open_;  ///< indices of the free states that are not the goal: those to solve for
+    /// Indices of the free states that are not the goal: those to solve for.
+    std::vector<std::size_t> open_;
 };
 
 }  // namespace demo

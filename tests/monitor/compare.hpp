@@ -19,8 +19,8 @@ namespace etlc::tests {
 /// comparison of the verdicts shows.)
 struct Dependencies {
     std::vector<bool> predicates;  ///< by index of the model
-    std::vector<bool>
-        flags;  ///< bool inputs that stand in formulas, by index of the model's inputs
+    /// Bool inputs that stand in formulas, by index of the model's inputs.
+    std::vector<bool> flags;
 };
 
 /// A run as a monitor shows it: robustness_high is not observable, telemetry only of the predicates

@@ -15,10 +15,10 @@ namespace etlc::tests {
 struct TraceShape {
     std::size_t steps = 12;
     double missing = 0;  ///< probability that a sample is not there
-    double invalid =
-        0;  ///< probability of NaN, an infinity, a value out of range or a zero vector instead
-    double extreme =
-        0;  ///< probability of a sample at an end of its range, or far out where it has none
+    /// Probability of NaN, an infinity, a value out of range or a zero vector instead.
+    double invalid = 0;
+    /// Probability of a sample at an end of its range, or far out where it has none.
+    double extreme = 0;
     /// Multiples of 1/4 in [-4, 4], so that ties and exact zeros occur; else any float32 there.
     bool grid = true;
 };

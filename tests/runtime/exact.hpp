@@ -26,8 +26,8 @@ struct Case {
     std::uint32_t dimension = 0;
     std::vector<float> z;        ///< dimension
     std::vector<float> targets;  ///< rows x dimension, row-major
-    std::vector<float>
-        weights;  ///< dimension^2 for mahalanobis, dimension for mahalanobis_diagonal
+    /// Dimension^2 for mahalanobis, dimension for mahalanobis_diagonal.
+    std::vector<float> weights;
 };
 
 struct Aggregate {

@@ -16,8 +16,8 @@ namespace etlc::calibrate {
 
 struct GroundTruth {
     check::Model model;
-    std::vector<Index>
-        inputs;  ///< per predicate of the original: the input of its label; kNone where it has none
+    /// Per predicate of the original: the input of its label; kNone where it has none.
+    std::vector<Index> inputs;
 };
 
 GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled);

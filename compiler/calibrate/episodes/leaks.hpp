@@ -38,8 +38,8 @@ private:
         Index predicate = 0;  ///< the first that does
         Index distance = 0;
         bool by_direction = false;  ///< under cosine and angular a multiple of a row is the row
-        std::vector<double>
-            firsts;  ///< first element of every row; by direction: of the row at length 1
+        /// First element of every row; by direction: of the row at length 1.
+        std::vector<double> firsts;
         std::vector<double> lengths;  ///< by direction: |row|
     };
 

@@ -36,8 +36,8 @@ struct Input {
     float scale = 1.0F;           ///< i8: value = scale x integer
     Range range;                  ///< scalars; a sample outside counts as missing
     bool has_range = false;
-    std::uint32_t hold =
-        0;  ///< at most so many missing samples in a row are replaced by the last present one
+    /// At most so many missing samples in a row are replaced by the last present one.
+    std::uint32_t hold = 0;
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
@@ -49,8 +49,8 @@ struct Target {
     std::uint32_t rows = 0;
     std::uint32_t dimension = 0;
     std::vector<float> values;
-    std::string
-        origin;  ///< "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec
+    /// "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec.
+    std::string origin;
     std::string path;  ///< of the file it was read from, for dependency files; empty for a literal
     std::string hash;  ///< content hash of shape and values, data::content_hash
     Span span;

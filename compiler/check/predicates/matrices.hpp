@@ -18,8 +18,8 @@ struct Context;
 struct Matrix {
     std::uint32_t rows = 0;
     std::uint32_t columns = 0;
-    bool one_dimensional =
-        false;  ///< a file's array of one dimension, or a literal [1, 2, 3]; rows is then 1
+    /// A file's array of one dimension, or a literal [1, 2, 3]; rows is then 1.
+    bool one_dimensional = false;
     std::vector<float> values;  ///< row-major
     std::string origin;         ///< "targets/goal_a.npy", "file.npz:key" or "literal"
     std::string path;           ///< of the file, relative to where etlc runs; empty for a literal

@@ -23,15 +23,15 @@ struct Channel {
     std::string name;
     Kind kind = Kind::scalar;
     std::uint32_t width = 1;
-    bool optional =
-        false;  ///< where the file lacks it, it is missing at every step, and `Trace::has` says so
+    /// Where the file lacks it, it is missing at every step, and `Trace::has` says so.
+    bool optional = false;
 };
 
 /// One step of all channels. Values keep the file's precision; narrowing them is the reader's
 /// user's business.
 struct Sample {
-    std::vector<std::vector<double>>
-        values;                 ///< per channel, `width` numbers; NaN where the cell was not finite
+    /// Per channel, `width` numbers; NaN where the cell was not finite.
+    std::vector<std::vector<double>> values;
     std::vector<bool> present;  ///< per channel: false for an empty cell or a partly empty vector
 };
 

@@ -25,10 +25,10 @@ struct Transition {
 };
 
 struct Automaton {
-    std::vector<std::vector<ir::NodeId>>
-        states;  ///< obligations, sorted; state 0 is the formula before the first step
-    std::vector<std::vector<ir::NodeId>>
-        guards;  ///< literals whose min is the guard; guard 0 is empty: true
+    /// Obligations, sorted; state 0 is the formula before the first step.
+    std::vector<std::vector<ir::NodeId>> states;
+    /// Literals whose min is the guard; guard 0 is empty: true.
+    std::vector<std::vector<ir::NodeId>> guards;
     std::vector<Transition> transitions;  ///< by target, guard, source
 };
 

@@ -98,16 +98,16 @@ private:
     const Plan& plan_;
     const check::Model& model_;
     std::vector<std::vector<float>> points_;  ///< per distance: scratch for vectors of scalars
-    std::vector<std::vector<float>>
-        prepared_;  ///< per target and distance: rows as the kernels want them
-    std::vector<std::vector<float>>
-        widened_;  ///< per distance: what its narrow rows stand for, where it has some
+    /// Per target and distance: rows as the kernels want them.
+    std::vector<std::vector<float>> prepared_;
+    /// Per distance: what its narrow rows stand for, where it has some.
+    std::vector<std::vector<float>> widened_;
     std::vector<const float*>
         inputs_;  ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
     std::vector<etlmon::Measured> distances_;
-    std::vector<etlmon::Enclosed>
-        enclosed_;  ///< per distance: the same, with what narrow targets leave open
+    /// Per distance: the same, with what narrow targets leave open.
+    std::vector<etlmon::Enclosed> enclosed_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;  ///< per predicate

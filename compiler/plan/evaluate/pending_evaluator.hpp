@@ -30,8 +30,8 @@ private:
                                     const std::vector<Value>& streams);
 
     const Pending& pending_;
-    std::vector<std::vector<Value>>
-        leaves_;                    ///< per part: the last horizon + 1 values, oldest first
+    /// Per part: the last horizon + 1 values, oldest first.
+    std::vector<std::vector<Value>> leaves_;
     std::vector<Readings> parts_;   ///< per part: at the same positions
     std::vector<Value> registers_;  ///< where everything is settled
 };

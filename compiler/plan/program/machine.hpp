@@ -62,8 +62,8 @@ struct Machine {
     struct State {
         bool strong = false;       ///< owes an F or U
         bool always_true = false;  ///< its register never leaves +inf and is not kept
-        Slot weak_unseen =
-            kNone;  ///< lowest unseen value of what it owes, weakly all of it; else kNone
+        /// Lowest unseen value of what it owes, weakly all of it; else kNone.
+        Slot weak_unseen = kNone;
         Slot strong_unseen = kNone;  ///< highest unseen value of what it owes strongly
     };
     Automaton automaton;
