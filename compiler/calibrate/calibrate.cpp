@@ -17,10 +17,7 @@ namespace {
 
 using check::ThresholdOrigin;
 using diag::Code;
-
-std::string counted(std::uint64_t n, const std::string& noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
+using diag::counted;
 
 class Refusing {
 public:

@@ -12,10 +12,7 @@ namespace {
 
 using check::Claim;
 using check::ThresholdOrigin;
-
-std::string counted(std::uint64_t n, const std::string& noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
+using diag::counted;
 
 /// The counts of one predicate over all demonstrations.
 struct Totals {

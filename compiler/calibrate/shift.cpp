@@ -21,10 +21,7 @@ namespace {
 
 using check::Against;
 using diag::Code;
-
-std::string counted(std::uint64_t n, const std::string& noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
+using diag::counted;
 
 bool against_alarms(const check::Monitor& monitor) {
     return monitor.calibration->against == Against::missed_alarm;

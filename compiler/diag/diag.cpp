@@ -1,5 +1,7 @@
 #include "diag/diag.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <tuple>
 
@@ -48,6 +50,10 @@ std::vector<Diagnostic> Sink::sorted() const {
         return place(a) < place(b);
     });
     return result;
+}
+
+std::string counted(std::uint64_t n, const std::string& noun) {
+    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
 }
 
 std::string alternatives(const std::vector<std::string>& words) {

@@ -127,4 +127,7 @@ std::optional<std::string> nearest_name(std::string_view name,
 /// What may stand at a place: "f32, f16 or i8".
 std::string alternatives(const std::vector<std::string>& words);
 
+/// "1 episode", "2 episodes".
+std::string counted(std::uint64_t n, const std::string& noun);
+
 }  // namespace etlc::diag

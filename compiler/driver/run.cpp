@@ -20,14 +20,6 @@ using etlmon::Verdict;
 constexpr std::size_t kBufferBytes = 1U << 16U;
 constexpr std::uint64_t kStepsPerReport = 4096;
 
-data::Channel channel_of(const check::Input& input) {
-    const bool flag = input.type == check::InputType::boolean;
-    const auto kind = flag                   ? data::Channel::Kind::boolean
-                      : input.is_embedding() ? data::Channel::Kind::vector
-                                             : data::Channel::Kind::scalar;
-    return {input.name, kind, input.dimension};
-}
-
 const char* status(const Verdict& verdict) {
     if (!verdict.decided()) return "undecided";
     return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
@@ -62,7 +54,8 @@ private:
 
     bool step_through_trace() {
         std::vector<data::Channel> channels;
-        for (check::Index i : plan_.inputs) channels.push_back(channel_of(plan_.model->inputs[i]));
+        for (check::Index i : plan_.inputs)
+            channels.push_back(plan::channel_of(plan_.model->inputs[i]));
         auto trace = data::open_trace(request_.trace, data::renamed(channels, request_.names));
         if (!trace) return fail(trace.failure());
         data::Sample sample;

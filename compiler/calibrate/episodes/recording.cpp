@@ -15,13 +15,7 @@ using check::kNone;
 using data::Channel;
 using diag::Code;
 using diag::Failure;
-
-Channel channel_of(const check::Input& input) {
-    const auto kind = input.type == check::InputType::boolean ? Channel::Kind::boolean
-                      : input.is_embedding()                  ? Channel::Kind::vector
-                                                              : Channel::Kind::scalar;
-    return {input.name, kind, input.dimension};
-}
+using plan::channel_of;
 
 Index truth_of(const check::Model& model, Index predicate) {
     for (const check::Truth& truth : model.truths)

@@ -9,6 +9,13 @@
 
 namespace etlc::plan {
 
+data::Channel channel_of(const check::Input& input) {
+    const auto kind = input.type == check::InputType::boolean ? data::Channel::Kind::boolean
+                      : input.is_embedding()                  ? data::Channel::Kind::vector
+                                                              : data::Channel::Kind::scalar;
+    return {input.name, kind, input.dimension};
+}
+
 std::optional<Sample> narrow(const check::Input& input, bool present,
                              const std::vector<double>& numbers, std::string& why) {
     Sample sample;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/traces/trace.hpp"
 
 namespace etlc::plan {
 
@@ -18,6 +19,9 @@ struct Sample {
     bool present = false;
     std::vector<float> values;
 };
+
+/// What a recording has of it.
+data::Channel channel_of(const check::Input& input);
 
 /// The sample, or nothing where a number is not of the input's type: `why` then says which and what
 /// was expected.
