@@ -1,11 +1,11 @@
 // Made by etlc 0.2.0 from dubins.etl: change that, and run etlc again.
 //
 //   monitor       about       state B  targets B  operations  distance elements
-//   reach         the prefix       16       1024           7                256
-//   avoid         the prefix       16       1024           7                256
-//   reach_avoid   the prefix       32       2048          18                512
-//   sequential    the prefix       32       2048          24                512
-//   all together                   60       3072          42                768
+//   reach         the prefix       16       1024           3                256
+//   avoid         the prefix       16       1024           3                256
+//   reach_avoid   the prefix       32       2048          10                512
+//   sequential    the prefix       32       2048           7                512
+//   all together                   60       3072          17                768
 //
 //   predicate  measures                       threshold  origin
 //   at_a       min cosine(z, goal_a) <=       0.243      written in the spec; no guarantee
@@ -159,7 +159,7 @@ alignas(64) inline constexpr float obstacle_c_unit[8 * 32] = {
 class Monitor {
  public:
   static constexpr size_t kStateBytes = 60;  ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 42;  ///< of the temporal part in the worst step: min, max, compare
+  static constexpr uint32_t kOperations = 17;  ///< of the temporal part in the worst step: min, max, compare
   static constexpr uint32_t kDistanceElements = 768;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }

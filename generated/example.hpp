@@ -1,8 +1,8 @@
 // Made by etlc 0.2.0 from example.etl: change that, and run etlc again.
 //
 //   monitor       about       state B  targets B  operations  distance elements
-//   stays         the prefix       16         16           7                  4
-//   all together                   20         16           7                  4
+//   stays         the prefix       16         16           2                  4
+//   all together                   20         16           2                  4
 //
 //   predicate  measures             threshold  origin
 //   near_goal  min l2(z, goal) <=   0.409      written in the spec; no guarantee
@@ -50,7 +50,7 @@ alignas(64) inline constexpr float goal[2 * 2] = {
 class Monitor {
  public:
   static constexpr size_t kStateBytes = 20;  ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 7;  ///< of the temporal part in the worst step: min, max, compare
+  static constexpr uint32_t kOperations = 2;  ///< of the temporal part in the worst step: min, max, compare
   static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }
