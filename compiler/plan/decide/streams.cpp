@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "plan/program/literals.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::plan {
 
@@ -31,8 +32,7 @@ Slot StreamBuilder::intern(Stream stream) {
     const auto [entry, added] =
         interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added) {
-        on_demand_.push_back(values_ == check::Values::boolean &&
-                             found_on_demand(stream, on_demand_));
+        on_demand_.push_back(value_type(values_).on_demand && found_on_demand(stream, on_demand_));
         streams_.push_back(std::move(stream));
     } else if (streams_[entry->second].node == kNone) {
         streams_[entry->second].node = stream.node;

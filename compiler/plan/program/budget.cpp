@@ -3,12 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "etlmon/temporal/boolean_verdict.hpp"
-#include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/reading.hpp"
-#include "etlmon/temporal/verdict.hpp"
 #include "etlmon/temporal/window.hpp"
 #include "plan/program/target_bytes.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -81,18 +78,7 @@ std::uint64_t pending_steps(const Pending& pending) {
     return steps;
 }
 
-/// What a reading and a value take on the stack.
-struct OnStack {
-    std::uint64_t reading;
-    std::uint64_t value;
-};
-OnStack on_stack(Values values) {
-    if (values == Values::boolean)
-        return {sizeof(etlmon::BasicReading<etlmon::Truth>), sizeof(etlmon::Truth)};
-    return {sizeof(etlmon::BasicReading<Value>), sizeof(Value)};
-}
-
-Cost pending_cost(const Pending& pending, OnStack of) {
+Cost pending_cost(const Pending& pending, const ValueType& of) {
     constexpr std::uint64_t kKeysPerReading = 4;
     const std::uint64_t positions = pending.horizon + std::uint64_t{1};
     Cost cost;
@@ -149,7 +135,7 @@ Cost work_of(const Reading& reading, Values kind) {
     switch (reading.kind) {
         case Reading::Kind::straight: return straight_cost(reading.straight);
         case Reading::Kind::table: return table_cost(reading.table);
-        case Reading::Kind::pending: return pending_cost(reading.pending, on_stack(kind));
+        case Reading::Kind::pending: return pending_cost(reading.pending, value_type(kind));
         case Reading::Kind::combination: return values(0, 2 * (reading.operands.size() - 1));
     }
     return {};
@@ -290,6 +276,7 @@ Cost cost_of_table(std::size_t states, std::size_t transitions, Values kind) {
 }
 
 void add_costs(Plan& plan) {
+    const ValueType& type = value_type(plan.values);
     Needs all(plan);
     Cost fixed{.state_bytes = kWord};  // missing steps
     if (plan.counts_steps) fixed.state_bytes += kWord;
@@ -299,11 +286,9 @@ void add_costs(Plan& plan) {
         own.monitor(monitor);
         all.monitor(monitor);
         plan.monitor_costs.push_back(own.cost());
-        if (plan.values == Values::boolean)
-            fixed.state_bytes +=
-                sizeof(etlmon::BooleanVerdict);  // the last one: a final verdict stops computing
-        else if (plan.has_sliding && !monitor.sliding)
-            fixed.state_bytes += sizeof(etlmon::Verdict);
+        // The last one: a final verdict stays, and finish() repeats those of prefix monitors.
+        const bool kept = type.on_demand || (plan.has_sliding && !monitor.sliding);
+        if (kept) fixed.state_bytes += type.verdict;
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

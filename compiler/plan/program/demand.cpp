@@ -4,6 +4,7 @@
 
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::plan {
 
@@ -41,7 +42,7 @@ std::vector<Demand> demands(const Plan& plan) {
     for (const Stream& stream : plan.streams)
         for (Slot operand : stream.operands) ++users[operand];
     std::vector<Demand> result(plan.streams.size());
-    if (plan.values != check::Values::boolean) return result;
+    if (!value_type(plan.values).on_demand) return result;
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {  // operands come first
         const Stream& stream = plan.streams[slot];
         if (stream.op == StreamOp::predicate)

@@ -1,37 +1,13 @@
 #include "plan/program/members.hpp"
 
-#include <fmt/format.h>
-
-#include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/delay.hpp"
-#include "etlmon/temporal/window.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::plan {
 
 namespace {
 
 using Kind = Member::Kind;
-
-/// What a value type takes to keep: a row a type.
-struct Footprint {
-    std::uint64_t value;
-    std::uint32_t (*delay)(std::uint32_t length);
-    std::uint32_t (*window)(std::uint32_t length);
-    std::uint32_t (*since)(std::uint32_t length);
-    std::uint32_t (*until)(std::uint32_t length);
-};
-
-template <class V>
-constexpr Footprint footprint() {
-    return {sizeof(V), etlmon::delay_bytes<V>, etlmon::window_bytes<etlmon::Greatest<V>>,
-            etlmon::window_bytes<etlmon::Since<V>>, etlmon::window_bytes<etlmon::Until<V>>};
-}
-
-const Footprint& footprint_of(check::Values values) {
-    static constexpr Footprint kRobustness = footprint<Value>();
-    static constexpr Footprint kTruth = footprint<etlmon::Truth>();
-    return values == check::Values::boolean ? kTruth : kRobustness;
-}
 
 std::uint64_t in_storage(std::uint64_t bytes) {
     return etlmon::storage_bytes(static_cast<std::uint32_t>(bytes));
@@ -40,7 +16,7 @@ std::uint64_t in_storage(std::uint64_t bytes) {
 }  // namespace
 
 std::uint64_t bytes_of(const Member& member, check::Values values) {
-    const Footprint& of = footprint_of(values);
+    const ValueType& of = value_type(values);
     switch (member.kind) {
         case Kind::value:
         case Kind::variable: return of.value;
