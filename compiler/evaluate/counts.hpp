@@ -7,11 +7,11 @@
 #include <cstdint>
 #include <optional>
 
-#include "calibrate/episodes/truth.hpp"
+#include "episodes/truth.hpp"
 
 namespace etlc::evaluate {
 
-using calibrate::Label;
+using episodes::Label;
 
 struct Counts {
     std::uint64_t true_positives = 0;

@@ -13,7 +13,7 @@
 
 #include "diag/diag.hpp"
 #include "evaluate/bootstrap.hpp"
-#include "evaluate/judge.hpp"
+#include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
 #include "pipeline/compile.hpp"
 #include "thresholds/thresholds.hpp"

@@ -92,7 +92,7 @@ Index append_visit(check::Model& model, const std::string& name,
 }  // namespace
 
 Subject subject(const check::Model& model, std::vector<Index> labelled) {
-    Subject result{labelled, calibrate::ground_truth(model, labelled), {}};
+    Subject result{labelled, episodes::ground_truth(model, labelled), {}};
     check::Model& truth = result.truth.model;
     const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
     const std::vector<check::Reach> reaches = check::reaches(model);

@@ -1,8 +1,7 @@
-#include "evaluate/judge.hpp"
+#include "evaluate/episode_scores.hpp"
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 namespace etlc::evaluate {
 
@@ -46,13 +45,6 @@ std::optional<Turn> turn_of(const std::vector<Label>& said, const std::vector<La
     return Turn{later - said.begin() - onset};
 }
 
-/// Per monitor of the plan's model, where it stands in the plan.
-std::vector<std::size_t> places(const plan::Plan& plan) {
-    std::vector<std::size_t> result(plan.model->monitors.size());
-    for (std::size_t m = 0; m < plan.monitors.size(); ++m) result[plan.monitors[m].index] = m;
-    return result;
-}
-
 bool measures(const plan::Plan& plan, Index predicate) {
     return std::find(plan.predicates.begin(), plan.predicates.end(), predicate) !=
            plan.predicates.end();
@@ -65,80 +57,51 @@ std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predica
 
 }  // namespace
 
-Judge::Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-             const calibrate::Leaks& leaks, const data::NamesInFile& names)
+EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
+                             const Subject& subject, const episodes::Leaks& leaks,
+                             const data::NamesInFile& names)
     : plan_(plan),
-      truth_plan_(truth),
       subject_(subject),
-      leaks_(leaks),
       names_(names),
-      said_at_(places(plan)),
-      truth_at_(places(truth)),
       measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
-      monitor_(plan_),
-      truth_(truth_plan_),
-      measure_(measuring_) {
-    std::set<Index> inputs(plan_.inputs.begin(), plan_.inputs.end());
-    inputs.insert(measuring_.inputs.begin(), measuring_.inputs.end());
-    const std::vector<Index> identity = calibrate::identity_inputs(model());
-    inputs.insert(identity.begin(), identity.end());
-    wanted_ = {&model(), {inputs.begin(), inputs.end()}, subject.labelled, identity};
-    truth_samples_.resize(truth_plan_.model->inputs.size());
-}
+      monitors_(plan),
+      truths_(truth, &subject.truth),
+      measured_(measuring_),
+      wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
 
-diag::Result<EpisodeResult> Judge::score(const std::string& path) {
-    auto recording =
-        calibrate::Recording::open(wanted_, [&](const std::vector<data::Channel>& channels) {
-            return data::open_trace(path, data::renamed(channels, names_));
-        });
+diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
+    auto recording = episodes::Recording::open(wanted_, path, names_);
     if (!recording) return recording.failure();
     EpisodeResult result;
-    result.path = path;
     result.predicates.resize(subject_.labelled.size());
     result.scored.resize(subject_.labelled.size());
     result.unmeasured.resize(subject_.labelled.size());
-    monitor_.reset();
-    truth_.reset();
-    measure_.reset();
     tracks_.assign(subject_.monitors.size(), {});
-    visited_.assign(truth_plan_.monitors.size(), false);
-    for (;;) {
-        const auto more = recording->next();
-        if (!more) return more.failure();
-        if (!*more) break;
-        if (!result.leak) result.leak = leaks_.find(recording->samples(), recording->frames() - 1);
-        step(*recording, result);
-    }
-    finish();
+    const auto rest = [&] {
+        note_verdicts();
+        return true;
+    };
+    const auto frame = [&] {
+        count_predicates(*recording, result);
+        return rest();
+    };
+    const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
+    if (!done) return done.failure();
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
         result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
     for (const Index predicate : subject_.labelled)
         result.from_array.push_back(recording->from_array(predicate));
-    result.hash = recording->hash();
-    result.content = recording->content();
-    result.frames = recording->frames();
+    static_cast<episodes::Recorded&>(result) = recording->recorded();
     return result;
 }
 
-void Judge::step(const calibrate::Recording& recording, EpisodeResult& result) {
-    const std::vector<plan::Sample>& samples = recording.samples();
-    std::copy(samples.begin(), samples.end(), truth_samples_.begin());
-    for (const Index predicate : subject_.labelled)
-        truth_samples_[subject_.truth.inputs[predicate]] =
-            calibrate::sample_of(recording.label(predicate));
-    const std::vector<Verdict>& said = monitor_.step(samples);
-    const std::vector<Verdict>& is = truth_.step(truth_samples_);
-    measure_.step(samples);
-    count_predicates(recording, result);
-    note(said, is);
-    for (std::size_t m = 0; m < is.size(); ++m) visited_[m] = is[truth_at_[m]].satisfied();
+float EpisodeScorer::distance(Index predicate) const {
+    return measures(plan_, predicate) ? monitors_.evaluator().distance(predicate)
+                                      : measured_.evaluator().distance(predicate);
 }
 
-float Judge::distance(Index predicate) const {
-    return measures(plan_, predicate) ? monitor_.distance(predicate) : measure_.distance(predicate);
-}
-
-void Judge::count_predicates(const calibrate::Recording& recording, EpisodeResult& result) const {
+void EpisodeScorer::count_predicates(const episodes::Recording& recording,
+                                     EpisodeResult& result) const {
     for (std::size_t i = 0; i < subject_.labelled.size(); ++i) {
         const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
         const Label is = recording.label(subject_.labelled[i]);
@@ -155,29 +118,16 @@ void Judge::count_predicates(const calibrate::Recording& recording, EpisodeResul
 }
 
 /// Both plans delay a sliding monitor alike: by the horizon of its formula as written.
-void Judge::note(const std::vector<Verdict>& said, const std::vector<Verdict>& is) {
+void EpisodeScorer::note_verdicts() {
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
         const MonitorSubject& subject = subject_.monitors[m];
-        if (subject.truth == kNone || !said[said_at_[subject.monitor]].decided()) continue;
-        tracks_[m].said.push_back(label_of(said[said_at_[subject.monitor]]));
-        tracks_[m].is.push_back(label_of(is[truth_at_[subject.truth]]));
+        if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
+        tracks_[m].said.push_back(label_of(monitors_.verdict(subject.monitor)));
+        tracks_[m].is.push_back(label_of(truths_.verdict(subject.truth)));
     }
 }
 
-/// The last positions of the sliding monitors, each as often as it has some left.
-void Judge::finish() {
-    std::uint32_t longest = 0;
-    for (const plan::Monitor& monitor : plan_.monitors)
-        longest = std::max(longest, monitor.horizon);
-    for (std::uint32_t call = 0; call < longest; ++call) {
-        std::vector<Verdict> said = monitor_.finish();
-        for (std::size_t m = 0; m < said.size(); ++m)
-            if (call >= plan_.monitors[m].horizon) said[m] = Verdict{};
-        note(said, truth_.finish());
-    }
-}
-
-MonitorEpisode Judge::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
+MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
     MonitorEpisode result;
     if (tracks.said.empty()) return result;
     for (std::size_t i = 0; i < tracks.said.size(); ++i)
@@ -188,7 +138,7 @@ MonitorEpisode Judge::conclude(const MonitorSubject& subject, const Tracks& trac
     };
     result.episode.add(verdict(tracks.said), verdict(tracks.is));
     result.turn = turn_of(tracks.said, tracks.is);
-    const auto visited = [&](Index stage) { return visited_[stage]; };
+    const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
     if (!subject.stages.empty() &&
         std::all_of(subject.stages.begin(), subject.stages.end(), visited))
         result.ordering = result.episode;

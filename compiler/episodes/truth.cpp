@@ -1,13 +1,13 @@
-#include "calibrate/episodes/truth.hpp"
+#include "episodes/truth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "calibrate/episodes/exact_distance.hpp"
+#include "episodes/exact_distance.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -190,4 +190,4 @@ double TruthEvaluator::measure(const check::Distance& distance) const {
     return exact_distance(model_, distance, point).value_or(kUnknown);
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

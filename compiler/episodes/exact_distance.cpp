@@ -1,10 +1,10 @@
-#include "calibrate/episodes/exact_distance.hpp"
+#include "episodes/exact_distance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -106,4 +106,4 @@ std::optional<double> exact_distance(const check::Model& model, const check::Dis
     return aggregate(distance, std::move(rows));
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,9 +1,9 @@
-#include "calibrate/episodes/leaks.hpp"
+#include "episodes/leaks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -151,4 +151,4 @@ std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
     return std::nullopt;
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes
