@@ -3,18 +3,24 @@
 #include <algorithm>
 
 #include "calibrate/bounds.hpp"
+#include "check/numbers/rounding.hpp"
 
 namespace etlc::calibrate {
 
 namespace {
+
+using check::round_down;
+using check::round_up;
 
 /// The predicate's robustness as low and as high as any build may have it.
 plan::Value spread(const check::Model& model, Index predicate, const plan::Evaluator& measured) {
     const Interval delta = *interval_of(model, predicate, measured);
     const check::Predicate& p = model.predicates[predicate];
     const float epsilon = p.threshold.value;
-    const float low = p.upper_bound() ? epsilon - up(delta.high) : down(delta.low) - epsilon;
-    const float high = p.upper_bound() ? epsilon - down(delta.low) : up(delta.high) - epsilon;
+    const float low =
+        p.upper_bound() ? epsilon - round_up(delta.high) : round_down(delta.low) - epsilon;
+    const float high =
+        p.upper_bound() ? epsilon - round_down(delta.low) : round_up(delta.high) - epsilon;
     return {etlmon::key_of(low), etlmon::key_of(high)};
 }
 

@@ -77,6 +77,8 @@ double to_row(const check::Distance& distance, const std::vector<double>& z, dou
     return distance.metric == Metric::l2 ? std::sqrt(sum) : sum;
 }
 
+}  // namespace
+
 double aggregate(const check::Distance& distance, std::vector<double> rows) {
     switch (distance.aggregation) {
         case check::Aggregation::min: return *std::min_element(rows.begin(), rows.end());
@@ -89,8 +91,6 @@ double aggregate(const check::Distance& distance, std::vector<double> rows) {
     std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
     return rows[distance.kth - 1];
 }
-
-}  // namespace
 
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point) {

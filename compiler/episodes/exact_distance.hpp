@@ -16,4 +16,7 @@ namespace etlc::episodes {
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point);
 
+/// What the distance makes of its rows' distances, of which there is at least one.
+double aggregate(const check::Distance& distance, std::vector<double> rows);
+
 }  // namespace etlc::episodes

@@ -146,14 +146,7 @@ Label TruthEvaluator::compare(const check::Predicate& predicate) const {
                                       [&](Index input) { return values_[input].empty(); });
     const double delta = present ? expression(predicate.expression) : kUnknown;
     if (std::isnan(delta)) return Label::unknown;
-    const double epsilon = predicate.threshold.value64;
-    switch (predicate.comparison) {
-        case check::Comparison::less_equal: return label_of(delta <= epsilon);
-        case check::Comparison::less: return label_of(delta < epsilon);
-        case check::Comparison::greater_equal: return label_of(delta >= epsilon);
-        case check::Comparison::greater: return label_of(delta > epsilon);
-    }
-    return Label::unknown;
+    return label_of(check::holds(predicate.comparison, delta, predicate.threshold.value64));
 }
 
 double TruthEvaluator::expression(const Expr& e) const {

@@ -15,18 +15,6 @@ Label label_of(const Verdict& verdict) {
     return verdict.violated() ? Label::no : Label::unknown;
 }
 
-/// The predicate's own comparison, exactly.
-bool holds(const check::Predicate& predicate, float delta) {
-    const float epsilon = predicate.threshold.value;
-    switch (predicate.comparison) {
-        case check::Comparison::less_equal: return delta <= epsilon;
-        case check::Comparison::less: return delta < epsilon;
-        case check::Comparison::greater_equal: return delta >= epsilon;
-        case check::Comparison::greater: break;
-    }
-    return delta > epsilon;
-}
-
 std::optional<Turn> turn_of(const std::vector<Label>& said, const std::vector<Label>& is) {
     const auto known = [](Label label) { return label != Label::unknown; };
     const auto first = std::find_if(is.begin(), is.end(), known);
@@ -111,7 +99,8 @@ void EpisodeScorer::count_predicates(const episodes::Recording& recording,
             result.unmeasured[i] += is == Label::unknown ? 0 : 1;
             continue;
         }
-        result.predicates[i].add(holds(predicate, delta) ? Label::yes : Label::no, is);
+        const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
+        result.predicates[i].add(holds ? Label::yes : Label::no, is);
         if (is == Label::unknown) continue;
         result.scored[i].push_back({predicate.upper_bound() ? -delta : delta, 0, is == Label::yes});
     }
