@@ -96,7 +96,7 @@ void count(const driver::Compiled& monitors, const driver::Compiled& truths, Ran
     }
 }
 
-/// Calibrates anew for every draw. Draws that show too little to calibrate from are left out.
+/// Calibrates again for every draw. Draws that show too little to calibrate from are left out.
 std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
                                   check::Values values) {
     std::map<std::string, Kept> kept;
