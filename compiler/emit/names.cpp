@@ -88,11 +88,10 @@ std::string predicate_name(const check::Predicate& predicate) {
 /// How often measure() names a scalar; a point is looked at before it is measured.
 std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
     std::map<check::Index, int> uses;
-    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
-        if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
-        for (const check::Expr& argument : e.arguments) self(self, argument);
-    };
-    for (check::Index p : plan.predicates) visit(visit, plan.model->predicates[p].expression);
+    for (check::Index p : plan.predicates)
+        check::for_each(plan.model->predicates[p].expression, [&](const check::Expr& e) {
+            if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
+        });
     for (check::Index d : plan.distances)
         for (check::Index i : plan.model->distances[d].point) uses[i] += 2;
     return uses;

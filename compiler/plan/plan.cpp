@@ -17,18 +17,14 @@ namespace etlc::plan {
 
 namespace {
 
-void collect_distances(const check::Expr& e, std::set<Index>& distances) {
-    if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
-    for (const check::Expr& argument : e.arguments) collect_distances(argument, distances);
-}
-
 /// What is read and measured for these predicates and these inputs.
 void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
     const check::Model& model = *plan.model;
     std::set<Index> distances;
     for (Index p : predicates) {
         inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
-        collect_distances(model.predicates[p].expression, distances);
+        check::for_each_distance(model.predicates[p].expression,
+                                 [&](Index distance) { distances.insert(distance); });
     }
     std::set<Index> targets;
     for (Index d : distances) targets.insert(model.distances[d].target);

@@ -217,12 +217,7 @@ private:
         if (!predicates_.insert(index).second) return;
         const check::Predicate& p = plan_.model->predicates[index];
         inputs_.insert(p.inputs.begin(), p.inputs.end());
-        expression(p.expression);
-    }
-
-    void expression(const check::Expr& e) {
-        if (e.kind == check::Expr::Kind::distance) distances_.insert(e.index);
-        for (const check::Expr& argument : e.arguments) expression(argument);
+        check::for_each_distance(p.expression, [&](Index d) { distances_.insert(d); });
     }
 
     const Plan& plan_;
@@ -237,12 +232,9 @@ private:
 
 std::uint64_t measured_elements(const check::Model& model, Index predicate) {
     std::uint64_t sum = 0;
-    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
-        if (e.kind == check::Expr::Kind::distance)
-            sum += distance_cost(model, model.distances[e.index]).distance_operations;
-        for (const check::Expr& argument : e.arguments) self(self, argument);
-    };
-    visit(visit, model.predicates[predicate].expression);
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
+        sum += distance_cost(model, model.distances[d]).distance_operations;
+    });
     return sum;
 }
 
