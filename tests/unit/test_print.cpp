@@ -93,7 +93,13 @@ public:
             case Kind::disjunction: operands(2 + below(3)); break;
             case Kind::negation:
             case Kind::next:
+            case Kind::rise:
+            case Kind::fall:
             case Kind::previous: operands(1); break;
+            case Kind::held:
+                operands(1);
+                f->interval = ast::Interval{{{"0", {}}, "", {}}, {{number(), {}}, "s", {}}, {}};
+                break;
             case Kind::eventually:
             case Kind::always:
             case Kind::once:

@@ -150,6 +150,15 @@ void check_rate(Context& c) {
     c.model.step_seconds = seconds(quantity(*first));
 }
 
+bool is_finite_duration(Context& c, const ast::Bound& bound) {
+    if (!is_infinite(bound)) return true;
+    c.report(Code::bound_not_finite, bound.span,
+             fmt::format("{} cannot stand here; a formula is held for a finite time",
+                         bound_text(bound)))
+        .note("what has held since the first step is 'H f'");
+    return false;
+}
+
 std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
     const ast::Bound& low = interval.low;
     const ast::Bound& high = interval.high;

@@ -207,7 +207,8 @@ inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::
 inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
 
 struct Formula {
-    /// The operators of the language after desugaring words; `next` and `previous` stay as written.
+    /// The operators of the language after desugaring words; `next`, `previous`,
+    /// `rise`, `fall` and `held` stay as written.
     enum class Kind : std::uint8_t {
         constant_true,
         constant_false,
@@ -228,14 +229,23 @@ struct Formula {
         once,
         historically,
         since,
+        rise,  ///< f && Y !f
+        fall,  ///< !f && Y f
+        held,  ///< [0, n]: H[0,n] f && O[n,n] true
     };
     Kind kind = Kind::constant_true;
     Index index = 0;              ///< predicate or boolean_input
     std::vector<Index> operands;  ///< formulas; conjunction and disjunction have two or more
-    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next and previous
+    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next, previous, rise, fall
     std::uint32_t high = kUnbounded;
     Span span;
 };
+
+/// X, Y, rise and fall, whose interval [1, 1] is not written.
+constexpr bool looks_one_step_away(Formula::Kind kind) {
+    using Kind = Formula::Kind;
+    return kind == Kind::next || kind == Kind::previous || kind == Kind::rise || kind == Kind::fall;
+}
 
 /// Which error a calibrated monitor is guaranteed against.
 enum class Against : std::uint8_t { missed_alarm, missed_success };
