@@ -95,8 +95,8 @@ class Monitor {
 
     // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
     near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
-    now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom,
-        etlmon::key_of(0.409f)});
+    now.near_goal = etlmon::at_most(
+        near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom, etlmon::key_of(0.409f)});
     missing |= etlmon::is_nan(near_goal_.delta);
 
     if (missing && incomplete != 0xffffffffu) ++incomplete;

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
+#include "emit/layout.hpp"
 #include "emit/names.hpp"
-#include "emit/printer.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
 #include "plan/program/dependents.hpp"
@@ -82,14 +82,6 @@ struct Context {
 
 /// "step_ >= 2 && step_ <= 5", empty where the window is always open.
 std::string open_condition(ir::Interval interval);
-/// A float32 literal that reads back to the same bits: "0.31f".
-std::string float_literal(float x);
-/// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four
-/// spaces deeper.
-void print_wrapped(Printer& out, const std::string& text);
-/// Declarations with their comments in one column.
-void print_aligned(Printer& out,
-                   const std::vector<std::pair<std::string, std::string>>& declarations);
 /// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
 /// "max_of(max_of(a, b), c)".
 std::string call(std::string_view function, const std::vector<std::string>& arguments,
