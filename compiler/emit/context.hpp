@@ -91,9 +91,13 @@ std::string call(std::string_view function, const std::vector<std::string>& argu
 void print_summary(Printer& out, const Context& context);
 void print_inputs_and_verdicts(Printer& out, const Context& context);
 void print_constants(Printer& out, const Context& context);
+void print_class(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
 void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
+/// Opens the definition of a function that a step is made of: "Verdicts", "judge(...)".
+void open_half(Printer& out, const Context& context, std::string_view result,
+               std::string_view function);
 /// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is
 /// judged.
 void print_advance(Printer& out, const Context& context);

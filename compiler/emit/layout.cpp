@@ -131,17 +131,17 @@ Lines broken_at_assignment(Text text, std::size_t width, bool only_if_it_fits) {
     return lines;
 }
 
-/// `x([&]() noexcept { return e; });` as a block; nothing where there is no such function.
+/// `f() noexcept { return e; }` as a block; nothing where there is no such function.
 Lines broken_function(Text text, std::size_t width) {
     constexpr Text kBegins = " noexcept { ";
-    constexpr Text kEnds = " });";
+    constexpr Text kEnds = " }";
     const std::size_t begin = text.find(kBegins);
-    if (begin == Text::npos || !text.ends_with(kEnds)) return {};
+    if (begin == Text::npos) return {};
     const std::size_t body = begin + kBegins.size();
+    const std::size_t end = text.rfind(kEnds);
     Lines lines{std::string(text.substr(0, body - 1))};
-    append_indented(lines, broken(text.substr(body, text.size() - kEnds.size() - body), width - 2),
-                    2);
-    lines.emplace_back("});");
+    append_indented(lines, broken(text.substr(body, end - body), width - 2), 2);
+    lines.emplace_back(text.substr(end + 1));
     return lines;
 }
 
@@ -228,9 +228,12 @@ void print_aligned(Printer& out,
         return std::max(declaration.size(), width) + mark.size() + 3 + comment.size() <= room;
     };
     std::size_t width = 0;
-    for (const auto& [declaration, comment] : declarations)
-        if (!comment.empty() && declaration.size() <= kWidest && fits(declaration, comment, 0))
-            width = std::max(width, declaration.size());
+    for (const std::size_t widest : {kWidest, room}) {
+        if (width > 0) break;
+        for (const auto& [declaration, comment] : declarations)
+            if (!comment.empty() && declaration.size() <= widest && fits(declaration, comment, 0))
+                width = std::max(width, declaration.size());
+    }
     for (const auto& [declaration, comment] : declarations) {
         if (comment.empty()) {
             print_wrapped(out, declaration);

@@ -69,8 +69,8 @@ std::string local(Scope& scope, const std::string& name) {
 std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
     std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
-        for (const char* prefix : {"distance_", "nearest_", "threshold_", "initial_threshold_",
-                                   "set_threshold_", "observe_"})
+        for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
+                                   "initial_threshold_", "set_threshold_", "observe_"})
             names.insert(prefix + model.predicates[p].name);
     return names;
 }
@@ -132,12 +132,17 @@ private:
         for (check::Index p : plan_.predicates)
             if (!model_.predicates[p].name.empty())
                 names_.predicate_atom[p] = atom(model_.predicates[p].name);
+        for (check::Index p : plan_.predicates)
+            if (model_.predicates[p].name.empty())
+                names_.predicate_atom[p] =
+                    local(boolean_ ? judge_ : atoms_, predicate_name(model_.predicates[p]));
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
+            if (!boolean_) names_.predicate_unseen[p] = "unseen_" + names_.predicate_atom[p];
             if (!predicate.name.empty()) continue;
-            const std::string words = predicate_name(predicate);
-            names_.predicate_atom[p] = local(boolean_ ? judge_ : atoms_, words);
-            names_.predicate_local[p] = local(measure_, words + "_delta");
+            if (!boolean_)
+                for (Scope* scope : {&judge_, &measure_}) scope->claim(names_.predicate_unseen[p]);
+            names_.predicate_local[p] = local(measure_, predicate_name(predicate) + "_delta");
         }
     }
 

@@ -41,8 +41,8 @@ std::string widened(const Context& context, bool takes_max, const std::string& v
 
 void print_latch(Printer& out, const Context& context, std::uint32_t r) {
     const std::string& kept = context.names.readings[r].members[0];
-    out.line("if (position == 0) {} = {};", kept,
-             context.value(context.plan.readings[r].latch.operand));
+    print_wrapped(out, fmt::format("if (position == 0) {} = {};", kept,
+                                   context.value(context.plan.readings[r].latch.operand)));
     out.line("{} = etlmon::settled({});", reading_declaration(context, r), kept);
 }
 
@@ -104,8 +104,8 @@ void print_response(Printer& out, const Context& context, std::uint32_t r) {
     std::string now = response.of_always ? context.spelling.no : context.spelling.yes;
     if (response.pending != kNone) now = context.value(response.pending);
     if (response.recent != kNone) {
-        out.line("const Value {} = {};", names.recent,
-                 call(worst, {now, context.value(response.recent)}));
+        print_wrapped(out, fmt::format("const Value {} = {};", names.recent,
+                                       call(worst, {now, context.value(response.recent)})));
         now = names.recent;
     }
     const std::string unseen_answer = response.of_always ? context.high(response.unseen_answer)
@@ -247,9 +247,11 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     print_wrapped(out, fmt::format("const Value {}[] = {};", names.guards, list(guards)));
     print_machine_keys(out, context, r, machine.table);
     const std::string tables = "tables::" + names.local;
-    out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, names.guards);
-    out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables,
-             names.weak, names.strong);
+    print_wrapped(out, fmt::format("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables,
+                                   names.guards));
+    print_wrapped(
+        out, fmt::format("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept,
+                         tables, names.weak, names.strong));
 }
 
 template <class Items, class Spell>
@@ -273,8 +275,10 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
     const plan::Table& table = *table_of(reading);
     const std::string& name = context.names.readings[r].local;
-    out.line("// {}: {} states, {} transitions", context.graph.text(reading.node),
-             table.ends.size(), table.transitions.size());
+    print_comment(out, "//",
+                  fmt::format("{}: {} states, {} transitions", context.graph.text(reading.node),
+                              table.ends.size(), table.transitions.size()),
+                  4);
     print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
                 [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });
     print_array(out, "uint32_t", name + "_ends", table.ends,
@@ -319,9 +323,9 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
 void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
     if (std::none_of(readings.begin(), readings.end(), table_of)) return;
-    out.line(
-        "/// State machines: the transitions into each state, where they end, what each state "
-        "owes.");
+    print_doc(out,
+              "State machines: the transitions into each state, where they end, what each state "
+              "owes.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
         if (table_of(readings[r]) != nullptr) print_table(out, context, r);

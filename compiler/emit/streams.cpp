@@ -140,7 +140,7 @@ void print_streams(Printer& out, const Context& context) {
         const plan::NodeId node = context.plan.streams[slot].node;
         if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
             out.gap();
-            out.line("// {}", context.place(node));
+            print_comment(out, "//", context.place(node), 4);
         }
         if (!statement.declaration.empty()) out.line(statement.declaration);
         print_wrapped(out, statement.text);
