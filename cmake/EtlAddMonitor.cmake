@@ -15,7 +15,7 @@
 #                   262144. The program gives the monitor that file, which is empty where no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder
-# and is made anew when the spec, a file that the spec loads, the thresholds or etlc itself change.
+# and is made again when the spec, a file that the spec loads, the thresholds or etlc itself change.
 # Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
 # generators (3.21 for the others).
 cmake_policy(PUSH)

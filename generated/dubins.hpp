@@ -6,11 +6,11 @@
 //   thresholds               0b71a727755def02
 //
 //   monitor       about       state B  targets B  operations  distance elements
-//   reach         the prefix       16       1024           7                256
-//   avoid         the prefix       16       1024           7                256
-//   reach_avoid   the prefix       32       2048          18                512
-//   sequential    the prefix       32       2048          24                512
-//   all together                   60       3072          42                768
+//   reach         the prefix       16       1024           3                256
+//   avoid         the prefix       16       1024           3                256
+//   reach_avoid   the prefix       32       2048          10                512
+//   sequential    the prefix       32       2048           7                512
+//   all together                   60       3072          17                768
 //
 //   predicate  measures                       threshold  origin
 //   at_a       min cosine(z, goal_a) <=       0.243      written in the spec; no guarantee
@@ -229,7 +229,7 @@ class Monitor {
   static constexpr uint64_t kThresholdsHash = 0x0b71a727755def02u;  ///< thresholds, as they begin
   /// What it takes.
   static constexpr size_t kStateBytes = 60;           ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 42;         ///< min, max, compare in the worst step
+  static constexpr uint32_t kOperations = 17;         ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 768;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }

@@ -6,8 +6,8 @@
 //   thresholds               5fd205765801e84c
 //
 //   monitor       about       state B  targets B  operations  distance elements
-//   stays         the prefix       16         16           7                  4
-//   all together                   20         16           7                  4
+//   stays         the prefix       16         16           2                  4
+//   all together                   20         16           2                  4
 //
 //   predicate  measures             threshold  origin
 //   near_goal  min l2(z, goal) <=   0.409      written in the spec; no guarantee
@@ -71,7 +71,7 @@ class Monitor {
   static constexpr uint64_t kThresholdsHash = 0x5fd205765801e84cu;  ///< thresholds, as they begin
   /// What it takes.
   static constexpr size_t kStateBytes = 20;         ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 7;        ///< min, max, compare in the worst step
+  static constexpr uint32_t kOperations = 2;        ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }

@@ -1,7 +1,7 @@
 // Searching a large target set against measuring all of it: nanoseconds per step of both, in turns,
 // and their ratio. Usage: bench_search [--rounds N] [--largest]   (--largest: also 100 000 rows of
 // 768 elements, 307 MB) The rows are clouds of 50 around points along paths, as recorded
-// demonstrations are; the embedding is drawn anew at every step (incoherent), or walks, its steps a
+// demonstrations are; the embedding is drawn afresh at every step (incoherent), or walks, its steps a
 // share of the distance between neighbouring rows.
 #include <algorithm>
 #include <cstdio>
@@ -46,7 +46,7 @@ std::unique_ptr<float, Free> make_rows(bool clouds) {
 }
 
 /// The embeddings of so many steps. `pace`: of a walk about a row of the middle, in units of the
-/// rows' noise; 0: drawn anew.
+/// rows' noise; 0: drawn afresh.
 template <std::uint32_t K, std::uint32_t D>
 std::vector<float> make_trace(const float* rows, int steps, float pace) {
     std::mt19937 random(7);
@@ -106,7 +106,7 @@ void measure(int steps, int rounds) {
             measure<etlmon::L1, K, D>("l1", rows.get(), (kind + ", " + about).c_str(), pace, steps,
                                       rounds);
         };
-        both("drawn anew", 0);
+        both("drawn afresh", 0);
         both("walk, 0.3 a step", 0.3F);
         both("walk, 0.03 a step", 0.03F);
         both("walk, 0.003 a step", 0.003F);

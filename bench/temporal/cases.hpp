@@ -2,7 +2,7 @@
 // A case has a title, the generated Monitor, the longest window, how its inputs are filled from
 // signals, how many monitors it has and how their verdicts are visited, and Plain: robustness
 // alone, by hand; where there is a window, Rescanning too, the same with each window gone through
-// anew at each step, as straightforward monitors do.
+// again at each step, as straightforward monitors do.
 #pragma once
 
 #include <cstddef>

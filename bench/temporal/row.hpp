@@ -37,7 +37,7 @@ struct Row {
     std::size_t state_bytes = 0;
     std::uint32_t operations = 0;
     Ways<std::optional<Routine>> plain;  ///< robustness by hand
-    /// The same, with windows gone through anew at each step, in a loop.
+    /// The same, with windows gone through again at each step, in a loop.
     std::optional<Routine> rescan;
     std::optional<Routine> copilot;  ///< Copilot's monitor, called
     /// The monitor on predicates that are ready; its user reads `robustness` alone.

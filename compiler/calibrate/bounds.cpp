@@ -4,26 +4,15 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
-#include <numeric>
 
 #include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/rounding.hpp"
+#include "episodes/exact_distance.hpp"
 #include "etlmon/hosted/error_bounds.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::calibrate {
-
-constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
-
-float down(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) > x ? std::nextafter(nearest, -kFloatInfinity) : nearest;
-}
-
-float up(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kFloatInfinity) : nearest;
-}
 
 namespace {
 
@@ -31,6 +20,8 @@ using check::Aggregation;
 using check::Distance;
 using check::Expr;
 using check::Range;
+using check::round_down;
+using check::round_up;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -90,19 +81,6 @@ double magnitude_of(const Distance& distance, const float* z, const float* g,
     return sum;
 }
 
-double aggregate(const Distance& distance, std::vector<double> rows) {
-    switch (distance.aggregation) {
-        case Aggregation::min: return *std::min_element(rows.begin(), rows.end());
-        case Aggregation::max: return *std::max_element(rows.begin(), rows.end());
-        case Aggregation::mean:
-            return std::accumulate(rows.begin(), rows.end(), 0.0) /
-                   static_cast<double>(rows.size());
-        case Aggregation::kth: break;
-    }
-    std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
-    return rows[distance.kth - 1];
-}
-
 /// Row by row, since each has an error of its own: aggregates are monotonic in every row.
 Interval of_full_weights(const Distance& distance, const check::Target& target, const float* z) {
     Distance row = distance;
@@ -117,7 +95,7 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
         lows.push_back(one.low);
         highs.push_back(one.high);
     }
-    Interval result{aggregate(distance, lows), aggregate(distance, highs)};
+    Interval result{episodes::aggregate(distance, lows), episodes::aggregate(distance, highs)};
     if (distance.aggregation != Aggregation::mean) return result;
     result.low = std::max(0.0, result.low - etlmon::mean_bound(target.rows, result.high));
     result.high += etlmon::mean_bound(target.rows, result.high);
@@ -171,15 +149,16 @@ private:
     }
 
     static Range widened(const Range& r) {
-        return {down(static_cast<double>(std::nextafter(r.low, -kFloatInfinity)) -
-                     static_cast<double>(FLT_MIN)),
-                up(static_cast<double>(std::nextafter(r.high, kFloatInfinity)) +
-                   static_cast<double>(FLT_MIN))};
+        constexpr float kEnd = std::numeric_limits<float>::infinity();
+        return {round_down(static_cast<double>(std::nextafter(r.low, -kEnd)) -
+                           static_cast<double>(FLT_MIN)),
+                round_up(static_cast<double>(std::nextafter(r.high, kEnd)) +
+                         static_cast<double>(FLT_MIN))};
     }
 
     Range distance(Index index) const {
         const Interval interval = of_distance(model_, index, measured_);
-        return {down(interval.low), up(interval.high)};
+        return {round_down(interval.low), round_up(interval.high)};
     }
 
     static Interval of_distance(const check::Model& model, Index index,

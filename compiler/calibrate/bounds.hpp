@@ -30,8 +30,4 @@ Interval interval_of(const check::Distance& distance, std::uint32_t rows, std::u
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,
                                     const plan::Evaluator& measured);
 
-/// The float32 next to x, not above it; not below it.
-float down(double x);
-float up(double x);
-
 }  // namespace etlc::calibrate

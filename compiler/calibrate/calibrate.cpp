@@ -4,12 +4,13 @@
 
 #include <algorithm>
 
-#include "calibrate/episodes/parallel.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
+#include "episodes/admission.hpp"
+#include "episodes/parallel.hpp"
 
 namespace etlc::calibrate {
 
@@ -137,20 +138,20 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     }
     const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return std::nullopt;
-    const Leaks leaks(model, predicates);
-    const auto demonstrations = over_episodes<Demonstration>(paths, request, sink, [&] {
+    const episodes::Leaks leaks(model, predicates);
+    const auto demonstrations = episodes::over_episodes<Demonstration>(paths, request, sink, [&] {
         return std::make_unique<Scorer>(model, leaks, predicates, request.names);
     });
     if (!demonstrations) return std::nullopt;
     const thresholds::Allowance allowance =
-        admit(model, *demonstrations, {}, request.allow_overlap, sink);
+        episodes::admit(model, *demonstrations, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     check::Model calibrated = model;
-    record(*demonstrations, allowance, result.file);
+    episodes::record(*demonstrations, allowance, result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         calibrated.reservations.push_back(thresholds::text(used));
     std::vector<Fitted> all;
@@ -182,7 +183,8 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (sink.has_errors()) return std::nullopt;
     for (const Demonstration& demonstration : *demonstrations)
         result.file.episodes.push_back(demonstration.hash);
-    result.report = report(calibrated, predicates, *demonstrations, all) + remark_on(allowance);
+    result.report =
+        report(calibrated, predicates, *demonstrations, all) + episodes::remark_on(allowance);
     return result;
 }
 

@@ -8,11 +8,8 @@
 
 namespace etlc::calibrate {
 
-namespace {
-
 using check::ThresholdOrigin;
-
-}  // namespace
+using episodes::Label;
 
 std::vector<Index> calibrated_predicates(const check::Model& model) {
     std::vector<Index> found;
@@ -21,40 +18,28 @@ std::vector<Index> calibrated_predicates(const check::Model& model) {
     return found;
 }
 
-Scorer::Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates,
-               data::NamesInFile names)
+Scorer::Scorer(const check::Model& model, const episodes::Leaks& leaks,
+               std::vector<Index> predicates, data::NamesInFile names)
     : model_(model),
-      leaks_(leaks),
       predicates_(std::move(predicates)),
       plan_(plan::measuring(model, predicates_)),
-      evaluator_(plan_),
-      wanted_{&model, plan_.inputs, predicates_, identity_inputs(model)},
+      measured_(plan_),
+      wanted_(episodes::wanted(model, {&plan_}, predicates_, leaks)),
       names_(std::move(names)) {}
 
 diag::Result<Demonstration> Scorer::score(const std::string& path) {
-    auto recording = Recording::open(wanted_, [&](const std::vector<data::Channel>& channels) {
-        return data::open_trace(path, data::renamed(channels, names_));
-    });
+    auto recording = episodes::Recording::open(wanted_, path, names_);
     if (!recording) return recording.failure();
-    Demonstration result;
-    result.path = path;
-    result.scores.resize(predicates_.size());
-    evaluator_.reset();
-    for (;;) {
-        const auto more = recording->next();
-        if (!more) return more.failure();
-        if (!*more) break;
-        evaluator_.step(recording->samples());
+    std::vector<Scores> scores(predicates_.size());
+    const auto done = episodes::replay(*recording, {&measured_}, [&] {
         for (std::size_t i = 0; i < predicates_.size(); ++i)
-            add(predicates_[i], recording->label(predicates_[i]), result.scores[i]);
-        if (!result.leak) result.leak = leaks_.find(recording->samples(), recording->frames() - 1);
-    }
+            add(predicates_[i], recording->label(predicates_[i]), scores[i]);
+        return true;
+    });
+    if (!done) return done.failure();
     for (std::size_t i = 0; i < predicates_.size(); ++i)
-        result.scores[i].from_array = recording->from_array(predicates_[i]);
-    result.hash = recording->hash();
-    result.content = recording->content();
-    result.frames = recording->frames();
-    return result;
+        scores[i].from_array = recording->from_array(predicates_[i]);
+    return Demonstration{recording->recorded(), std::move(scores)};
 }
 
 void Scorer::add(Index predicate, Label label, Scores& scores) const {
@@ -64,7 +49,7 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
     }
     const bool positive = label == Label::yes;
     ++(positive ? scores.positives : scores.negatives);
-    const float delta = evaluator_.distance(predicate);
+    const float delta = measured_.evaluator().distance(predicate);
     if (std::isnan(delta)) {
         ++scores.unmeasured;
         return;
@@ -76,7 +61,7 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
         return;
     }
     if (!positive) return;
-    const Interval interval = *interval_of(model_, predicate, evaluator_);
+    const Interval interval = *interval_of(model_, predicate, measured_.evaluator());
     const double reach = p.upper_bound() ? interval.high : -interval.low;
     scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
     scores.has_score = true;

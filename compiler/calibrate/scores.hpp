@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/admission.hpp"
-#include "calibrate/episodes/recording.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "episodes/replay.hpp"
 
 namespace etlc::calibrate {
+
+using check::Index;
 
 /// One predicate in one demonstration. Scores are negated for >= and >, so that a smaller one
 /// always is a better one.
@@ -33,7 +33,7 @@ struct Scores {
     std::vector<Labelled> labelled;  ///< f1: all measured frames
 };
 
-struct Demonstration : Recorded {
+struct Demonstration : episodes::Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
 };
 
@@ -43,7 +43,7 @@ std::vector<Index> calibrated_predicates(const check::Model& model);
 /// Scores one demonstration after the other. Not shared between threads.
 class Scorer {
 public:
-    Scorer(const check::Model& model, const Leaks& leaks, std::vector<Index> predicates,
+    Scorer(const check::Model& model, const episodes::Leaks& leaks, std::vector<Index> predicates,
            data::NamesInFile names);
     Scorer(const Scorer&) = delete;
     Scorer& operator=(const Scorer&) = delete;
@@ -52,14 +52,13 @@ public:
     diag::Result<Demonstration> score(const std::string& path);
 
 private:
-    void add(Index predicate, Label label, Scores& scores) const;
+    void add(Index predicate, episodes::Label label, Scores& scores) const;
 
     const check::Model& model_;
-    const Leaks& leaks_;
     std::vector<Index> predicates_;
     plan::Plan plan_;
-    plan::Evaluator evaluator_;
-    Wanted wanted_;
+    episodes::Follower measured_;
+    episodes::Wanted wanted_;
     data::NamesInFile names_;
 };
 

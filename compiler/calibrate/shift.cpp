@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <set>
 
-#include "calibrate/episodes/parallel.hpp"
 #include "calibrate/shift_scores.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
@@ -13,6 +12,8 @@
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
+#include "episodes/admission.hpp"
+#include "episodes/parallel.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
@@ -128,7 +129,7 @@ std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 const std::vector<Index>& monitors,
                                                 const std::string& first, const Request& request,
                                                 diag::Sink& sink) {
-    const auto labelled = labelled_in(model, first, request.names);
+    const auto labelled = episodes::labelled_in(model, first, request.names);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), first));
         return std::nullopt;
@@ -164,49 +165,49 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const auto labelled = find_labelled(model, monitors, paths[0], request, sink);
     if (!labelled) return std::nullopt;
     const check::Model plain = unshifted(model);
-    const GroundTruth truth = ground_truth(plain, *labelled);
+    const episodes::GroundTruth truth = episodes::ground_truth(plain, *labelled);
     const auto compiled = pipeline::compile(plain, {}, sink);
     // What is true is not a matter of rho.
     const auto truths = pipeline::compile(truth.model, {{}, check::Values::boolean}, sink);
     if (!compiled || !truths) return std::nullopt;
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 
-    const Leaks leaks(model, *labelled);
-    const auto episodes = over_episodes<MonitorEpisode>(paths, request, sink, [&] {
+    const episodes::Leaks leaks(model, *labelled);
+    const auto recorded = episodes::over_episodes<MonitorEpisode>(paths, request, sink, [&] {
         return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
     });
-    if (!episodes) return std::nullopt;
+    if (!recorded) return std::nullopt;
     const thresholds::Allowance allowance =
-        admit(model, *episodes, before, request.allow_overlap, sink);
+        episodes::admit(model, *recorded, before, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
     result.file.spec = model.name;
     result.file.etlc = request.version;
-    record(*episodes, allowance, result.file);
+    episodes::record(*recorded, allowance, result.file);
     std::uint64_t frames = 0;
-    for (const MonitorEpisode& episode : *episodes) frames += episode.frames;
+    for (const MonitorEpisode& episode : *recorded) frames += episode.frames;
     result.report =
-        fmt::format("{}, {}\n", counted(episodes->size(), "episode"), counted(frames, "frame"));
+        fmt::format("{}, {}\n", counted(recorded->size(), "episode"), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        const Totals totals(*episodes, i);
+        const Totals totals(*recorded, i);
         Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
         if (const auto* refusal = std::get_if<Refusal>(&fit)) {
-            refuse(monitor, totals, episodes->size(), *refusal, sink);
+            refuse(monitor, totals, recorded->size(), *refusal, sink);
             continue;
         }
         auto& fitted = std::get<Fitted>(fit);
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
-        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *episodes);
-        result.report += monitor_report(model, monitor, totals, fitted, episodes->size());
+        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *recorded);
+        result.report += monitor_report(model, monitor, totals, fitted, recorded->size());
     }
     if (sink.has_errors()) return std::nullopt;
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));
-    result.report += remark_on(allowance);
+    result.report += episodes::remark_on(allowance);
     return result;
 }
 

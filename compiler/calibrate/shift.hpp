@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "calibrate/calibrate.hpp"
-#include "calibrate/episodes/admission.hpp"
-#include "calibrate/episodes/ground_truth.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "episodes/ground_truth.hpp"
+#include "episodes/recording.hpp"
+#include "plan/plan.hpp"
 
 namespace etlc::calibrate {
 
@@ -27,7 +27,7 @@ check::Model unshifted(check::Model model);
 struct MonitorPlans {
     const plan::Plan& monitors;
     const plan::Plan& truths;
-    const GroundTruth& ground_truth;
+    const episodes::GroundTruth& ground_truth;
 };
 
 /// One monitor in one episode. Scores are negated for missed_success, so that a smaller one always
@@ -38,7 +38,7 @@ struct MonitorScore {
     double worst = 0;           ///< where steps > 0: the worst rho over them in any build
 };
 
-struct MonitorEpisode : Recorded {
+struct MonitorEpisode : episodes::Recorded {
     std::vector<MonitorScore> scores;  ///< per calibrated monitor
 };
 

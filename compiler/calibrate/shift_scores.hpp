@@ -8,16 +8,17 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/recording.hpp"
 #include "calibrate/shift.hpp"
+#include "episodes/replay.hpp"
 
 namespace etlc::calibrate {
 
 /// Not shared between threads; all that it is given outlives it.
 class MonitorScorer {
 public:
-    MonitorScorer(const check::Model& model, const MonitorPlans& plans, const Leaks& leaks,
-                  const std::vector<Index>& monitors, const data::NamesInFile& names);
+    MonitorScorer(const check::Model& model, const MonitorPlans& plans,
+                  const episodes::Leaks& leaks, const std::vector<Index>& monitors,
+                  const data::NamesInFile& names);
     MonitorScorer(const MonitorScorer&) = delete;
     MonitorScorer& operator=(const MonitorScorer&) = delete;
 
@@ -25,21 +26,15 @@ public:
     diag::Result<MonitorEpisode> score(const std::string& path);
 
 private:
-    void note(const std::vector<etlmon::Verdict>& truths,
-              const std::vector<etlmon::Verdict>& highest,
-              const std::vector<etlmon::Verdict>& lowest, MonitorEpisode& episode) const;
+    void note(std::vector<MonitorScore>& scores) const;
 
     const check::Model& model_;
-    const MonitorPlans& plans_;
-    const Leaks& leaks_;
     const std::vector<Index>& monitors_;
     const data::NamesInFile& names_;
-    std::vector<std::size_t> said_at_;   ///< per calibrated monitor, its index in plans_.monitors
-    std::vector<std::size_t> truth_at_;  ///< and in plans_.truths
-    plan::Evaluator highest_;            ///< rho as high as any build may have it
-    plan::Evaluator lowest_;
-    plan::Evaluator truths_;
-    Wanted wanted_;
+    episodes::Follower highest_;  ///< rho as high as any build may have it
+    episodes::Follower lowest_;
+    episodes::Follower truths_;
+    episodes::Wanted wanted_;
 };
 
 }  // namespace etlc::calibrate

@@ -2,14 +2,12 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
-
 #include "data/traces/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"
-#include "plan/evaluate/evaluator.hpp"
+#include "episodes/replay.hpp"
 
 namespace etlc::driver {
 
@@ -33,7 +31,7 @@ public:
           plan_(compiled.plan),
           request_(request),
           sink_(sink),
-          evaluator_(compiled.plan),
+          monitors_(compiled.plan),
           output_(sink) {}
 
     bool execute() {
@@ -53,47 +51,21 @@ private:
     }
 
     bool step_through_trace() {
-        std::vector<data::Channel> channels;
-        for (check::Index i : plan_.inputs)
-            channels.push_back(plan::channel_of(plan_.model->inputs[i]));
-        auto trace = data::open_trace(request_.trace, data::renamed(channels, request_.names));
-        if (!trace) return fail(trace.failure());
-        data::Sample sample;
-        std::vector<plan::Sample> samples(plan_.model->inputs.size());
-        for (;;) {
-            const auto more = (*trace)->next(sample);
-            if (!more) return fail(more.failure());
-            if (!*more) break;
-            if (!narrow(sample, samples) || !report(evaluator_.step(samples))) return false;
-            show_progress((*trace)->length());
-        }
-        if (step_ == 0) return fail(data::no_steps());
-        return !request_.finish || finish();
+        auto recording =
+            episodes::Recording::open({plan_.model, plan_.inputs}, request_.trace, request_.names);
+        if (!recording) return fail(recording.failure());
+        episodes::AfterStep rest;
+        if (request_.finish) rest = [&] { return report(); };
+        const auto frame = [&] {
+            show_progress(recording->length());
+            return report();
+        };
+        const auto done = episodes::replay(*recording, {&monitors_}, frame, rest);
+        return done ? *done : fail(done.failure());
     }
 
-    bool narrow(const data::Sample& sample, std::vector<plan::Sample>& samples) {
-        for (std::size_t c = 0; c < plan_.inputs.size(); ++c) {
-            const check::Index input = plan_.inputs[c];
-            std::string why;
-            auto narrowed =
-                plan::narrow(plan_.model->inputs[input], sample.present[c], sample.values[c], why);
-            if (!narrowed)
-                return fail({diag::Code::trace_value, fmt::format("step {}: {}", step_, why)});
-            samples[input] = std::move(*narrowed);
-        }
-        return true;
-    }
-
-    bool finish() {
-        std::uint32_t horizon = 0;
-        for (const plan::Monitor& monitor : plan_.monitors)
-            horizon = std::max(horizon, monitor.horizon);
-        for (std::uint32_t call = 0; call < horizon; ++call)
-            if (!report(evaluator_.finish())) return false;
-        return true;
-    }
-
-    bool report(const std::vector<Verdict>& verdicts) {
+    bool report() {
+        const std::vector<Verdict>& verdicts = monitors_.verdicts();
         const auto out = std::back_inserter(text_);
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             const Verdict& v = verdicts[m];
@@ -124,7 +96,7 @@ private:
     const plan::Plan& plan_;
     const RunRequest& request_;
     diag::Sink& sink_;
-    plan::Evaluator evaluator_;
+    episodes::Follower monitors_;
     OutputFiles output_;
     std::string text_;
     std::uint64_t step_ = 0;

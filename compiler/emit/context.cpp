@@ -13,6 +13,7 @@ using plan::StreamOp;
 }  // namespace
 
 std::string open_condition(ir::Interval interval) {
+    if (interval.low == interval.high) return fmt::format("position == {}", interval.low);
     std::string text;
     if (interval.low > 0) text = fmt::format("position >= {}", interval.low);
     if (interval.bounded())
@@ -61,45 +62,9 @@ std::string Context::literal(plan::Value value) const {
     return fmt::format("Value{{{}, {}}}", literal(value.low), literal(value.high));
 }
 
-std::vector<Demand> demands(const plan::Plan& plan) {
-    constexpr std::uint64_t kMuch = std::uint64_t{1}
-                                    << 40U;  // of operands that share parts, counted in each
-    constexpr std::uint64_t kManyAsks = 16;
-    std::vector<int> users(plan.streams.size());
-    for (const plan::Stream& stream : plan.streams)
-        for (plan::Slot operand : stream.operands) ++users[operand];
-    std::vector<Demand> result(plan.streams.size());
-    if (plan.values != check::Values::boolean) return result;
-    for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot) {  // operands come first
-        const plan::Stream& stream = plan.streams[slot];
-        Demand& demand = result[slot];
-        switch (stream.op) {
-            case StreamOp::predicate:
-                demand = {true, plan::measured_elements(*plan.model, stream.index)};
-                break;
-            case StreamOp::flag: demand.lazy = true; break;
-            case StreamOp::negation:
-            case StreamOp::combination:
-            case StreamOp::within:
-                demand.asks = 0;
-                for (plan::Slot operand : stream.operands) {
-                    demand.asks += result[operand].keeps ? 1 : result[operand].asks;
-                    demand.lazy = demand.lazy || result[operand].lazy;
-                    demand.work = std::min(kMuch, demand.work + result[operand].work);
-                }
-                if (stream.op == StreamOp::within) demand.asks = 1;  // keeps its value anyway
-                demand.keeps = demand.lazy && users[slot] > 1 && demand.asks > kManyAsks;
-                break;
-            default: break;
-        }
-    }
-    return result;
-}
-
 std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {
-    if (boolean())
-        std::stable_sort(slots.begin(), slots.end(),
-                         [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
+    std::stable_sort(slots.begin(), slots.end(),
+                     [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
     return slots;
 }
 

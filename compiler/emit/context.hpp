@@ -11,6 +11,7 @@
 #include "emit/names.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
+#include "plan/program/demand.hpp"
 #include "plan/program/dependents.hpp"
 
 namespace etlc::emit {
@@ -27,16 +28,6 @@ inline Spelling truth_spelling() {
     return {"etlmon::kYes", "etlmon::kNo", "true", "false", "Value"};
 }
 
-/// What a Boolean monitor finds out of a stream when it is asked for.
-struct Demand {
-    bool lazy = false;       ///< an atom, or made of such
-    std::uint64_t work = 0;  ///< target elements that it may have to measure
-    std::uint64_t asks = 1;  ///< of atoms and kept values, at most
-    /// What it was found to be, since several ask: else asking doubles with each level.
-    bool keeps = false;
-};
-std::vector<Demand> demands(const plan::Plan& plan);
-
 struct Context {
     const plan::Plan& plan;
     const ir::Graph& graph;
@@ -47,7 +38,7 @@ struct Context {
     std::string targets_file;  ///< file name of the stored target sets, without folders
     Spelling spelling;
     plan::Dependents dependents;
-    std::vector<Demand> demand = demands(plan);  ///< per stream
+    std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
 
     bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
@@ -67,7 +58,7 @@ struct Context {
     bool keeps(plan::Slot slot) const { return demand[slot].keeps; }
     /// Target elements that a lazy stream may have to measure.
     std::uint64_t work(plan::Slot slot) const { return demand[slot].work; }
-    /// In a Boolean monitor, the cheapest to find out first; else as they are.
+    /// Those that measure least first; in a robustness monitor as they are.
     std::vector<plan::Slot> by_work(std::vector<plan::Slot> slots) const;
     /// `now.at_a`, a local, a register or a constant: what stands for the stream in judge().
     std::string value(plan::Slot slot) const;
@@ -106,8 +97,7 @@ void print_reading(Printer& out, const Context& context, std::uint32_t reading);
 void print_tables(Printer& out, const Context& context);
 void print_pending(Printer& out, const Context& context, std::uint32_t reading);
 /// Of machines as tables: the lists of keys that say what the states are worth, as locals.
-void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading,
-                        const plan::Table& table);
+void print_machine_keys(Printer& out, const Context& context, std::uint32_t reading);
 /// What the reading's value is assigned to: a Boolean monitor has declared it before it asks
 /// whether to compute it.
 std::string reading_declaration(const Context& context, std::uint32_t reading);

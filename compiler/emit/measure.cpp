@@ -43,11 +43,11 @@ std::string expression(const Context& context, const Expr& e) {
 /// straight into telemetry.
 std::map<Index, int> uses_of_distances(const Context& context) {
     std::map<Index, int> uses;
-    const auto visit = [&](const auto& self, const Expr& e, int weight) -> void {
-        if (e.kind == Expr::Kind::distance) uses[e.index] += weight;
-        for (const Expr& argument : e.arguments) self(self, argument, 2);
-    };
-    for (Index p : context.plan.predicates) visit(visit, context.model.predicates[p].expression, 1);
+    for (Index p : context.plan.predicates) {
+        const check::Predicate& predicate = context.model.predicates[p];
+        const int weight = predicate.plain_distance() ? 1 : 2;
+        check::for_each_distance(predicate.expression, [&](Index d) { uses[d] += weight; });
+    }
     return uses;
 }
 

@@ -1,5 +1,4 @@
 // What the class keeps for its formulas: the plan's members, declared.
-#include "plan/program/members.hpp"
 #include "emit/context.hpp"
 
 namespace etlc::emit {

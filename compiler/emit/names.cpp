@@ -8,7 +8,6 @@
 #include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
-#include "plan/program/members.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -89,11 +88,10 @@ std::string predicate_name(const check::Predicate& predicate) {
 /// How often measure() names a scalar; a point is looked at before it is measured.
 std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
     std::map<check::Index, int> uses;
-    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
-        if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
-        for (const check::Expr& argument : e.arguments) self(self, argument);
-    };
-    for (check::Index p : plan.predicates) visit(visit, plan.model->predicates[p].expression);
+    for (check::Index p : plan.predicates)
+        check::for_each(plan.model->predicates[p].expression, [&](const check::Expr& e) {
+            if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
+        });
     for (check::Index d : plan.distances)
         for (check::Index i : plan.model->distances[d].point) uses[i] += 2;
     return uses;
@@ -256,41 +254,15 @@ private:
     /// The members of a reading, and the locals that work on them.
     void name_state(const plan::Reading& reading, const std::string& name,
                     Names::OfReading& names) {
-        switch (reading.kind) {
-            case plan::Reading::Kind::latch: names.members = {member(members_, name)}; break;
-            case plan::Reading::Kind::fold:
-                names.members = {member(members_, name)};
-                if (reading.fold.left != plan::kNone)
-                    names.members.push_back(member(members_, name + "_guard"));
-                break;
-            case plan::Reading::Kind::response:
-                names.members = {member(members_, name + "_settled")};
-                names.recent = local(judge_, name + "_recent");
-                break;
-            case plan::Reading::Kind::machine:
-                if (reading.machine.unrolled) return name_registers(reading.machine, name, names);
-                names.members = {member(members_, name)};
-                name_table(name, names);
-                break;
-            case plan::Reading::Kind::pending:
-                name_pending(reading.pending, name, names);
-                if (!reading.pending.is_fold) name_table(name, names);
-                break;
-            case plan::Reading::Kind::combination: break;
+        if (reading.kind == plan::Reading::Kind::pending) {
+            name_pending(reading.pending, name, names);
+        } else {
+            for (const plan::Member& kept : plan::members_of(reading))
+                names.members.push_back(member(members_, name + kept.suffix));
+            for (const std::string& suffix : reading.straight.locals)
+                names.locals.push_back(local(judge_, name + suffix));
         }
-    }
-
-    void name_registers(const plan::Machine& machine, const std::string& name,
-                        Names::OfReading& names) {
-        int owing = 0;  // states kept so far that owe something
-        for (std::size_t q = 0; q < machine.states.size(); ++q) {
-            if (machine.states[q].always_true) continue;
-            const bool met = machine.automaton.states[q].empty();
-            if (!met) ++owing;
-            const std::string state = met ? name + "_met" : fmt::format("{}_owing_{}", name, owing);
-            names.members.push_back(member(members_, state));
-            names.next.push_back(local(judge_, state));
-        }
+        if (plan::table_of(reading) != nullptr) name_table(name, names);
     }
 
     void name_table(const std::string& name, Names::OfReading& names) {

@@ -68,8 +68,7 @@ struct Names {
     struct OfReading {
         std::string local;
         std::vector<std::string> members;  ///< as plan::members_of lists them
-        std::string recent;                ///< local of a response that waits before its window
-        std::vector<std::string> next;     ///< locals: this step's value of each register
+        std::vector<std::string> locals;   ///< of straight-line code, likewise
         std::string guards, weak, strong;  ///< locals of a machine as a table; else empty
         std::vector<std::string> parts;    ///< locals of what is pending: at the last positions
         std::string count;                 ///< local: how many of these there are

@@ -43,35 +43,37 @@ void print_part(Printer& out, const Context& context, const Pending& pending,
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::OfReading& names = context.names.readings[r];
-    const plan::Fold& fold = pending.fold;
+    const Pending::Part& fold = pending.fold;
     const bool max = fold.max;
-    const std::string left = fold.left == kNone ? "nullptr" : names.parts[fold.left];
+    const std::string left = fold.operands.size() == 2 ? names.parts[fold.operands[0]] : "nullptr";
     const std::string end =
         fold.interval.bounded() ? fmt::format("{}", fold.interval.high) : "etlmon::kWithoutEnd";
-    print_wrapped(
-        out, fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, "
-                         "position, {}, {}, {}, {});",
-                         reading_declaration(context, r), max ? "Seeking" : "Guarding",
-                         *(names.members.end() - 2), names.members.back(), left,
-                         names.parts[fold.right], names.count, pending.horizon, fold.interval.low,
-                         end, max ? context.high(fold.unseen) : context.low(fold.unseen)));
+    print_wrapped(out,
+                  fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, "
+                              "position, {}, {}, {}, {});",
+                              reading_declaration(context, r), max ? "Seeking" : "Guarding",
+                              *(names.members.end() - 2), names.members.back(), left,
+                              names.parts[fold.operands.back()], names.count, pending.horizon,
+                              fold.interval.low, end,
+                              max ? context.high(fold.unseen) : context.low(fold.unseen)));
 }
 
 void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::OfReading& names = context.names.readings[r];
-    out.line("Reading {}[{}][{}];", names.guards, pending.horizon + 1, pending.guards.size());
+    out.line("Reading {}[{}][{}];", names.guards, pending.horizon + 1, pending.table.guards.size());
     out.open(fmt::format("for (uint32_t i = 0; i < {0}; ++i) {{", names.count));
-    for (std::size_t g = 0; g < pending.guards.size(); ++g) {
+    for (std::size_t g = 0; g < pending.table.guards.size(); ++g) {
         std::vector<std::string> literals;
-        for (std::uint32_t part : pending.guards[g]) literals.push_back(names.parts[part] + "[i]");
+        for (std::uint32_t part : pending.table.guards[g])
+            literals.push_back(names.parts[part] + "[i]");
         print_wrapped(out, fmt::format("{}[i][{}] = {};", names.guards, g,
                                        literals.empty() ? fmt::format("etlmon::settled({})",
                                                                       context.spelling.yes)
                                                         : call("min_of", literals)));
     }
     out.close();
-    print_machine_keys(out, context, r, pending.machine.table);
+    print_machine_keys(out, context, r);
     const std::string tables = "tables::" + names.local;
     print_wrapped(
         out, fmt::format(

@@ -7,7 +7,6 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "plan/narrow_targets.hpp"
-#include "plan/program/members.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -339,21 +338,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {
         const plan::Cost cost = plan::cost_of(reading, plan.values);
-        std::string as = "fold";
-        if (reading.kind == plan::Reading::Kind::latch) as = "latch";
-        if (reading.kind == plan::Reading::Kind::combination)
-            as = reading.max ? "max of parts" : "min of parts";
-        if (reading.kind == plan::Reading::Kind::response) as = "response";
-        if (reading.kind == plan::Reading::Kind::pending)
-            as = fmt::format("{}, anew at {} positions",
-                             reading.pending.is_fold ? "fold" : "state machine",
-                             reading.pending.horizon + 1);
-        if (reading.kind == plan::Reading::Kind::machine)
-            as = fmt::format("state machine, {} states, {} transitions{}",
-                             reading.machine.states.size(),
-                             reading.machine.automaton.transitions.size(),
-                             reading.machine.unrolled ? "" : ", as a table");
-        rows.push_back({shortened(graph.text(reading.node)), as, number(cost.state_bytes),
+        rows.push_back({shortened(graph.text(reading.node)), reading.as, number(cost.state_bytes),
                         number(cost.code_bytes), number(cost.operations)});
     }
     for (const plan::Stream& stream : plan.streams) {

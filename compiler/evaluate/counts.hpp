@@ -1,17 +1,17 @@
 // How often claims agree with the truth.
 // Takes: pairs of what was said and what was true. Gives: precision, recall, F1 and agreement, and
-// those of the two monitors that do not look. Keeps true: what could not be said (a missing sample)
-// is a miss and never agrees; a share of nothing is no number.
+// those of the two baselines that ignore the data. Keeps true: what could not be said (a missing
+// sample) is a miss and never agrees; a rate without a case is no number.
 #pragma once
 
 #include <cstdint>
 #include <optional>
 
-#include "calibrate/episodes/truth.hpp"
+#include "episodes/truth.hpp"
 
 namespace etlc::evaluate {
 
-using calibrate::Label;
+using episodes::Label;
 
 struct Counts {
     std::uint64_t true_positives = 0;

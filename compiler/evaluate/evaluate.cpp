@@ -6,10 +6,10 @@
 #include <memory>
 #include <set>
 
-#include "calibrate/episodes/admission.hpp"
-#include "calibrate/episodes/parallel.hpp"
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
+#include "episodes/admission.hpp"
+#include "episodes/parallel.hpp"
 
 namespace etlc::evaluate {
 
@@ -22,7 +22,7 @@ constexpr std::size_t kMostNotes = 8;
 std::optional<thresholds::Allowance> admit(const std::vector<EpisodeResult>& episodes,
                                            const Request& request, const thresholds::File& file,
                                            diag::Sink& sink) {
-    const calibrate::Seen known(file, thresholds::all_episodes(file));
+    const episodes::Seen known(file, thresholds::all_episodes(file));
     thresholds::Allowance allowance{request.allow_overlap};
     std::vector<std::string> refused;
     std::vector<std::string> in_part;
@@ -36,7 +36,7 @@ std::optional<thresholds::Allowance> admit(const std::vector<EpisodeResult>& epi
         refused.push_back(episode.path);
         if (!found->equal)
             in_part.push_back(fmt::format("{} {} one of them", data::in_quotes(episode.path),
-                                          calibrate::text(*found)));
+                                          episodes::text(*found)));
     }
     if (refused.empty()) return allowance;
     auto& error = sink.report(data::in_file(
@@ -67,7 +67,7 @@ void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& 
     const auto leaked = std::count_if(first, episodes.end(),
                                       [](const EpisodeResult& episode) { return episode.leak; });
     auto& warning = sink.report(
-        data::in_file({diag::Code::target_in_evaluation, calibrate::text(model, *first->leak)},
+        data::in_file({diag::Code::target_in_evaluation, episodes::text(model, *first->leak)},
                       request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
     warning.note(
         fmt::format("{} of the {} episodes {} such a frame: the figures are better than on others",
@@ -86,7 +86,7 @@ bool refuse_without_truth(const check::Model& model, const Subject& subject, dia
     const std::string name = model.predicates[monitors.front().lacking.front()].name;
     const std::string shown = name.empty() ? "NAME" : name;
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
-                "no predicate of this spec has a truth to be held against")
+                "no predicate of this spec has a truth to compare it with")
         .note(fmt::format("say when it holds, 'truth {0} = ...;', or record it: an array "
                           "'truth.{0}' of 0 and 1 in the episodes, which --map may name",
                           shown));
@@ -239,7 +239,7 @@ Evaluation summarise(const check::Model& model, const Subject& subject,
 std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request& request,
                                    const std::optional<thresholds::File>& seen, diag::Sink& sink) {
     const check::Model& model = *spec.model;
-    auto labelled = calibrate::labelled_in(model, request.episodes[0], request.names);
+    auto labelled = episodes::labelled_in(model, request.episodes[0], request.names);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), request.episodes[0]));
         return std::nullopt;
@@ -249,12 +249,13 @@ std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request
     const auto truth =
         pipeline::compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
     if (!truth) return std::nullopt;
-    const calibrate::Leaks leaks(model, subject.labelled);
-    const auto judge = [&] {
-        return std::make_unique<Judge>(spec.plan, truth->plan, subject, leaks, request.names);
+    const episodes::Leaks leaks(model, subject.labelled);
+    const auto scorer = [&] {
+        return std::make_unique<EpisodeScorer>(spec.plan, truth->plan, subject, leaks,
+                                               request.names);
     };
     const auto episodes =
-        calibrate::over_episodes<EpisodeResult>(request.episodes, request, sink, judge);
+        episodes::over_episodes<EpisodeResult>(request.episodes, request, sink, scorer);
     if (!episodes) return std::nullopt;
     const auto allowance =
         seen ? admit(*episodes, request, *seen, sink) : std::optional(thresholds::Allowance{});

@@ -1,8 +1,8 @@
 // `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
-// Takes: the compiled spec and the episodes. Gives: counts and rates
-// per predicate and monitor, each with its interval and beside the claims that do not look. Keeps
-// true: the result is the same whatever the number of threads; one episode a thread is open at a
-// time; episodes that thresholds were calibrated on are refused.
+// Takes: the compiled spec and the episodes. Gives: counts and rates per predicate and monitor,
+// each with its interval and next to the baselines that ignore the data. Keeps true: the result is
+// the same whatever the number of threads; one episode a thread is open at a time; episodes that
+// thresholds were calibrated on are refused.
 #pragma once
 
 #include <functional>
@@ -13,7 +13,7 @@
 
 #include "diag/diag.hpp"
 #include "evaluate/bootstrap.hpp"
-#include "evaluate/judge.hpp"
+#include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
 #include "pipeline/compile.hpp"
 #include "thresholds/thresholds.hpp"

@@ -1,10 +1,11 @@
 #include "evaluate/subject.hpp"
 
 #include <algorithm>
-#include <set>
 #include <utility>
 
 #include "check/formulas/horizons.hpp"
+#include "check/guarantees/guarantees.hpp"
+#include "check/guarantees/provenance.hpp"
 
 namespace etlc::evaluate {
 
@@ -12,24 +13,6 @@ namespace {
 
 using check::Formula;
 using Kind = check::Formula::Kind;
-
-void collect_predicates(const check::Model& model, Index formula, std::vector<bool>& seen,
-                        std::set<Index>& found) {
-    if (seen[formula]) return;
-    seen[formula] = true;
-    const Formula& f = model.formulas[formula];
-    if (f.kind == Kind::predicate) found.insert(f.index);
-    for (const Index operand : f.operands) collect_predicates(model, operand, seen, found);
-}
-
-/// Without a truth: what it says of scalars, by a threshold that somebody wrote down, is what it
-/// means.
-bool is_its_own_truth(const check::Model& model, Index predicate) {
-    const check::Predicate& p = model.predicates[predicate];
-    return p.threshold.origin == check::ThresholdOrigin::literal &&
-           std::none_of(p.inputs.begin(), p.inputs.end(),
-                        [&](Index i) { return model.inputs[i].is_embedding(); });
-}
 
 bool is_eventually(const Formula& f) {
     return f.kind == Kind::eventually && f.low == 0 && f.high == check::kUnbounded;
@@ -92,7 +75,7 @@ Index append_visit(check::Model& model, const std::string& name,
 }  // namespace
 
 Subject subject(const check::Model& model, std::vector<Index> labelled) {
-    Subject result{labelled, calibrate::ground_truth(model, labelled), {}};
+    Subject result{labelled, episodes::ground_truth(model, labelled), {}};
     check::Model& truth = result.truth.model;
     const std::vector<check::Monitor> true_monitors = std::exchange(truth.monitors, {});
     const std::vector<check::Reach> reaches = check::reaches(model);
@@ -100,12 +83,9 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
         const check::Monitor& monitor = model.monitors[m];
         MonitorSubject& subject = result.monitors.emplace_back();
         subject.monitor = m;
-        std::set<Index> predicates;
-        std::vector<bool> seen(model.formulas.size());
-        collect_predicates(model, monitor.formula, seen, predicates);
-        for (const Index p : predicates) {
+        for (const Index p : check::predicates_of(model, monitor.formula)) {
             const bool has_label = std::find(labelled.begin(), labelled.end(), p) != labelled.end();
-            if (!has_label && !is_its_own_truth(model, p)) subject.lacking.push_back(p);
+            if (!has_label && !check::is_own_truth(model, p)) subject.lacking.push_back(p);
         }
         if (!subject.lacking.empty()) continue;
         subject.truth = static_cast<Index>(truth.monitors.size());

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/ground_truth.hpp"
 #include "check/model/model.hpp"
+#include "episodes/ground_truth.hpp"
 
 namespace etlc::evaluate {
 
@@ -26,7 +26,7 @@ struct MonitorSubject {
 
 struct Subject {
     std::vector<Index> labelled;  ///< predicates
-    calibrate::GroundTruth truth;
+    episodes::GroundTruth truth;
     std::vector<MonitorSubject> monitors;
 };
 

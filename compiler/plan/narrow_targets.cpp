@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "check/numbers/rounding.hpp"
 #include "etlmon/distance/widen.hpp"
 #include "plan/kernels.hpp"
 #include "plan/stored.hpp"
@@ -18,12 +19,6 @@ namespace {
 using diag::Code;
 
 constexpr double kLargestHalf = 65504;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
-
-float rounded_up(double x) {
-    const auto nearest = static_cast<float>(x);
-    return static_cast<double>(nearest) < x ? std::nextafter(nearest, kInfinity) : nearest;
-}
 
 /// The bits of a double that is a finite float16.
 std::uint16_t half_bits(double half) {
@@ -111,7 +106,7 @@ private:
         constexpr double kLargest = 127;
         float greatest = 0;
         for (const float g : rows_) greatest = std::max(greatest, std::abs(g));
-        set_.scale = std::max(rounded_up(static_cast<double>(greatest) / kLargest), FLT_MIN);
+        set_.scale = std::max(check::round_up(static_cast<double>(greatest) / kLargest), FLT_MIN);
         std::vector<double> narrow;
         for (const float g : rows_) {
             const double q =
@@ -140,7 +135,7 @@ private:
             moved = std::max(moved, norm.value());
         }
         set_.lossless = lossless;
-        set_.moved = rounded_up(moved);
+        set_.moved = check::round_up(moved);
     }
 
     /// The row that the distance is defined by: of length 1, to the precision of double, for cosine
@@ -180,15 +175,15 @@ void add_cuts(const Plan& plan, const check::Predicate& predicate, std::vector<C
                              4 * static_cast<double>(FLT_MIN);
         for (const float shift : {monitor.shift, -monitor.shift}) {
             const double at = static_cast<double>(epsilon) + static_cast<double>(shift);
-            add({-rounded_up(-(at - slack)), rounded_up(at + slack)});
+            add({-check::round_up(-(at - slack)), check::round_up(at + slack)});
         }
     }
 }
 
 bool reads(const check::Expr& e, Index distance) {
-    return (e.kind == check::Expr::Kind::distance && e.index == distance) ||
-           std::any_of(e.arguments.begin(), e.arguments.end(),
-                       [&](const check::Expr& argument) { return reads(argument, distance); });
+    bool found = false;
+    check::for_each_distance(e, [&](Index d) { found = found || d == distance; });
+    return found;
 }
 
 /// Only predicates that compare it as it is, with a number that stays, read the distance.

@@ -17,18 +17,14 @@ namespace etlc::plan {
 
 namespace {
 
-void collect_distances(const check::Expr& e, std::set<Index>& distances) {
-    if (e.kind == check::Expr::Kind::distance) distances.insert(e.index);
-    for (const check::Expr& argument : e.arguments) collect_distances(argument, distances);
-}
-
 /// What is read and measured for these predicates and these inputs.
 void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates) {
     const check::Model& model = *plan.model;
     std::set<Index> distances;
     for (Index p : predicates) {
         inputs.insert(model.predicates[p].inputs.begin(), model.predicates[p].inputs.end());
-        collect_distances(model.predicates[p].expression, distances);
+        check::for_each_distance(model.predicates[p].expression,
+                                 [&](Index distance) { distances.insert(distance); });
     }
     std::set<Index> targets;
     for (Index d : distances) targets.insert(model.distances[d].target);
@@ -93,17 +89,13 @@ public:
         keep_used_streams();
         share_windows(plan_);
         keep_used_streams();
-        for (Reading& reading : plan_.readings) {
-            if (reading.kind == Reading::Kind::machine) complete(reading.machine);
-            if (reading.kind == Reading::Kind::pending)
-                reading.pending.machine.table = make_table(reading.pending.machine);
-        }
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
         plan_.counts_steps =
             plan_.has_sliding ||
-            std::any_of(plan_.readings.begin(), plan_.readings.end(), counts) ||
+            std::any_of(plan_.readings.begin(), plan_.readings.end(),
+                        [](const Reading& reading) { return asks_position(reading); }) ||
             std::any_of(plan_.streams.begin(), plan_.streams.end(),
                         [](const Stream& stream) { return stream.op == StreamOp::within; });
         add_costs(plan_);
@@ -111,14 +103,6 @@ public:
     }
 
 private:
-    static bool counts(const Reading& reading) {
-        const bool by_position = reading.kind == Reading::Kind::latch ||
-                                 reading.kind == Reading::Kind::response ||
-                                 reading.kind == Reading::Kind::pending;
-        if (by_position) return true;
-        return reading.kind == Reading::Kind::fold && reading.fold.interval != ir::Interval{};
-    }
-
     /// Folding leaves streams behind that nothing reads; sharing may leave operands behind what
     /// uses them.
     void keep_used_streams() {
@@ -128,7 +112,7 @@ private:
             used[slot] = true;
             for (Slot operand : plan_.streams[slot].operands) self(self, operand);
         };
-        for_each_slot([&](Slot& slot) { use(use, slot); });
+        for_each_root([&](Slot& slot) { use(use, slot); });
 
         std::vector<Slot> renumbered(plan_.streams.size(), kNone);
         std::vector<Stream> kept;
@@ -141,15 +125,13 @@ private:
         for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
             if (used[slot]) keep(keep, slot);
         plan_.streams = std::move(kept);
-        for_each_slot([&](Slot& slot) { slot = renumbered[slot]; });
+        for_each_root([&](Slot& slot) { slot = renumbered[slot]; });
     }
 
     /// Every place outside the streams that names one.
     template <class Visit>
-    void for_each_slot(Visit visit) {
-        for (Reading& reading : plan_.readings)
-            for (Slot* slot : slots_of(reading))
-                if (*slot != kNone) visit(*slot);
+    void for_each_root(Visit visit) {
+        for (Reading& reading : plan_.readings) plan::for_each_slot(reading, visit);
         for (Monitor& monitor : plan_.monitors)
             if (monitor.sliding) visit(monitor.stream);
     }

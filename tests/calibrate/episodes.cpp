@@ -23,7 +23,7 @@ private:
 
 }  // namespace
 
-calibrate::Opener csv_episode(std::string text) {
+episodes::Opener csv_episode(std::string text) {
     auto shared = std::make_shared<std::string>(std::move(text));
     return [shared](const std::vector<data::Channel>& channels)
                -> diag::Result<std::unique_ptr<data::Trace>> {
@@ -33,18 +33,18 @@ calibrate::Opener csv_episode(std::string text) {
     };
 }
 
-std::string labels(const calibrate::Wanted& wanted, const calibrate::Opener& open,
-                   calibrate::Index predicate) {
-    auto recording = calibrate::Recording::open(wanted, open);
+std::string labels(const episodes::Wanted& wanted, const episodes::Opener& open,
+                   episodes::Index predicate) {
+    auto recording = episodes::Recording::open(wanted, open);
     if (!recording) return recording.failure().message;
     std::string result;
     for (;;) {
         const auto more = recording->next();
         if (!more) return more.failure().message;
         if (!*more) return result;
-        const calibrate::Label label = recording->label(predicate);
+        const episodes::Label label = recording->label(predicate);
         result += result.empty() ? "" : " ";
-        result += label == calibrate::Label::yes ? "y" : label == calibrate::Label::no ? "n" : "?";
+        result += label == episodes::Label::yes ? "y" : label == episodes::Label::no ? "n" : "?";
     }
 }
 

@@ -5,16 +5,16 @@
 
 #include <string>
 
-#include "calibrate/episodes/recording.hpp"
+#include "episodes/recording.hpp"
 
 namespace etlc::tests {
 
 /// Opens this text as a .csv episode; it is copied.
-calibrate::Opener csv_episode(std::string text);
+episodes::Opener csv_episode(std::string text);
 
 /// "y n ? y": the labels of a predicate, frame after frame; the failure's message where there was
 /// one.
-std::string labels(const calibrate::Wanted& wanted, const calibrate::Opener& open,
-                   calibrate::Index predicate);
+std::string labels(const episodes::Wanted& wanted, const episodes::Opener& open,
+                   episodes::Index predicate);
 
 }  // namespace etlc::tests

@@ -6,9 +6,9 @@
 #include <map>
 #include <set>
 
-#include "calibrate/episodes/ground_truth.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "driver/compile.hpp"
+#include "episodes/ground_truth.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "random.hpp"
 #include "roads.hpp"
@@ -96,7 +96,7 @@ void count(const driver::Compiled& monitors, const driver::Compiled& truths, Ran
     }
 }
 
-/// Calibrates anew for every draw. Draws that show too little to calibrate from are left out.
+/// Calibrates again for every draw. Draws that show too little to calibrate from are left out.
 std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, bool of_monitors,
                                   check::Values values) {
     std::map<std::string, Kept> kept;
@@ -123,7 +123,7 @@ std::map<std::string, Kept> draws(const std::string& spec, bool of_predicates, b
             ADD_FAILURE() << thresholds;
             return kept;
         }
-        auto truth = calibrate::ground_truth(*monitors->model, {0});
+        auto truth = episodes::ground_truth(*monitors->model, {0});
         const auto truths =
             pipeline::compile(std::move(truth.model), {{}, check::Values::boolean}, sink);
         for (int i = 0; i < kFresh; ++i) count(*monitors, *truths, random, kept);

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
-#include "calibrate/episodes/ground_truth.hpp"
 #include "calibrate/fit.hpp"
 #include "check/check.hpp"
 #include "check/guarantees/guarantees.hpp"
+#include "episodes/ground_truth.hpp"
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
 #include "plan/evaluate/evaluator.hpp"
@@ -173,7 +173,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
         "monitor p0 = F (a && F b); monitor p1 = G (s > 0.5 -> F[0, 3] a); monitor p2 = a U b;\n"
         "monitor n0 = G !a; monitor n1 = G (a -> s > 0.5); monitor n2 = !a U (s > 0.5 && !b);\n"
         "monitor m0 = G (s > 0.5 -> a) && G !b; monitor c0 = G (s > 0.5 -> a); monitor c1 = G !b;");
-    const calibrate::GroundTruth truth = calibrate::ground_truth(model, {0, 1});
+    const episodes::GroundTruth truth = episodes::ground_truth(model, {0, 1});
     Steppable monitors(model);
     Steppable truths(truth.model);
     Random random(2026);

@@ -8,8 +8,8 @@
 namespace etlc::tests {
 namespace {
 
-using calibrate::Recording;
-using calibrate::Wanted;
+using episodes::Recording;
+using episodes::Wanted;
 
 constexpr const char* kSpec =
     "spec t; input x : f32; input v : f32; input px : f32;\n"
@@ -27,7 +27,7 @@ struct Labels : testing::Test {
         check::Options options;
         options.allow_uncalibrated = true;
         model = *check::check(parse::parse(file, sink), file, options, sink);
-        wanted = {&model, {0, 1}, {0}, calibrate::identity_inputs(model)};
+        wanted = {&model, {0, 1}, {0}, episodes::identity_inputs(model)};
     }
 };
 
@@ -77,7 +77,7 @@ std::string hash(const Wanted& wanted, const std::string& text) {
     auto recording = Recording::open(wanted, csv_episode(text));
     while (*recording->next()) {
     }
-    return recording->hash();
+    return recording->recorded().hash;
 }
 
 TEST_F(Labels, AnEpisodeIsWhatItsCalibratedPredicatesRead) {

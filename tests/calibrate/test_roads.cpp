@@ -239,7 +239,7 @@ TEST(Roads, AWrittenTargetOfScalarsIsNoLeak) {
     EXPECT_EQ(calibrated(spec, files.paths()).codes, Codes{});
 }
 
-/// Held against itself, a comparison cannot be wrong.
+/// Compared with itself, a comparison cannot be wrong.
 TEST(Roads, AComparisonWithoutATruthGuaranteesNothing) {
     const Files files({"z[0]\n0\n1\n", "z[0]\n0.5\n2\n"});
     const std::string spec =

@@ -100,7 +100,7 @@ TEST(Shift, CoversDrawnEpisodes) {
     for (const std::string against : {"missed_alarm", "missed_success"}) {
         const bool alarms = against == "missed_alarm";
         const Planned unshifted(calibrate::unshifted(model_of(against, 0)));
-        const Planned truths(calibrate::ground_truth(unshifted.model, {0}).model);
+        const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
         plan::Evaluator said(unshifted.plan);
         plan::Evaluator truth(truths.plan);
         Random random(77);
@@ -142,7 +142,7 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
         const bool alarms = against == "missed_alarm";
         const check::Model model = model_of(against, 0);
         const Planned unshifted(calibrate::unshifted(model));
-        const Planned truths(calibrate::ground_truth(unshifted.model, {0}).model);
+        const Planned truths(episodes::ground_truth(unshifted.model, {0}).model);
         plan::Evaluator said(unshifted.plan);
         plan::Evaluator truth(truths.plan);
         Random random(78);

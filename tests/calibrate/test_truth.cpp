@@ -4,9 +4,9 @@
 
 #include <cmath>
 
-#include "calibrate/episodes/exact_distance.hpp"
-#include "calibrate/episodes/ground_truth.hpp"
-#include "calibrate/episodes/truth.hpp"
+#include "episodes/exact_distance.hpp"
+#include "episodes/ground_truth.hpp"
+#include "episodes/truth.hpp"
 #include "loading.hpp"
 #include "random.hpp"
 #include "reference/reference.hpp"
@@ -14,7 +14,7 @@
 namespace etlc::tests {
 namespace {
 
-using calibrate::Label;
+using episodes::Label;
 
 /// A formula of past operators over a, b and two comparisons.
 std::string past_formula(Random& random, int depth) {
@@ -40,8 +40,8 @@ std::string past_formula(Random& random, int depth) {
     }
 }
 
-calibrate::Frame random_frame(Random& random) {
-    calibrate::Frame frame;
+episodes::Frame random_frame(Random& random) {
+    episodes::Frame frame;
     for (int i = 0; i < 2; ++i)
         frame.push_back(random.chance(0.15) ? std::vector<double>{}
                                             : std::vector<double>{random.between(0, 1) + 0.0});
@@ -68,7 +68,7 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
         const auto model = load(text);
         ASSERT_TRUE(model) << text;
         const check::Index formula = model->monitors[0].formula;
-        calibrate::TruthEvaluator truth(*model, {formula});
+        episodes::TruthEvaluator truth(*model, {formula});
         reference::Trace trace;
         for (int t = 0; t < 16; ++t) trace.push_back(random_frame(random));
         const reference::Run run = reference::evaluate(*model, trace);
@@ -88,7 +88,7 @@ Label single(const std::string& comparison, double x) {
         fmt::format("spec t; input x : f32; input z : i8[2] scale 0.25; target g = [[0, 0.25]];\n"
                     "sliding monitor m = {};",
                     comparison));
-    calibrate::TruthEvaluator truth(*model, {model->monitors[0].formula});
+    episodes::TruthEvaluator truth(*model, {model->monitors[0].formula});
     truth.step({{x}, {0, 2}});
     return truth[model->monitors[0].formula];
 }
@@ -129,7 +129,7 @@ TEST(Truth, DistancesInDouble) {
             for (int i = 0; i < 20; ++i) {
                 const std::vector<double> z{random.grid(-2, 2, 0.125), random.grid(-2, 2, 0.125)};
                 const auto run = reference::evaluate(*model, {{z}});
-                const auto delta = calibrate::exact_distance(*model, model->distances[0], z);
+                const auto delta = episodes::exact_distance(*model, model->distances[0], z);
                 const double expected = run.telemetry[0][0].delta;
                 ASSERT_EQ(delta.has_value(), expected == expected) << metric;
                 if (!delta) continue;
@@ -146,7 +146,7 @@ TEST(GroundTruth, ReplacesLabelledPredicatesOnly) {
         "predicate p = x <= 1; predicate q = y <= 1; truth p = px <= 0;\n"
         "monitor m = F (p && q); monitor n = G !p;");
     ASSERT_TRUE(model);
-    const calibrate::GroundTruth truth = calibrate::ground_truth(*model, {0});
+    const episodes::GroundTruth truth = episodes::ground_truth(*model, {0});
     ASSERT_EQ(truth.model.inputs.size(), 4U);
     EXPECT_EQ(truth.inputs[0], 3U);
     EXPECT_EQ(truth.inputs[1], check::kNone);
@@ -161,9 +161,9 @@ TEST(GroundTruth, ReplacesLabelledPredicatesOnly) {
     EXPECT_EQ(run.verdicts[1][0].status, reference::Status::satisfied);
     EXPECT_EQ(run.verdicts[0][1].status, reference::Status::satisfied);
     EXPECT_EQ(run.verdicts[1][1].status, reference::Status::violated);
-    EXPECT_EQ(calibrate::sample_of(Label::yes).values, std::vector<float>{1});
-    EXPECT_EQ(calibrate::sample_of(Label::no).values, std::vector<float>{0});
-    EXPECT_FALSE(calibrate::sample_of(Label::unknown).present);
+    EXPECT_EQ(episodes::sample_of(Label::yes).values, std::vector<float>{1});
+    EXPECT_EQ(episodes::sample_of(Label::no).values, std::vector<float>{0});
+    EXPECT_FALSE(episodes::sample_of(Label::unknown).present);
 }
 
 }  // namespace

@@ -29,14 +29,15 @@ const std::map<std::string, Names> kArrows = {
     {"plan", {"ir"}},
     {"emit", {"plan"}},
     {"pipeline", {"opt", "plan"}},
-    {"calibrate", {"pipeline", "thresholds"}},
-    {"evaluate", {"calibrate"}},
-    {"driver", {"parse", "emit", "evaluate"}},
+    {"episodes", {"plan"}},
+    {"calibrate", {"episodes", "pipeline"}},
+    {"evaluate", {"episodes", "pipeline"}},
+    {"driver", {"parse", "emit", "calibrate", "evaluate"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
-const Names kBelowTheModel = {"reference", "ir",       "opt",       "plan",
-                              "emit",      "pipeline", "calibrate", "evaluate"};
+const Names kBelowTheModel = {"reference", "ir",       "opt",       "plan",    "emit",
+                              "pipeline",  "episodes", "calibrate", "evaluate"};
 
 /// The judge in tests shares no arithmetic with what it judges.
 const Names kWithoutRuntime = {"reference"};

@@ -166,7 +166,7 @@ TEST_F(Hdf5Trace, UnknownPackingIsNamed) {
     EXPECT_EQ(found.code, Code::malformed_trace_array);
     EXPECT_EQ(found.message,
               "array 'z': dataset 'z' is packed by the filter 'lzf' (number 32000), which is not "
-              "read; pack it anew with compression='gzip' in h5py, or by 'h5repack -f GZIP=4 "
+              "read; pack it again with compression='gzip' in h5py, or by 'h5repack -f GZIP=4 "
               "OLD.h5 NEW.h5'");
 }
 

@@ -145,7 +145,7 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
         .note(c.model.formulas[at].span, "it is used here");
 }
 
-/// What says of an embedding has a truth by its name. Held against itself, it could not but agree.
+/// A predicate over an embedding has its truth by its name. Compared with itself, it always agrees.
 void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
         return c.model.predicates[predicate].name.empty() && !is_own_truth(c.model, predicate);

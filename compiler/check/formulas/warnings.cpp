@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <optional>
 
 #include "check/formulas/formula_warnings.hpp"
 #include "check/numbers/decimal.hpp"
@@ -25,45 +26,30 @@ void warn_of_unused(Context& c) {
     }
 }
 
-enum class Outcome : std::uint8_t { varies, always, never };
-
-Outcome outcome(const Predicate& predicate, float epsilon) {
-    const auto [low, high] = predicate.delta;
-    switch (predicate.comparison) {
-        case Comparison::less_equal:
-            return high <= epsilon ? Outcome::always
-                   : low > epsilon ? Outcome::never
-                                   : Outcome::varies;
-        case Comparison::less:
-            return high < epsilon   ? Outcome::always
-                   : low >= epsilon ? Outcome::never
-                                    : Outcome::varies;
-        case Comparison::greater_equal:
-            return low >= epsilon   ? Outcome::always
-                   : high < epsilon ? Outcome::never
-                                    : Outcome::varies;
-        case Comparison::greater:
-            return low > epsilon     ? Outcome::always
-                   : high <= epsilon ? Outcome::never
-                                     : Outcome::varies;
-    }
-    return Outcome::varies;
+/// What the comparison says of every value that its left side and its threshold can have; nothing
+/// where it says both. It changes its answer at most once along a range: the ends have all answers.
+std::optional<bool> constant_answer(const Predicate& predicate) {
+    const Range epsilon = predicate.threshold.range();
+    const bool answer = holds(predicate.comparison, predicate.delta.low, epsilon.low);
+    for (const float delta : {predicate.delta.low, predicate.delta.high})
+        for (const float at : {epsilon.low, epsilon.high})
+            if (holds(predicate.comparison, delta, at) != answer) return std::nullopt;
+    return answer;
 }
 
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || std::isnan(predicate.threshold.value))
             continue;  // broken, or not yet calibrated
-        const Range epsilon = predicate.threshold.range();
-        const Outcome found = outcome(predicate, epsilon.low);
-        if (found == Outcome::varies || found != outcome(predicate, epsilon.high)) continue;
+        const auto answer = constant_answer(predicate);
+        if (!answer) continue;
         const Range& delta = predicate.delta;
         const std::string values = delta.low == delta.high
                                        ? fmt::format("{:.9g}", delta.low)
                                        : fmt::format("in [{:.9g}, {:.9g}]", delta.low, delta.high);
         c.report(Code::constant_predicate, predicate.span,
                  fmt::format("the comparison is {} true: its left side is {}",
-                             found == Outcome::always ? "always" : "never", values));
+                             *answer ? "always" : "never", values));
     }
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "check/numbers/decimal.hpp"
+#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 

@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "check/numbers/decimal.hpp"
+#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 
@@ -43,8 +44,7 @@ float strictly_above(double high) {
     constexpr float kInfinity = std::numeric_limits<float>::infinity();
     const double least = high + static_cast<double>(FLT_MIN);
     if (!(least < static_cast<double>(FLT_MAX))) return kInfinity;
-    const auto nearest = static_cast<float>(least);
-    return static_cast<double>(nearest) > least ? nearest : std::nextafter(nearest, kInfinity);
+    return std::nextafter(round_down(least), kInfinity);
 }
 
 float beyond(double score, bool upper_bound) {

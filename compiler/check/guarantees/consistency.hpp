@@ -1,8 +1,8 @@
 // Whether an entry of the thresholds file agrees with itself.
 // Takes: the entry, and which side of its scores the threshold is on. Gives: the first number that
 // does not follow from the others, with what was found and what was expected. Keeps true: rank and
-// threshold are made anew from alpha and the scores by the arithmetic of `etlc calibrate`, so a
-// number that was changed by itself is not believed.
+// threshold are computed again from alpha and the scores by the arithmetic of `etlc calibrate`, so
+// a number that was changed by itself is not believed.
 #pragma once
 
 #include <optional>

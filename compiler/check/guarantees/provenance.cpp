@@ -25,18 +25,13 @@ void add_input(const Input& input, Hashes& hashes) {
                                             {input.scale, input.range.low, input.range.high});
 }
 
-void add_distances(const Model& model, const Expr& expression, Hashes& hashes) {
-    if (expression.kind == Expr::Kind::distance) {
-        const Distance& distance = model.distances[expression.index];
+void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
+    for_each_distance(model.predicates[predicate].expression, [&](Index index) {
+        const Distance& distance = model.distances[index];
         const Target& target = model.targets[distance.target];
         hashes[target.name] = target.hash;
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
-    }
-    for (const Expr& argument : expression.arguments) add_distances(model, argument, hashes);
-}
-
-void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
-    add_distances(model, model.predicates[predicate].expression, hashes);
+    });
     for (const Index input : model.predicates[predicate].inputs)
         add_input(model.inputs[input], hashes);
 }

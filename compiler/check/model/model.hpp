@@ -108,7 +108,34 @@ struct Expr {
     Span span;
 };
 
+/// Visits EXPR and all that it is made of, the whole before its parts.
+template <class Visit>
+void for_each(const Expr& expression, const Visit& visit) {
+    visit(expression);
+    for (const Expr& argument : expression.arguments) for_each(argument, visit);
+}
+
+/// Visits the distances that EXPR reads, by index in the model, as often as each stands in it.
+template <class Visit>
+void for_each_distance(const Expr& expression, const Visit& visit) {
+    for_each(expression, [&](const Expr& e) {
+        if (e.kind == Expr::Kind::distance) visit(e.index);
+    });
+}
+
 enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
+
+/// delta CMP epsilon
+template <class Number>
+bool holds(Comparison comparison, Number delta, Number epsilon) {
+    switch (comparison) {
+        case Comparison::less_equal: return delta <= epsilon;
+        case Comparison::less: return delta < epsilon;
+        case Comparison::greater_equal: return delta >= epsilon;
+        case Comparison::greater: break;
+    }
+    return delta > epsilon;
+}
 
 /// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
 /// formula's value is true

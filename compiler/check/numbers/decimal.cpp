@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "check/numbers/rounding.hpp"
+
 namespace etlc::check {
 
 namespace {
@@ -122,24 +124,28 @@ double to_double(std::string_view text) {
     return value;
 }
 
-float round_down(std::string_view text) {
+namespace {
+
+float rounded(std::string_view text, float towards) {
     if (text == "inf") return kInfinity;
     if (text == "-inf") return -kInfinity;
     float value = 0;
     to_float(text, value);
-    if (std::isinf(value)) return value < 0 ? value : std::numeric_limits<float>::max();
-    const bool above = Decimal::of(static_cast<double>(value)) > Decimal::parse(text);
-    return above ? std::nextafter(value, -kInfinity) : value;
+    if (value == towards) return value;
+    if (std::isinf(value)) return std::nextafter(value, towards);
+    const auto order = Decimal::of(static_cast<double>(value)) <=> Decimal::parse(text);
+    const bool beyond = towards < 0 ? order > 0 : order < 0;
+    return beyond ? std::nextafter(value, towards) : value;
+}
+
+}  // namespace
+
+float round_down(std::string_view text) {
+    return rounded(text, -kInfinity);
 }
 
 float round_up(std::string_view text) {
-    if (text == "inf") return kInfinity;
-    if (text == "-inf") return -kInfinity;
-    float value = 0;
-    to_float(text, value);
-    if (std::isinf(value)) return value > 0 ? value : -std::numeric_limits<float>::max();
-    const bool below = Decimal::of(static_cast<double>(value)) < Decimal::parse(text);
-    return below ? std::nextafter(value, kInfinity) : value;
+    return rounded(text, kInfinity);
 }
 
 }  // namespace etlc::check

@@ -43,9 +43,4 @@ Fit to_float(std::string_view text, float& value);
 /// The double nearest to the text, infinities where it overflows.
 double to_double(std::string_view text);
 
-/// The greatest float32 that is not above the text, which may be "inf" or "-inf".
-float round_down(std::string_view text);
-/// The least float32 that is not below the text, which may be "inf" or "-inf".
-float round_up(std::string_view text);
-
 }  // namespace etlc::check

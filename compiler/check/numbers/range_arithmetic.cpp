@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/numbers/rounding.hpp"
 #include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
@@ -18,17 +19,13 @@ struct Exact {
 };
 
 float down(Exact x) {
-    const auto nearest = static_cast<float>(x.value);
-    const auto back = static_cast<double>(nearest);
-    const bool above = back > x.value || (back == x.value && x.rest < 0);
-    return above ? std::nextafter(nearest, -kInfinity) : nearest;
+    const float rounded = round_down(x.value);
+    const bool above = static_cast<double>(rounded) == x.value && x.rest < 0;
+    return above ? std::nextafter(rounded, -kInfinity) : rounded;
 }
 
 float up(Exact x) {
-    const auto nearest = static_cast<float>(x.value);
-    const auto back = static_cast<double>(nearest);
-    const bool below = back < x.value || (back == x.value && x.rest > 0);
-    return below ? std::nextafter(nearest, kInfinity) : nearest;
+    return -down({-x.value, -x.rest});
 }
 
 /// Knuth's TwoSum: the rest is what rounding the sum lost.

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
+#include <set>
 
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/range_arithmetic.hpp"
@@ -74,15 +74,6 @@ std::optional<Expr> build(Context& c, const ast::Expr& written) {
     return good ? std::optional(std::move(result)) : std::nullopt;
 }
 
-void collect_inputs(const Model& model, const Expr& expression, std::vector<Index>& inputs) {
-    if (expression.kind == Kind::scalar) inputs.push_back(expression.index);
-    if (expression.kind == Kind::distance) {
-        const std::vector<Index>& point = model.distances[expression.index].point;
-        inputs.insert(inputs.end(), point.begin(), point.end());
-    }
-    for (const Expr& argument : expression.arguments) collect_inputs(model, argument, inputs);
-}
-
 bool is_zero(const Range& range) {
     return range.low == 0 && range.high == 0;
 }
@@ -119,11 +110,15 @@ Range range_of(const Model& model, const Expr& expression, const Expr*& undefine
 }
 
 std::vector<Index> inputs_of(const Model& model, const Expr& expression) {
-    std::vector<Index> inputs;
-    collect_inputs(model, expression, inputs);
-    std::sort(inputs.begin(), inputs.end());
-    inputs.erase(std::unique(inputs.begin(), inputs.end()), inputs.end());
-    return inputs;
+    std::set<Index> inputs;
+    for_each(expression, [&](const Expr& e) {
+        if (e.kind == Kind::scalar) inputs.insert(e.index);
+    });
+    for_each_distance(expression, [&](Index distance) {
+        const std::vector<Index>& point = model.distances[distance].point;
+        inputs.insert(point.begin(), point.end());
+    });
+    return {inputs.begin(), inputs.end()};
 }
 
 }  // namespace etlc::check

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "check/numbers/decimal.hpp"
+#include "check/numbers/rounding.hpp"
 #include "check/steps.hpp"
 
 namespace etlc::check {

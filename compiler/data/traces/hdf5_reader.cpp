@@ -265,7 +265,7 @@ std::string why_unread(const Channel& channel) {
         if (filter < 0 || H5Zfilter_avail(filter) > 0) continue;
         return " is packed by the filter '" + std::string(name) + "' (number " +
                std::to_string(filter) +
-               "), which is not read; pack it anew with compression='gzip' in h5py, or by "
+               "), which is not read; pack it again with compression='gzip' in h5py, or by "
                "'h5repack -f GZIP=4 OLD.h5 NEW.h5'";
     }
     return " cannot be read: it is damaged";

@@ -4,6 +4,7 @@
 
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -28,7 +29,7 @@ bool shares_direction(const Plan& plan, Index embedding) {
         return !distance.point_is_vector && distance.point[0] == embedding &&
                !rows_as_given(distance);
     };
-    return plan.values != check::Values::boolean &&
+    return !value_type(plan.values).on_demand &&
            std::count_if(plan.distances.begin(), plan.distances.end(), needs) > 1;
 }
 

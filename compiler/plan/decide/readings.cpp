@@ -1,7 +1,10 @@
 #include "plan/decide/readings.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 
+#include "plan/decide/straight.hpp"
 #include "plan/program/budget.hpp"
 
 namespace etlc::plan {
@@ -77,14 +80,14 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
     const Node node = graph_[id];  // a copy: automata make the graph grow
     std::optional<std::uint32_t> reading;
     if (!node.has_future)
-        reading = latch(id);
+        reading = add(id, "latch", latch(streams_, id));
     else if (ir::info(node.op).arity == ir::Arity::many)
         reading = combination(node, id);
     else if (std::none_of(node.operands.begin(), node.operands.end(),
                           [&](NodeId o) { return graph_[o].has_future; }))
-        reading = fold(node, id);
-    else if (auto body = response(node))
-        reading = add({.kind = Reading::Kind::response, .node = id, .response = *body});
+        reading = add(id, "fold", fold(streams_, node, id));
+    else if (auto code = response(streams_, graph_, id))
+        reading = add(id, "response", std::move(*code));
     else
         reading = nested(node, id);
     if (reading) known_.emplace(id, *reading);
@@ -96,59 +99,11 @@ std::uint32_t ReadingBuilder::add(Reading reading) {
     return static_cast<std::uint32_t>(readings_.size() - 1);
 }
 
-std::uint32_t ReadingBuilder::latch(NodeId id) {
-    return add({.kind = Reading::Kind::latch, .node = id, .latch = {streams_.of(id)}});
-}
-
-std::uint32_t ReadingBuilder::fold(const Node& node, NodeId id) {
-    Fold fold{.max = ir::takes_max(node.op), .interval = node.interval};
-    if (node.operands.size() == 2) fold.left = streams_.of(node.operands[0]);
-    fold.right = streams_.of(node.operands.back());
-    fold.unseen = streams_.unseen(node.operands.back());
-    return add({.kind = Reading::Kind::fold, .node = id, .fold = fold});
-}
-
-/// G[A,B] (f || F[a,b] g) or its dual, where the plan has a response for it.
-std::optional<Response> ReadingBuilder::response(const Node& node) {
-    const bool of_always = node.op == Op::always;
-    if (!of_always && node.op != Op::eventually) return std::nullopt;
-    const NodeId body = node.operands[0];
-    const bool with_excuse = graph_[body].op == (of_always ? Op::disjunction : Op::conjunction);
-    std::vector<NodeId> future{body};
-    std::vector<NodeId> present;
-    if (with_excuse) {
-        future.clear();
-        for (NodeId operand : graph_[body].operands)
-            (graph_[operand].has_future ? future : present).push_back(operand);
-    }
-    if (future.size() != 1) return std::nullopt;
-    const Node inner = graph_[future[0]];
-    const bool seeks_answer = inner.op == (of_always ? Op::eventually : Op::always);
-    const bool answer_is_present = seeks_answer && !graph_[inner.operands[0]].has_future;
-    if (!answer_is_present || !inner.interval.bounded()) return std::nullopt;
-
-    Response result{.of_always = of_always, .outer = node.interval, .inner = inner.interval};
-    const Slot answer = streams_.of(inner.operands[0]);
-    result.unseen_answer = streams_.unseen(inner.operands[0]);
-    result.unseen_body = streams_.unseen(body);
-    const Value idle = neutral(!of_always);  // where nothing is asked
-    const Value urgent = neutral(of_always);
-    const auto [low, high] = inner.interval;
-    if (present.empty() && node.interval == ir::Interval{}) {
-        result.passed = streams_.of(body);
-        if (low == 0) result.pending = answer;
-        return result;
-    }
-    const Slot stated =
-        present.empty() ? streams_.constant(urgent)
-                        : streams_.of(graph_.combine(of_always ? Op::disjunction : Op::conjunction,
-                                                     present, node.span));
-    const Slot excuse = streams_.within(stated, node.interval, idle);
-    result.pending =
-        streams_.pending(of_always, streams_.shift(excuse, low, 0, idle, kNone), answer);
-    result.passed = streams_.recent(of_always, result.pending, high - low + 1);
-    if (low > 0) result.recent = streams_.recent(!of_always, excuse, low);
-    return result;
+std::uint32_t ReadingBuilder::add(NodeId id, std::string as, Straight code) {
+    return add({.kind = Reading::Kind::straight,
+                .node = id,
+                .as = std::move(as),
+                .straight = std::move(code)});
 }
 
 /// The min or max of what its parts say; those without future share one latch.
@@ -171,6 +126,7 @@ std::optional<std::uint32_t> ReadingBuilder::combination(const Node& node, NodeI
     if (!complete) return std::nullopt;
     return add({.kind = Reading::Kind::combination,
                 .node = id,
+                .as = node.op == Op::disjunction ? "max of parts" : "min of parts",
                 .max = node.op == Op::disjunction,
                 .operands = std::move(parts)});
 }
@@ -218,7 +174,6 @@ std::optional<Machine> ReadingBuilder::machine(NodeId id, const AutomatonLimits&
         for (NodeId literal : literals) slots.push_back(streams_.of(literal));
         result.guards.push_back(std::move(slots));
     }
-    complete(result);
     return result;
 }
 
@@ -252,23 +207,26 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
         return graph_[operand].horizon != kUnbounded;
     });
     if (pending.is_fold) {
-        pending.fold = {.max = ir::takes_max(node.op), .interval = node.interval};
-        if (node.operands.size() == 2)
-            pending.fold.left = pending_part(pending, known, node.operands[0]);
-        pending.fold.right = pending_part(pending, known, node.operands.back());
-        pending.fold.unseen = streams_.unseen(node.operands.back());
-        return reading;
+        Pending::Part& fold = pending.fold;
+        fold.max = ir::takes_max(node.op);
+        fold.interval = node.interval;
+        for (NodeId operand : node.operands)
+            fold.operands.push_back(pending_part(pending, known, operand));
+        fold.unseen = streams_.unseen(node.operands.back());
+    } else {
+        AutomatonSize reached;
+        auto built = automaton(id, Literals::with_bounded_future, machine_limits(limits_), reached);
+        if (!built) return std::nullopt;
+        Machine machine = machine_of(std::move(*built));
+        for (const auto& literals : machine.automaton.guards) {
+            std::vector<std::uint32_t> parts;
+            for (NodeId literal : literals) parts.push_back(pending_part(pending, known, literal));
+            machine.guards.push_back(std::move(parts));
+        }
+        pending.table = make_table(machine);
     }
-    AutomatonSize reached;
-    auto built = automaton(id, Literals::with_bounded_future, machine_limits(limits_), reached);
-    if (!built) return std::nullopt;
-    pending.machine = machine_of(std::move(*built));
-    for (const auto& literals : pending.machine.automaton.guards) {
-        std::vector<std::uint32_t> parts;
-        for (NodeId literal : literals) parts.push_back(pending_part(pending, known, literal));
-        pending.guards.push_back(std::move(parts));
-    }
-    pending.machine.table = make_table(pending.machine);
+    reading.as = fmt::format("{}, again at {} positions",
+                             pending.is_fold ? "fold" : "state machine", pending.horizon + 1);
     return reading;
 }
 
@@ -292,15 +250,24 @@ std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, std::uint64_t oper
     return std::nullopt;
 }
 
+/// Straight-line code of a small machine, else its table.
+Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
+    const bool small = is_small(machine);
+    Reading reading{.kind = small ? Reading::Kind::straight : Reading::Kind::table, .node = id};
+    reading.as = fmt::format("state machine, {} states, {} transitions{}", machine.states.size(),
+                             machine.automaton.transitions.size(), small ? "" : ", as a table");
+    if (small)
+        reading.straight = straight_line(machine, streams_);
+    else
+        reading.table = make_table(machine);
+    return reading;
+}
+
 /// A small machine where there is one, else what takes the fewest operations: pending positions,
 /// the formula with its windows taken apart, a machine up to the limits.
 std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
-    const auto as_reading = [&](Machine machine) {
-        return Reading{.kind = Reading::Kind::machine, .node = id, .machine = std::move(machine)};
-    };
     const std::size_t failures = oversize_.size();
-    if (auto small = machine(id, small_machine_limits(limits_)))
-        return add(as_reading(std::move(*small)));
+    if (auto small = machine(id, small_machine_limits(limits_))) return add(as_reading(id, *small));
     std::optional<Reading> best = pending(node, id);
     if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_)))
         best.reset();
@@ -308,7 +275,7 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
     if (is_apart_) return best ? std::optional(add(std::move(*best))) : std::nullopt;
     if (!best || cost_of(*best, values_).operations > kMuchWork)
         if (auto large = machine(id, machine_limits(limits_))) {
-            Reading reading = as_reading(std::move(*large));
+            Reading reading = as_reading(id, *large);
             if (!best || cost_of(reading, values_).operations < cost_of(*best, values_).operations)
                 best = std::move(reading);
         }
@@ -322,42 +289,6 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
     if (!best) return std::nullopt;
     oversize_.resize(failures);
     return add(std::move(*best));
-}
-
-std::vector<Slot*> slots_of(Reading& reading) {
-    const auto of_states = [](Machine& machine, std::vector<Slot*>& slots) {
-        for (Machine::State& state : machine.states) {
-            slots.push_back(&state.weak_unseen);
-            slots.push_back(&state.strong_unseen);
-        }
-    };
-    std::vector<Slot*> slots;
-    switch (reading.kind) {
-        case Reading::Kind::latch: slots = {&reading.latch.operand}; break;
-        case Reading::Kind::fold:
-            slots = {&reading.fold.left, &reading.fold.right, &reading.fold.unseen};
-            break;
-        case Reading::Kind::response: {
-            Response& r = reading.response;
-            slots = {&r.passed, &r.pending, &r.recent, &r.unseen_answer, &r.unseen_body};
-            break;
-        }
-        case Reading::Kind::machine:
-            for (auto& guard : reading.machine.guards)
-                for (Slot& slot : guard) slots.push_back(&slot);
-            of_states(reading.machine, slots);
-            break;
-        case Reading::Kind::pending:
-            for (Pending::Part& part : reading.pending.parts) {
-                slots.push_back(&part.leaf);
-                slots.push_back(&part.unseen);
-            }
-            if (reading.pending.is_fold) slots.push_back(&reading.pending.fold.unseen);
-            of_states(reading.pending.machine, slots);
-            break;
-        case Reading::Kind::combination: break;
-    }
-    return slots;
 }
 
 }  // namespace etlc::plan

@@ -7,7 +7,8 @@
 #include <map>
 #include <vector>
 
-#include "plan/decide/streams.hpp"
+#include "plan/decide/machine.hpp"
+#include "plan/plan.hpp"
 
 namespace etlc::plan {
 
@@ -31,14 +32,13 @@ private:
     std::optional<std::uint32_t> combination(const ir::Node& node, NodeId id);
     /// A state machine over formulas without future, within these limits and the work that is left.
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
+    Reading as_reading(NodeId id, const Machine& machine) const;
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
     std::optional<std::uint32_t> apart(NodeId id, std::uint64_t operations);
     std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
-    std::uint32_t latch(NodeId id);
-    std::uint32_t fold(const ir::Node& node, NodeId id);
-    std::optional<Response> response(const ir::Node& node);
     std::uint32_t add(Reading reading);
+    std::uint32_t add(NodeId id, std::string as, Straight code);
     Machine::State state(const std::vector<NodeId>& obligations);
     Machine machine_of(Automaton automaton);
     std::optional<Automaton> automaton(NodeId id, Literals literals, AutomatonLimits limits,

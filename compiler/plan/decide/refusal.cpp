@@ -95,14 +95,15 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
     const std::string_view why = part.reached.out_of_work
                                      ? "that takes more work to build than the limits allow"
                                      : "larger than the limits";
-    auto& error =
-        sink.report(diag::Code::formula_too_large, graph[part.node].span,
-                    fmt::format("monitor '{}' needs a state machine {} for '{}': building it "
-                                "stopped at {} states and {} "
-                                "transitions, which take {} so far; {}",
-                                monitor.name, why, graph.text(part.node), part.reached.states,
-                                part.reached.transitions, figures(cost_of(part.reached, values)),
-                                limit_figures(limits)));
+    auto& error = sink.report(
+        diag::Code::formula_too_large, graph[part.node].span,
+        fmt::format("monitor '{}' needs a state machine {} for '{}': building it "
+                    "stopped at {} states and {} "
+                    "transitions, which take {} so far; {}",
+                    monitor.name, why, graph.text(part.node), part.reached.states,
+                    part.reached.transitions,
+                    figures(cost_of_table(part.reached.states, part.reached.transitions, values)),
+                    limit_figures(limits)));
     for (ir::NodeId id : costly_operators(graph, part.node)) {
         const ir::Node& node = graph[id];
         const std::string text = graph.text(id);

@@ -4,6 +4,8 @@
 #include <map>
 #include <tuple>
 
+#include "plan/program/value_type.hpp"
+
 namespace etlc::plan {
 
 namespace {
@@ -22,7 +24,7 @@ void widen(Stream& stream, Slot from, std::uint32_t from_length) {
 
 void share_windows(Plan& plan) {
     // On truth values a window is a counter, which nothing undercuts.
-    if (plan.values == check::Values::boolean) return;
+    if (value_type(plan.values).on_demand) return;
     std::map<Signal, std::vector<Slot>> watching;
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
         const Stream& stream = plan.streams[slot];

@@ -4,6 +4,7 @@
 #include <cassert>
 
 #include "plan/program/literals.hpp"
+#include "plan/program/value_type.hpp"
 
 namespace etlc::plan {
 
@@ -30,11 +31,22 @@ Slot StreamBuilder::intern(Stream stream) {
                       stream.operand_lag, stream.interval.low, stream.interval.high};
     const auto [entry, added] =
         interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
-    if (added)
+    if (added) {
+        on_demand_.push_back(value_type(values_).on_demand && found_on_demand(stream, on_demand_));
         streams_.push_back(std::move(stream));
-    else if (streams_[entry->second].node == kNone)
+    } else if (streams_[entry->second].node == kNone) {
         streams_[entry->second].node = stream.node;
+    }
     return entry->second;
+}
+
+Term StreamBuilder::term(Slot slot, End end) const {
+    const Stream& stream = streams_[slot];
+    if (stream.op != StreamOp::constant) return Term::stream(slot);
+    const auto [low, high] = stream.value;
+    if (end == End::low) return Term::constant({low, low});
+    if (end == End::high) return Term::constant({high, high});
+    return Term::constant(stream.value);
 }
 
 Slot StreamBuilder::constant(Value value) {

@@ -8,7 +8,9 @@
 #include <tuple>
 #include <vector>
 
-#include "plan/plan.hpp"
+#include "check/model/model.hpp"
+#include "plan/program/demand.hpp"
+#include "plan/program/stream.hpp"
 
 namespace etlc::plan {
 
@@ -28,13 +30,18 @@ public:
     /// The same stream, later by `steps`.
     Slot delayed(Slot slot, std::uint32_t steps);
 
+    /// What a stream is at one end, or both.
+    Term term(Slot slot, End end = End::both) const;
+    /// The stream is found out when it is asked for (plan/program/demand.hpp).
+    bool on_demand(Slot slot) const { return on_demand_[slot]; }
+
     Slot constant(Value value);
     /// The stream `steps` positions earlier, `before` where there is none.
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
     /// A stream without lag at the positions of the interval, `elsewhere` at others.
     Slot within(Slot slot, ir::Interval interval, Value elsewhere);
     /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that
-    /// ask (plan::Response). Of G (excuse || F answer), or of its dual; both without lag.
+    /// ask (decide/straight.hpp). Of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
     /// The max or min over the last `length` positions of a stream without lag.
     Slot recent(bool max, Slot slot, std::uint32_t length);
@@ -56,6 +63,7 @@ private:
     const ir::Graph& graph_;
     std::vector<Stream>& streams_;
     check::Values values_;
+    std::vector<bool> on_demand_;  ///< per stream
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
     using Identity = std::tuple<StreamOp, bool, std::vector<Slot>, Index, std::uint32_t, Key, Key,

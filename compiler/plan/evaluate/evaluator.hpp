@@ -16,7 +16,6 @@
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/pending_evaluator.hpp"
 #include "plan/plan.hpp"
-#include "plan/program/members.hpp"
 
 namespace etlc::plan {
 
@@ -66,8 +65,8 @@ private:
         std::uint32_t cursor = 0;
     };
     struct ReadingState {
-        std::vector<Value> registers;  ///< latch and fold: 1 or 2; machine: one a state
-        std::vector<Value> next;       ///< machine: the registers being made
+        std::vector<Value> registers;  ///< of straight-line code; of a table, one a state
+        std::vector<Value> next;       ///< locals; of a table, the registers being made
         std::vector<Value> guards;
         std::vector<Key> weak;  ///< this step's keys of the table's lists
         std::vector<Key> strong;
@@ -90,9 +89,9 @@ private:
     bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }
     void advance_readings();
     etlmon::Reading advance(const Reading& reading, ReadingState& state) const;
-    etlmon::Reading advance_fold(const Fold& fold, ReadingState& state) const;
-    etlmon::Reading advance_response(const Response& response, ReadingState& state) const;
-    etlmon::Reading advance_machine(const Machine& machine, ReadingState& state) const;
+    etlmon::Reading run(const Straight& code, ReadingState& state) const;
+    etlmon::Reading run(const Table& table, ReadingState& state) const;
+    Value value(const Term& term, const ReadingState& state) const;
     void judge();
 
     const Plan& plan_;

@@ -18,7 +18,7 @@ void PendingEvaluator::reset() {
     if (pending_.is_fold) {
         registers_ = {neutral(pending_.fold.max), neutral(!pending_.fold.max)};
     } else {
-        registers_.assign(pending_.machine.states.size(), kFalse);
+        registers_.assign(pending_.table.ends.size(), kFalse);
         registers_[0] = kTrue;
     }
 }
@@ -71,9 +71,10 @@ void PendingEvaluator::evaluate_part(std::size_t index, std::uint32_t count,
 
 etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t count,
                                                const std::vector<Value>& streams) {
-    const Fold& fold = pending_.fold;
-    const etlmon::Reading* left = fold.left == kNone ? nullptr : parts_[fold.left].data();
-    const etlmon::Reading* right = parts_[fold.right].data();
+    const Pending::Part& fold = pending_.fold;
+    const etlmon::Reading* left =
+        fold.operands.size() == 2 ? parts_[fold.operands[0]].data() : nullptr;
+    const etlmon::Reading* right = parts_[fold.operands.back()].data();
     const auto [low, high] = fold.interval;
     if (fold.max)
         return etlmon::pending_from_start<etlmon::Seeking>(registers_[0], registers_[1], left,
@@ -86,12 +87,12 @@ etlmon::Reading PendingEvaluator::advance_fold(std::uint32_t step, std::uint32_t
 
 etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint32_t count,
                                                   const std::vector<Value>& streams) {
-    const Table& table = pending_.machine.table;
-    const std::size_t width = pending_.guards.size();
+    const Table& table = pending_.table;
+    const std::size_t width = table.guards.size();
     Readings guards(count * width, etlmon::settled(kTrue));
     for (std::uint32_t p = 0; p < count; ++p)
         for (std::size_t g = 0; g < width; ++g)
-            for (std::uint32_t part : pending_.guards[g])
+            for (std::uint32_t part : table.guards[g])
                 guards[p * width + g] = min_of(guards[p * width + g], parts_[part][p]);
     std::vector<Key> weak{etlmon::kTop};
     std::vector<Key> strong{etlmon::kTop};

@@ -16,16 +16,17 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
     state.registers.clear();
     if (reading.kind == Reading::Kind::pending) {
         state.pending.emplace(reading.pending);
-    } else if (reading.kind == Reading::Kind::machine) {
-        const Machine& machine = reading.machine;
-        state.registers.assign(machine.states.size(), kFalse);
+    } else if (reading.kind == Reading::Kind::table) {
+        const Table& table = reading.table;
+        state.registers.assign(table.ends.size(), kFalse);
         state.next = state.registers;
         state.registers[0] = kTrue;
-        state.guards.assign(machine.guards.size(), kTrue);
-        state.weak.assign(machine.table.weak.size() + 1, kTop);
-        state.strong.assign(machine.table.strong.size() + 1, kTop);
+        state.guards.assign(table.guards.size(), kTrue);
+        state.weak.assign(table.weak.size() + 1, kTop);
+        state.strong.assign(table.strong.size() + 1, kTop);
     } else {
         for (const Member& member : members_of(reading)) state.registers.push_back(member.first);
+        state.next.assign(reading.straight.locals.size(), kFalse);
     }
 }
 
@@ -36,14 +37,10 @@ void Evaluator::advance_readings() {
 
 etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) const {
     switch (reading.kind) {
-        case Reading::Kind::latch:
-            if (steps_ == 0) state.registers[0] = streams_[reading.latch.operand];
-            return etlmon::settled(state.registers[0]);
-        case Reading::Kind::fold: return advance_fold(reading.fold, state);
+        case Reading::Kind::straight: return run(reading.straight, state);
+        case Reading::Kind::table: return run(reading.table, state);
         case Reading::Kind::pending: return state.pending->advance(steps_, streams_);
-        case Reading::Kind::response: return advance_response(reading.response, state);
-        case Reading::Kind::machine: return advance_machine(reading.machine, state);
-        default: break;
+        case Reading::Kind::combination: break;
     }
     etlmon::Reading result = readings_[reading.operands[0]];
     for (std::uint32_t operand : reading.operands) {
@@ -53,72 +50,44 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
     return result;
 }
 
-/// registers[0]: the max (F, U) or min (G, R) over the open window so far; registers[1]: the left
-/// side before now.
-etlmon::Reading Evaluator::advance_fold(const Fold& fold, ReadingState& state) const {
-    const bool open =
-        fold.interval.low <= steps_ && (!fold.interval.bounded() || steps_ <= fold.interval.high);
-    const bool reaches_past = !fold.interval.bounded() || steps_ < fold.interval.high;
-    const bool binary = fold.left != kNone;
-    Value& best = state.registers[0];
-    const Value guard = binary ? state.registers[1] : neutral(!fold.max);
-    const Value right = streams_[fold.right];
-    if (open)
-        best = fold.max ? max_of(best, min_of(guard, right)) : min_of(best, max_of(guard, right));
-    Value let_through = guard;
-    if (binary) {
-        const Value left = streams_[fold.left];
-        let_through = fold.max ? min_of(guard, left) : max_of(guard, left);
-        state.registers[1] = let_through;
+Value Evaluator::value(const Term& term, const ReadingState& state) const {
+    const auto operand = [&](std::size_t i) { return value(term.operands[i], state); };
+    switch (term.kind) {
+        case Term::Kind::constant: return term.value;
+        case Term::Kind::stream: return streams_[term.index];
+        case Term::Kind::reg: return state.registers[term.index];
+        case Term::Kind::local: return state.next[term.index];
+        case Term::Kind::before: return operand(steps_ < term.index ? 0 : 1);
+        case Term::Kind::extreme: break;
     }
-    etlmon::Reading reading = etlmon::settled(best);
-    if (!reaches_past) return reading;
-    const Value unseen = streams_[fold.unseen];
-    if (fold.max)
-        reading.upper =
-            etlmon::max_of(reading.upper, etlmon::min_of(let_through.high, unseen.high));
-    else
-        reading.lower = etlmon::min_of(reading.lower, etlmon::max_of(let_through.low, unseen.low));
-    return reading;
+    Value result = operand(0);
+    for (std::size_t i = 1; i < term.operands.size(); ++i)
+        result = term.max ? max_of(result, operand(i)) : min_of(result, operand(i));
+    return result;
 }
 
-/// registers[0]: settled positions. Below, `worst` is the min of an always.
-etlmon::Reading Evaluator::advance_response(const Response& response, ReadingState& state) const {
-    const bool always = response.of_always;
-    const auto worst = [&](Value a, Value b) { return always ? min_of(a, b) : max_of(a, b); };
-    const Value hopeless = always ? kFalse : kTrue;
-    Value& settled = state.registers[0];
-    if (steps_ >= response.inner.high) settled = worst(settled, streams_[response.passed]);
-    Value now = response.pending == kNone ? hopeless : streams_[response.pending];
-    if (response.recent != kNone) now = worst(now, streams_[response.recent]);
-
-    etlmon::Reading reading = etlmon::settled(worst(settled, now));
-    const Value answer = streams_[response.unseen_answer];
-    const Value body = streams_[response.unseen_body];
-    const bool reaches_past = !response.outer.bounded() || steps_ < response.outer.high;
-    if (always) {
-        reading.upper = etlmon::min_of(settled.high, etlmon::max_of(now.high, answer.high));
-        if (reaches_past) reading.lower = etlmon::min_of(reading.lower, body.low);
-    } else {
-        reading.lower = etlmon::max_of(settled.low, etlmon::min_of(now.low, answer.low));
-        if (reaches_past) reading.upper = etlmon::max_of(reading.upper, body.high);
+etlmon::Reading Evaluator::run(const Straight& code, ReadingState& state) const {
+    for (const Assignment& assignment : code.assignments) {
+        const auto [low, high] = assignment.positions;
+        if (steps_ < low || (high != kUnbounded && steps_ > high)) continue;
+        const bool is_register = assignment.target == Term::Kind::reg;
+        (is_register ? state.registers : state.next)[assignment.index] =
+            value(assignment.value, state);
     }
-    return reading;
+    return {value(code.rho, state), value(code.lower, state).low, value(code.upper, state).high};
 }
 
-etlmon::Reading Evaluator::advance_machine(const Machine& machine, ReadingState& state) const {
-    const auto low = [&](Slot slot) { return streams_[slot].low; };
-    const auto high = [&](Slot slot) { return streams_[slot].high; };
-    const Table& table = machine.table;
-    for (std::size_t g = 0; g < machine.guards.size(); ++g) {
+etlmon::Reading Evaluator::run(const Table& table, ReadingState& state) const {
+    for (std::size_t g = 0; g < table.guards.size(); ++g) {
         state.guards[g] = kTrue;
-        for (Slot slot : machine.guards[g])
+        for (Slot slot : table.guards[g])
             state.guards[g] = etlmon::min_of(state.guards[g], streams_[slot]);
     }
-    std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1, low);
-    std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1, high);
-
-    const auto states = static_cast<std::uint32_t>(machine.states.size());
+    std::transform(table.weak.begin(), table.weak.end(), state.weak.begin() + 1,
+                   [&](Slot slot) { return streams_[slot].low; });
+    std::transform(table.strong.begin(), table.strong.end(), state.strong.begin() + 1,
+                   [&](Slot slot) { return streams_[slot].high; });
+    const auto states = static_cast<std::uint32_t>(table.ends.size());
     etlmon::machine_advance(state.registers.data(), state.next.data(), states,
                             table.transitions.data(), table.ends.data(), state.guards.data());
     std::swap(state.registers, state.next);

@@ -3,13 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "etlmon/temporal/boolean_verdict.hpp"
-#include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/reading.hpp"
-#include "etlmon/temporal/verdict.hpp"
 #include "etlmon/temporal/window.hpp"
-#include "plan/program/members.hpp"
 #include "plan/program/target_bytes.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -26,11 +22,12 @@ constexpr std::uint64_t kPartingComparisons = 6;
 
 // Estimated code, measured on x86-64 and Cortex-M4 at -O2 and -Os and rounded up.
 constexpr std::uint64_t kCodePerValueOperation = 24;
+constexpr std::uint64_t kCodePerEnd = 16;
+constexpr std::uint64_t kCodePerReading = 64;
 constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
 constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P(), as a Cortex-M4 has it at -Os
 constexpr std::uint64_t kCodePerTable = 200;
-constexpr std::uint64_t kCodePerFold = 96;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
 constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
@@ -47,20 +44,19 @@ Cost window_cost(std::uint32_t length, std::uint64_t sides) {
             .operations = combined * kKeysPerValue + kPartingComparisons};
 }
 
-Cost fold_cost(const Fold& fold) {
-    const bool binary = fold.left != kNone;
-    Cost cost = values(binary ? 2 : 1, binary ? 3 : 1);
-    cost.operations += 2 + 3;  // is the window open, does it reach past this step; the bounds
-    cost.code_bytes += kCodePerFold;
-    return cost;
-}
-
-Cost response_cost(const Response& response) {
-    Cost cost = values(1, 2 + (response.recent != kNone ? 1 : 0));
-    cost.operations +=
-        2 +
-        3;  // whether windows have closed, whether the outer one reaches past this step; the bounds
-    cost.code_bytes += 2 * kCodePerFold;
+/// The assignments and the reading of straight-line code; a bound takes one end of values.
+Cost straight_cost(const Straight& code) {
+    std::uint64_t combined = combinations(code.rho);
+    std::uint64_t comparisons = asks_position(code.lower) + asks_position(code.upper);
+    for (const Assignment& assignment : code.assignments) {
+        combined += combinations(assignment.value);
+        comparisons += assignment.positions.low > 0;
+        comparisons += assignment.positions.bounded();
+    }
+    const std::uint64_t ends = combinations(code.lower) + combinations(code.upper);
+    Cost cost = values(code.assignments.size(), combined);
+    cost.operations += ends + comparisons;
+    cost.code_bytes += kCodePerReading + (ends + comparisons) * kCodePerEnd;
     return cost;
 }
 
@@ -77,23 +73,12 @@ std::uint64_t pending_steps(const Pending& pending) {
                               : part.operands.size() - 1;
     }
     if (pending.is_fold) return steps + 4;
-    steps += 2 * pending.machine.states.size() + 2 * pending.machine.automaton.transitions.size();
-    for (const auto& guard : pending.guards) steps += guard.size();
+    steps += 2 * pending.table.ends.size() + 2 * pending.table.transitions.size();
+    for (const auto& guard : pending.table.guards) steps += guard.size();
     return steps;
 }
 
-/// What a reading and a value take on the stack.
-struct OnStack {
-    std::uint64_t reading;
-    std::uint64_t value;
-};
-OnStack on_stack(Values values) {
-    if (values == Values::boolean)
-        return {sizeof(etlmon::BasicReading<etlmon::Truth>), sizeof(etlmon::Truth)};
-    return {sizeof(etlmon::BasicReading<Value>), sizeof(Value)};
-}
-
-Cost pending_cost(const Pending& pending, OnStack of) {
+Cost pending_cost(const Pending& pending, const ValueType& of) {
     constexpr std::uint64_t kKeysPerReading = 4;
     const std::uint64_t positions = pending.horizon + std::uint64_t{1};
     Cost cost;
@@ -101,31 +86,25 @@ Cost pending_cost(const Pending& pending, OnStack of) {
     cost.operations = positions * pending_steps(pending) * kKeysPerReading;
     cost.code_bytes = pending.parts.size() * kCodePerWindow + kCodePerTable;
     if (pending.is_fold) return cost;
-    const std::size_t states = pending.machine.states.size();
-    const std::size_t guards = pending.guards.size();
+    const std::size_t states = pending.table.ends.size();
+    const std::size_t guards = pending.table.guards.size();
     // The guards at each position, and what PendingMachine::read works with.
     cost.stack_bytes +=
         (guards * positions + 2 * states) * of.reading + (guards + states) * of.value;
-    cost.code_bytes += pending.machine.automaton.transitions.size() * kTransitionBytes +
-                       states * kStateBytes + guards * kCodePerValueOperation;
+    cost.code_bytes += pending.table.transitions.size() * kTransitionBytes + states * kStateBytes +
+                       guards * kCodePerValueOperation;
     return cost;
 }
 
-Cost table_cost(const AutomatonSize& size) {
-    return {.code_bytes =
-                kCodePerTable + size.transitions * kTransitionBytes + size.states * kStateBytes,
-            .operations = (3 * size.states + 2 * size.transitions) * kKeysPerValue};
+Cost table_cost(std::size_t states, std::size_t transitions) {
+    return {.code_bytes = kCodePerTable + transitions * kTransitionBytes + states * kStateBytes,
+            .operations = (3 * states + 2 * transitions) * kKeysPerValue};
 }
 
-/// Updates and, for the reading, a state's part in rho, lower and upper: three minima or maxima of
-/// values.
-Cost machine_cost(const Machine& machine) {
-    const std::size_t read = 3 * machine.states.size();
-    if (machine.unrolled)
-        return values(machine.program.updates.size(), operations(machine.program) + read);
-    Cost cost = table_cost({machine.states.size(), machine.automaton.transitions.size()});
-    cost.code_bytes += machine.guards.size() * kCodePerValueOperation;
-    for (const auto& guard : machine.guards)
+Cost table_cost(const Table& table) {
+    Cost cost = table_cost(table.ends.size(), table.transitions.size());
+    cost.code_bytes += table.guards.size() * kCodePerValueOperation;
+    for (const auto& guard : table.guards)
         cost.operations += guard.empty() ? 0 : (guard.size() - 1) * kKeysPerValue;
     return cost;
 }
@@ -154,11 +133,9 @@ Cost work_of(const Stream& stream) {
 /// Code, work and stack of a reading.
 Cost work_of(const Reading& reading, Values kind) {
     switch (reading.kind) {
-        case Reading::Kind::latch: return values(1, 0);
-        case Reading::Kind::fold: return fold_cost(reading.fold);
-        case Reading::Kind::response: return response_cost(reading.response);
-        case Reading::Kind::machine: return machine_cost(reading.machine);
-        case Reading::Kind::pending: return pending_cost(reading.pending, on_stack(kind));
+        case Reading::Kind::straight: return straight_cost(reading.straight);
+        case Reading::Kind::table: return table_cost(reading.table);
+        case Reading::Kind::pending: return pending_cost(reading.pending, value_type(kind));
         case Reading::Kind::combination: return values(0, 2 * (reading.operands.size() - 1));
     }
     return {};
@@ -190,7 +167,7 @@ public:
     explicit Needs(const Plan& plan) : plan_(plan) {}
 
     void stream(Slot slot) {
-        if (slot == kNone || !streams_.insert(slot).second) return;
+        if (!streams_.insert(slot).second) return;
         const Stream& s = plan_.streams[slot];
         if (s.op == StreamOp::predicate) predicate(s.index);
         if (s.op == StreamOp::flag) inputs_.insert(s.index);
@@ -201,8 +178,7 @@ public:
         if (!readings_.insert(index).second) return;
         const Reading& r = plan_.readings[index];
         for (std::uint32_t operand : r.operands) reading(operand);
-        Reading copy = r;
-        for (const Slot* slot : slots_of(copy)) stream(*slot);
+        for_each_slot(r, [&](Slot slot) { stream(slot); });
     }
 
     void monitor(const Monitor& monitor) {
@@ -241,12 +217,7 @@ private:
         if (!predicates_.insert(index).second) return;
         const check::Predicate& p = plan_.model->predicates[index];
         inputs_.insert(p.inputs.begin(), p.inputs.end());
-        expression(p.expression);
-    }
-
-    void expression(const check::Expr& e) {
-        if (e.kind == check::Expr::Kind::distance) distances_.insert(e.index);
-        for (const check::Expr& argument : e.arguments) expression(argument);
+        check::for_each_distance(p.expression, [&](Index d) { distances_.insert(d); });
     }
 
     const Plan& plan_;
@@ -261,12 +232,9 @@ private:
 
 std::uint64_t measured_elements(const check::Model& model, Index predicate) {
     std::uint64_t sum = 0;
-    const auto visit = [&](const auto& self, const check::Expr& e) -> void {
-        if (e.kind == check::Expr::Kind::distance)
-            sum += distance_cost(model, model.distances[e.index]).distance_operations;
-        for (const check::Expr& argument : e.arguments) self(self, argument);
-    };
-    visit(visit, model.predicates[predicate].expression);
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
+        sum += distance_cost(model, model.distances[d]).distance_operations;
+    });
     return sum;
 }
 
@@ -294,13 +262,13 @@ Cost cost_of(const Reading& reading, Values kind) {
     return keeping(work_of(reading, kind), members_of(reading), kind);
 }
 
-Cost cost_of(const AutomatonSize& size, Values kind) {
-    const Member table{.kind = Member::Kind::machine,
-                       .length = static_cast<std::uint32_t>(size.states)};
-    return keeping(table_cost(size), {table}, kind);
+Cost cost_of_table(std::size_t states, std::size_t transitions, Values kind) {
+    const Member table{.kind = Member::Kind::machine, .length = static_cast<std::uint32_t>(states)};
+    return keeping(table_cost(states, transitions), {table}, kind);
 }
 
 void add_costs(Plan& plan) {
+    const ValueType& type = value_type(plan.values);
     Needs all(plan);
     Cost fixed{.state_bytes = kWord};  // missing steps
     if (plan.counts_steps) fixed.state_bytes += kWord;
@@ -310,11 +278,9 @@ void add_costs(Plan& plan) {
         own.monitor(monitor);
         all.monitor(monitor);
         plan.monitor_costs.push_back(own.cost());
-        if (plan.values == Values::boolean)
-            fixed.state_bytes +=
-                sizeof(etlmon::BooleanVerdict);  // the last one: a final verdict stops computing
-        else if (plan.has_sliding && !monitor.sliding)
-            fixed.state_bytes += sizeof(etlmon::Verdict);
+        // The last one: a final verdict stays, and finish() repeats those of prefix monitors.
+        const bool kept = type.on_demand || (plan.has_sliding && !monitor.sliding);
+        if (kept) fixed.state_bytes += type.verdict;
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

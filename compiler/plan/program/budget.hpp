@@ -16,7 +16,7 @@ Cost cost_of(const Reading& reading, check::Values values);
 /// Target elements that a predicate measures.
 std::uint64_t measured_elements(const check::Model& model, Index predicate);
 /// Of a state machine of this size, as a table.
-Cost cost_of(const AutomatonSize& size, check::Values values);
+Cost cost_of_table(std::size_t states, std::size_t transitions, check::Values values);
 /// Fills in plan.cost and plan.monitor_costs.
 void add_costs(Plan& plan);
 

@@ -10,15 +10,15 @@ public:
         : plan_(plan), monitor_(monitor), result_(result) {}
 
     void stream(Slot slot) {
-        if (slot == kNone || !add(result_.of_stream[slot])) return;
+        if (!add(result_.of_stream[slot])) return;
         for (Slot operand : plan_.streams[slot].operands) stream(operand);
     }
 
     void reading(std::uint32_t index) {
         if (!add(result_.of_reading[index])) return;
-        Reading copy = plan_.readings[index];  // slots_of lends places that may be changed
-        for (std::uint32_t operand : copy.operands) reading(operand);
-        for (const Slot* slot : slots_of(copy)) stream(*slot);
+        const Reading& found = plan_.readings[index];
+        for (std::uint32_t operand : found.operands) reading(operand);
+        for_each_slot(found, [&](Slot slot) { stream(slot); });
     }
 
 private:

@@ -1,15 +1,18 @@
 // What a stream or a reading keeps from one step to the next.
 // Takes: a part of the plan. Gives: its members in order of declaration, each with what it is, its
-// first value and its comment. Keeps true: the class that is emitted has these members, the
-// evaluator has these states, and the budget is the sum of their bytes.
+// first value, its name's end and its comment. Keeps true: the class that is emitted has these
+// members, the evaluator has these states, and the budget is the sum of their bytes.
 #pragma once
 
 #include <string>
 #include <vector>
 
-#include "plan/plan.hpp"
+#include "ir/graph.hpp"
+#include "plan/program/term.hpp"
 
 namespace etlc::plan {
+
+using ir::NodeId;
 
 struct Member {
     enum class Kind : std::uint8_t {
@@ -29,23 +32,17 @@ struct Member {
     std::uint32_t length = 0;
     std::uint32_t from_length = 0;
     std::uint32_t guards = 0;
-    Value first{};  ///< of values and delays
+    Value first{};         ///< of values and delays
+    std::string suffix{};  ///< what its name has behind that of its reading: "_guard"
     // The comment is these words around the formulas.
-    std::string before;
-    std::vector<NodeId> formulas;
-    std::string after;
+    std::string before{};
+    std::vector<NodeId> formulas{};
+    std::string after{};
 };
-
-std::vector<Member> members_of(const Stream& stream);
-std::vector<Member> members_of(const Reading& reading);
 
 /// In the class, with values of this type.
 std::uint64_t bytes_of(const Member& member, check::Values values);
 
 std::string comment_of(const Member& member, const ir::Graph& formulas);
-
-/// The formula that a stream is; of one in between, what it holds; empty where its operation says
-/// that.
-std::string text_of(const Stream& stream, const ir::Graph& formulas);
 
 }  // namespace etlc::plan

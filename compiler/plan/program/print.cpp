@@ -76,27 +76,65 @@ std::string owed(const ir::Graph& graph, const std::vector<NodeId>& obligations)
     return text;
 }
 
-std::string machine_text(const Machine& machine, const ir::Graph& graph) {
-    const Automaton& automaton = machine.automaton;
-    std::string text =
-        fmt::format("state machine of {} states, {} transitions, {}\n", automaton.states.size(),
-                    automaton.transitions.size(), machine.unrolled ? "unrolled" : "as a table");
-    for (std::size_t state = 0; state < automaton.states.size(); ++state) {
-        text += fmt::format("       q{}: {}{}\n", state, owed(graph, automaton.states[state]),
-                            machine.states[state].always_true ? ", always +inf" : "");
-        for (const Transition& t : automaton.transitions) {
-            if (t.target != state) continue;
+/// "max(v0, s3)": of the reading's registers v, its locals t, and streams s; one end of them.
+std::string term_text(const Term& term, End end = End::both) {
+    const char* part = end == End::both ? "" : end == End::low ? ".low" : ".high";
+    switch (term.kind) {
+        case Term::Kind::constant: return value_text(term.value);
+        case Term::Kind::stream: return fmt::format("s{}{}", term.index, part);
+        case Term::Kind::reg: return fmt::format("v{}{}", term.index, part);
+        case Term::Kind::local: return fmt::format("t{}{}", term.index, part);
+        case Term::Kind::extreme: break;
+        case Term::Kind::before:
+            return fmt::format("{} before position {}, then {}", term_text(term.operands[0], end),
+                               term.index, term_text(term.operands[1], end));
+    }
+    std::string text;
+    for (const Term& operand : term.operands)
+        text += (text.empty() ? "" : ", ") + term_text(operand, end);
+    return fmt::format("{}({})", term.max ? "max" : "min", text);
+}
+
+std::string straight_text(const Straight& code, NodeId node, const ir::Graph& graph) {
+    std::string text;
+    for (std::size_t i = 0; i < code.registers.size(); ++i) {
+        const std::string comment = comment_of(code.registers[i], graph);
+        text += fmt::format("       v{} from {}", i, value_text(code.registers[i].first));
+        text += comment == graph.text(node) ? "\n" : "  // " + comment + "\n";
+    }
+    for (const Assignment& assignment : code.assignments) {
+        const auto [low, high] = assignment.positions;
+        text += fmt::format("       {}{} = {}", assignment.target == Term::Kind::reg ? "v" : "t",
+                            assignment.index, term_text(assignment.value));
+        if (assignment.positions != ir::Interval{})
+            text += fmt::format(", at positions {} to {}", low,
+                                high == kUnbounded ? "the end" : fmt::format("{}", high));
+        text += "\n";
+    }
+    return text + fmt::format("       rho {}; lower {}; upper {}\n", term_text(code.rho),
+                              term_text(code.lower, End::low), term_text(code.upper, End::high));
+}
+
+std::string table_text(const Table& table, char guarded, const ir::Graph& graph) {
+    std::string text;
+    std::uint32_t begin = 0;
+    for (std::size_t state = 0; state < table.ends.size(); ++state) {
+        text += fmt::format("       q{}: {}\n", state, owed(graph, table.obligations[state]));
+        for (std::uint32_t i = begin; i < table.ends[state]; ++i) {
+            const etlmon::Transition t = table.transitions[i];
             text += fmt::format("           from q{}", t.source);
-            if (t.guard != 0) text += " where" + slots(machine.guards[t.guard]);
+            if (t.guard != 0) text += " where";
+            for (std::uint32_t operand : table.guards[t.guard])
+                text += fmt::format(" {}{}", guarded, operand);
             text += "\n";
         }
+        begin = table.ends[state];
     }
     return text;
 }
 
 std::string pending_text(const Pending& pending, const ir::Graph& graph) {
-    std::string text = fmt::format("{}, over the last {} positions anew at every step\n",
-                                   pending.is_fold ? "fold" : "state machine", pending.horizon + 1);
+    std::string text;
     for (std::size_t i = 0; i < pending.parts.size(); ++i) {
         const Pending::Part& part = pending.parts[i];
         text += fmt::format("       p{} =", i);
@@ -108,36 +146,21 @@ std::string pending_text(const Pending& pending, const ir::Graph& graph) {
         for (std::uint32_t operand : part.operands) text += fmt::format(" p{}", operand);
         text += fmt::format("  // {}\n", graph.text(part.node));
     }
-    if (!pending.is_fold) text += "       " + machine_text(pending.machine, graph);
-    return text;
+    return pending.is_fold ? text : text + table_text(pending.table, 'p', graph);
 }
 
 std::string reading_text(const Reading& reading, const ir::Graph& graph) {
-    std::string text;
+    std::string text = reading.as;
+    for (std::uint32_t operand : reading.operands) text += fmt::format(" r{}", operand);
+    text += fmt::format("  // {}\n", graph.text(reading.node));
     switch (reading.kind) {
-        case Reading::Kind::latch:
-            return fmt::format("latch of s{} at step 0\n", reading.latch.operand);
-        case Reading::Kind::fold:
-            text =
-                fmt::format("fold {} over", symbol(reading.fold.max, reading.fold.left != kNone));
-            if (reading.fold.left != kNone) text += fmt::format(" s{}", reading.fold.left);
-            return text +
-                   fmt::format(" s{}, unseen s{}\n", reading.fold.right, reading.fold.unseen);
-        case Reading::Kind::pending: return pending_text(reading.pending, graph);
-        case Reading::Kind::response:
-            text = fmt::format("response, passed s{}", reading.response.passed);
-            if (reading.response.pending != kNone)
-                text += fmt::format(", pending s{}", reading.response.pending);
-            if (reading.response.recent != kNone)
-                text += fmt::format(", recent s{}", reading.response.recent);
-            return text + fmt::format(", unseen s{} s{}\n", reading.response.unseen_answer,
-                                      reading.response.unseen_body);
-        case Reading::Kind::machine: return machine_text(reading.machine, graph);
+        case Reading::Kind::straight:
+            return text + straight_text(reading.straight, reading.node, graph);
+        case Reading::Kind::table: return text + table_text(reading.table, 's', graph);
+        case Reading::Kind::pending: return text + pending_text(reading.pending, graph);
         case Reading::Kind::combination: break;
     }
-    text = reading.max ? "max" : "min";
-    for (std::uint32_t operand : reading.operands) text += fmt::format(" r{}", operand);
-    return text + "\n";
+    return text;
 }
 
 }  // namespace
@@ -147,11 +170,8 @@ std::string print(const Plan& plan) {
     std::string text = fmt::format("plan {}\nstreams\n", plan.model->name);
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) text += stream_text(plan, graph, slot);
     if (!plan.readings.empty()) text += "readings\n";
-    for (std::size_t i = 0; i < plan.readings.size(); ++i) {
-        std::string lines = reading_text(plan.readings[i], graph);
-        lines.insert(lines.find('\n'), fmt::format("  // {}", graph.text(plan.readings[i].node)));
-        text += fmt::format("  r{} = {}", i, lines);
-    }
+    for (std::size_t i = 0; i < plan.readings.size(); ++i)
+        text += fmt::format("  r{} = {}", i, reading_text(plan.readings[i], graph));
     text += "monitors\n";
     for (const Monitor& monitor : plan.monitors) {
         text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n",

@@ -1,10 +1,10 @@
-#include "calibrate/episodes/exact_distance.hpp"
+#include "episodes/exact_distance.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <numeric>
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -77,6 +77,8 @@ double to_row(const check::Distance& distance, const std::vector<double>& z, dou
     return distance.metric == Metric::l2 ? std::sqrt(sum) : sum;
 }
 
+}  // namespace
+
 double aggregate(const check::Distance& distance, std::vector<double> rows) {
     switch (distance.aggregation) {
         case check::Aggregation::min: return *std::min_element(rows.begin(), rows.end());
@@ -89,8 +91,6 @@ double aggregate(const check::Distance& distance, std::vector<double> rows) {
     std::nth_element(rows.begin(), rows.begin() + (distance.kth - 1), rows.end());
     return rows[distance.kth - 1];
 }
-
-}  // namespace
 
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point) {
@@ -106,4 +106,4 @@ std::optional<double> exact_distance(const check::Model& model, const check::Dis
     return aggregate(distance, std::move(rows));
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,4 +1,4 @@
-#include "calibrate/episodes/recording.hpp"
+#include "episodes/recording.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 
 #include "data/quote.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -103,6 +103,15 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
     return labelled;
 }
 
+diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
+                                        const data::NamesInFile& names) {
+    auto recording = open(wanted, [&](const std::vector<Channel>& channels) {
+        return data::open_trace(path, data::renamed(channels, names));
+    });
+    if (recording) recording->path_ = path;
+    return recording;
+}
+
 diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open) {
     const check::Model& model = *wanted.model;
     const TruthEvaluator all(model, formulas_of(model, wanted.predicates));
@@ -117,7 +126,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
             {static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) -
                                       inputs.begin()),
              model.inputs[input].name, model.inputs[input].is_embedding()});
-    Recording result(model, std::move(identity));
+    Recording result(wanted, std::move(identity));
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
     result.trace_ = std::move(*trace);
@@ -165,6 +174,7 @@ diag::Result<bool> Recording::next() {
     if (!more || !*more) return more;
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
+    if (leaks_ != nullptr && !leak_) leak_ = leaks_->find(samples_, frames_);
     hash_.add(sample_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
@@ -197,4 +207,4 @@ Label Recording::label(Index predicate) const {
     return value != 0 ? Label::yes : Label::no;
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,25 +1,19 @@
-#include "calibrate/episodes/leaks.hpp"
+#include "episodes/leaks.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
 using check::Distance;
-using check::Expr;
 using check::Input;
 using check::InputType;
 using check::Metric;
 
 /// Covers what is rounded here, and what normalising an embedding in float32 rounds.
 constexpr double kFourRoundings = 4 * 0x1p-24;
-
-void collect_distances(const Expr& e, std::vector<Index>& distances) {
-    if (e.kind == Expr::Kind::distance) distances.push_back(e.index);
-    for (const Expr& argument : e.arguments) collect_distances(argument, distances);
-}
 
 /// How far a number moves when it is rounded to the input's type. Targets are float32, and so are
 /// the samples of all inputs but these two.
@@ -87,12 +81,10 @@ double rounding_of_length(const Input& input, const std::vector<float>& z, doubl
 }  // namespace
 
 Leaks::Leaks(const check::Model& model, const std::vector<Index>& predicates) : model_(model) {
-    for (const Index predicate : predicates) {
-        std::vector<Index> distances;
-        collect_distances(model.predicates[predicate].expression, distances);
-        for (const Index distance : distances)
+    for (const Index predicate : predicates)
+        check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
             if (may_be_recorded(model, model.distances[distance])) watch(predicate, distance);
-    }
+        });
 }
 
 void Leaks::watch(Index predicate, Index index) {
@@ -151,4 +143,4 @@ std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
     return std::nullopt;
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,6 +1,6 @@
-#include "calibrate/episodes/ground_truth.hpp"
+#include "episodes/ground_truth.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& labelled) {
     GroundTruth result{model, std::vector<Index>(model.predicates.size(), check::kNone)};
@@ -37,4 +37,4 @@ plan::Sample sample_of(Label label) {
     return {true, {label == Label::yes ? 1.0F : 0.0F}};
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -11,21 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/leaks.hpp"
 #include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
+#include "episodes/leaks.hpp"
+#include "episodes/recording.hpp"
 #include "thresholds/thresholds.hpp"
 
-namespace etlc::calibrate {
-
-/// An episode that has been read to its end.
-struct Recorded {
-    std::string path;
-    std::string hash;
-    data::EpisodeContent content;
-    std::uint64_t frames = 0;
-    std::optional<Leak> leak;  ///< the first one
-};
+namespace etlc::episodes {
 
 template <class Episode>
 std::vector<const Recorded*> recorded(const std::vector<Episode>& episodes) {
@@ -78,4 +70,4 @@ void record(const std::vector<Episode>& episodes, const thresholds::Allowance& a
 /// Where --allow-overlap was given and there was nothing to pass over.
 std::string remark_on(const thresholds::Allowance& allowance);
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

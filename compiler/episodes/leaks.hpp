@@ -12,7 +12,7 @@
 #include "check/model/model.hpp"
 #include "plan/evaluate/inputs.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 using check::Index;
 
@@ -51,4 +51,4 @@ private:
     std::vector<Watched> watched_;
 };
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -18,7 +18,7 @@
 #include "data/files/file.hpp"
 #include "diag/diag.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 /// What is wrong with an episode.
 struct Fault {
@@ -68,4 +68,4 @@ std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& path
     return all;
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

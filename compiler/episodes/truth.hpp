@@ -12,7 +12,7 @@
 
 #include "check/model/model.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 using check::Index;
 
@@ -64,4 +64,4 @@ private:
     std::uint64_t frame_ = 0;  ///< from 1; 0 before the first
 };
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,8 +1,7 @@
-// One episode: what the monitors said of it, beside what was true.
+// One episode: what the monitors said of it, and what was true.
 // Takes: the plans of the spec and of its ground truth, and an episode. Gives: counts per predicate
 // and monitor, the distances for ranking, and when verdicts turned. Keeps true: both monitors are
-// run by the same evaluator, and what the spec's is given is what the generated class would be
-// given.
+// run by the same evaluator, on the samples that the generated class would get.
 #pragma once
 
 #include <cstdint>
@@ -10,14 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/admission.hpp"
-#include "calibrate/episodes/leaks.hpp"
-#include "calibrate/episodes/recording.hpp"
-#include "data/traces/trace.hpp"
+#include "episodes/replay.hpp"
 #include "evaluate/counts.hpp"
 #include "evaluate/ranking.hpp"
 #include "evaluate/subject.hpp"
-#include "plan/evaluate/evaluator.hpp"
 
 namespace etlc::evaluate {
 
@@ -38,7 +33,7 @@ struct MonitorEpisode {
     std::optional<Counts> ordering;
 };
 
-struct EpisodeResult : calibrate::Recorded {
+struct EpisodeResult : episodes::Recorded {
     std::vector<Counts> predicates;           ///< per labelled predicate
     std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
     /// Per labelled predicate: labelled frames whose distance is unknown.
@@ -48,14 +43,14 @@ struct EpisodeResult : calibrate::Recorded {
     std::vector<MonitorEpisode> monitors;
 };
 
-/// Judges one episode after the other. Not shared between threads; all that it is given outlives
+/// Scores one episode after the other. Not shared between threads; all that it is given outlives
 /// it.
-class Judge {
+class EpisodeScorer {
 public:
-    Judge(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
-          const calibrate::Leaks& leaks, const data::NamesInFile& names);
-    Judge(const Judge&) = delete;
-    Judge& operator=(const Judge&) = delete;
+    EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth, const Subject& subject,
+                  const episodes::Leaks& leaks, const data::NamesInFile& names);
+    EpisodeScorer(const EpisodeScorer&) = delete;
+    EpisodeScorer& operator=(const EpisodeScorer&) = delete;
 
     /// Failures do not name the path.
     diag::Result<EpisodeResult> score(const std::string& path);
@@ -68,30 +63,21 @@ private:
         Track is;
     };
 
-    void step(const calibrate::Recording& recording, EpisodeResult& result);
-    void count_predicates(const calibrate::Recording& recording, EpisodeResult& result) const;
-    void note(const std::vector<etlmon::Verdict>& said, const std::vector<etlmon::Verdict>& is);
-    void finish();
+    void count_predicates(const episodes::Recording& recording, EpisodeResult& result) const;
+    void note_verdicts();
     float distance(Index predicate) const;
     MonitorEpisode conclude(const MonitorSubject& subject, const Tracks& tracks) const;
     const check::Model& model() const { return *plan_.model; }
 
     const plan::Plan& plan_;
-    const plan::Plan& truth_plan_;
     const Subject& subject_;
-    const calibrate::Leaks& leaks_;
     const data::NamesInFile& names_;
-    std::vector<std::size_t> said_at_;  ///< per monitor, its index in plan_
-    /// Per monitor of the ground truth, its index in truth_plan_.
-    std::vector<std::size_t> truth_at_;
     plan::Plan measuring_;  ///< of labelled predicates that no monitor uses
-    plan::Evaluator monitor_;
-    plan::Evaluator truth_;
-    plan::Evaluator measure_;
-    calibrate::Wanted wanted_;
-    std::vector<plan::Sample> truth_samples_;
+    episodes::Follower monitors_;
+    episodes::Follower truths_;
+    episodes::Follower measured_;
+    episodes::Wanted wanted_;
     std::vector<Tracks> tracks_;  ///< per monitor
-    std::vector<bool> visited_;   ///< per monitor of the ground truth: satisfied at the last step
 };
 
 }  // namespace etlc::evaluate

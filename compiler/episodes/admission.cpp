@@ -1,4 +1,4 @@
-#include "calibrate/episodes/admission.hpp"
+#include "episodes/admission.hpp"
 
 #include <fmt/format.h>
 
@@ -7,7 +7,7 @@
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -183,4 +183,4 @@ std::string remark_on(const thresholds::Allowance& allowance) {
     return idle ? "\n--allow-overlap was not needed: nothing overlaps\n" : "";
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,13 +1,13 @@
-#include "calibrate/episodes/truth.hpp"
+#include "episodes/truth.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <set>
 
-#include "calibrate/episodes/exact_distance.hpp"
+#include "episodes/exact_distance.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 namespace {
 
@@ -146,14 +146,7 @@ Label TruthEvaluator::compare(const check::Predicate& predicate) const {
                                       [&](Index input) { return values_[input].empty(); });
     const double delta = present ? expression(predicate.expression) : kUnknown;
     if (std::isnan(delta)) return Label::unknown;
-    const double epsilon = predicate.threshold.value64;
-    switch (predicate.comparison) {
-        case check::Comparison::less_equal: return label_of(delta <= epsilon);
-        case check::Comparison::less: return label_of(delta < epsilon);
-        case check::Comparison::greater_equal: return label_of(delta >= epsilon);
-        case check::Comparison::greater: return label_of(delta > epsilon);
-    }
-    return Label::unknown;
+    return label_of(check::holds(predicate.comparison, delta, predicate.threshold.value64));
 }
 
 double TruthEvaluator::expression(const Expr& e) const {
@@ -190,4 +183,4 @@ double TruthEvaluator::measure(const check::Distance& distance) const {
     return exact_distance(model_, distance, point).value_or(kUnknown);
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

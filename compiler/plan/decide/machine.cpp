@@ -1,4 +1,4 @@
-#include "plan/program/machine.hpp"
+#include "plan/decide/machine.hpp"
 
 #include <algorithm>
 
@@ -36,14 +36,14 @@ Table make_table(const Machine& machine) {
             state.strong ? etlmon::kStrongly : index_of(table.weak, state.weak_unseen);
         table.owed.push_back({weak, index_of(table.strong, state.strong_unseen)});
     }
+    table.guards = machine.guards;
+    table.obligations = machine.automaton.states;
     return table;
 }
 
-void complete(Machine& machine) {
-    machine.table = make_table(machine);
-    machine.unrolled = machine.states.size() <= kMaxUnrolledStates &&
-                       machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
-    if (machine.unrolled) machine.program = make_register_program(machine);
+bool is_small(const Machine& machine) {
+    return machine.states.size() <= kMaxUnrolledStates &&
+           machine.automaton.transitions.size() <= kMaxUnrolledTransitions;
 }
 
 }  // namespace etlc::plan

@@ -8,11 +8,11 @@
 
 #include <vector>
 
-#include "calibrate/episodes/truth.hpp"
 #include "check/model/model.hpp"
+#include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 struct GroundTruth {
     check::Model model;
@@ -28,4 +28,4 @@ std::vector<Index> labelled_predicates(const GroundTruth& truth);
 /// The label as the sample of such an input; unknown is missing.
 plan::Sample sample_of(Label label);
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

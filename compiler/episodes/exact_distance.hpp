@@ -9,11 +9,14 @@
 
 #include "check/model/model.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 /// d(point, target) aggregated over the target set; `point` has as many elements as the target has
 /// columns. Nothing for the zero vector under cosine and angular, which has no direction.
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point);
 
-}  // namespace etlc::calibrate
+/// What the distance makes of its rows' distances, of which there is at least one.
+double aggregate(const check::Distance& distance, std::vector<double> rows);
+
+}  // namespace etlc::episodes

@@ -1,28 +1,40 @@
 // One recorded episode, a frame after the other: what the monitor would have been given, and what
-// was true. Takes: what is wanted of an episode, and how to open it. Gives: per frame the samples
-// in the monitor's precision and the label of every predicate; at the end a hash of the content.
+// was true. Takes: what is wanted of an episode, and where it lies. Gives: per frame the samples in
+// the monitor's precision and the label of every predicate; at the end what tells it from others.
 // Keeps true: memory is that of one frame (and of the windows of truths); a Boolean array
 // `truth.NAME` in the episode stands in for the spec's `truth NAME`.
 #pragma once
 
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "calibrate/episodes/truth.hpp"
 #include "check/model/model.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
+#include "episodes/leaks.hpp"
+#include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 struct Wanted {
     const check::Model* model = nullptr;
     std::vector<Index> inputs;      ///< whose samples are wanted, of the model
     std::vector<Index> predicates;  ///< whose labels are wanted: named ones
     std::vector<Index> identity;    ///< inputs that the hash is made of, all of them wanted too
+    const Leaks* leaks = nullptr;   ///< targets that no frame may be; null: all may
+};
+
+/// What an episode is told by once it has been read.
+struct Recorded {
+    std::string path;
+    std::string hash;
+    data::EpisodeContent content;
+    std::uint64_t frames = 0;
+    std::optional<Leak> leak;  ///< the first one
 };
 
 /// The inputs that predicates with a calibrated threshold read, in order of their names: two
@@ -41,8 +53,10 @@ using Opener =
 
 class Recording {
 public:
-    /// Failures: what `open` fails with; no_label where a predicate has neither a truth nor an
-    /// array. They do not name the episode.
+    /// Failures: what opening the trace fails with; no_label where a predicate has neither a truth
+    /// nor an array. They do not name the episode.
+    static diag::Result<Recording> open(const Wanted& wanted, const std::string& path,
+                                        const data::NamesInFile& names);
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
     /// The next frame; false at the end of the episode.
@@ -58,9 +72,8 @@ public:
     std::uint64_t frames() const { return frames_; }
     /// Number of frames where the file tells it beforehand, else 0.
     std::uint64_t length() const { return trace_->length(); }
-    /// Of the frames so far, over the inputs of `identity`.
-    std::string hash() const { return hash_.text(); }
-    data::EpisodeContent content() const { return hash_.content(); }
+    /// Of the frames so far; hash and content over the inputs of `identity`.
+    Recorded recorded() const { return {path_, hash_.text(), hash_.content(), frames_, leak_}; }
 
 private:
     struct Source {
@@ -69,12 +82,14 @@ private:
         Index formula = check::kNone;
     };
 
-    Recording(const check::Model& model, std::vector<data::HashedInput> identity)
-        : model_(&model), hash_(std::move(identity)) {}
+    Recording(const Wanted& wanted, std::vector<data::HashedInput> identity)
+        : model_(wanted.model), leaks_(wanted.leaks), hash_(std::move(identity)) {}
 
     diag::Result<bool> narrow();
 
     const check::Model* model_;
+    const Leaks* leaks_;
+    std::string path_;
     data::EpisodeHash hash_;
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;  ///< per channel of an input, that input
@@ -85,6 +100,7 @@ private:
     std::vector<plan::Sample> samples_;
     Frame frame_;
     std::uint64_t frames_ = 0;
+    std::optional<Leak> leak_;
 };
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,4 +1,4 @@
-#include "calibrate/episodes/parallel.hpp"
+#include "episodes/parallel.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "data/quote.hpp"
 #include "data/traces/trace.hpp"
 
-namespace etlc::calibrate {
+namespace etlc::episodes {
 
 void report(const std::vector<Fault>& faults, std::size_t episodes, diag::Sink& sink) {
     constexpr std::size_t kMostKinds = 10;
@@ -69,4 +69,4 @@ std::exception_ptr in_threads(unsigned asked, std::size_t most, const std::funct
     return first;
 }
 
-}  // namespace etlc::calibrate
+}  // namespace etlc::episodes

@@ -1,0 +1,137 @@
+#include "evaluate/episode_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace etlc::evaluate {
+
+namespace {
+
+using check::kNone;
+using etlmon::Verdict;
+
+Label label_of(const Verdict& verdict) {
+    if (verdict.satisfied()) return Label::yes;
+    return verdict.violated() ? Label::no : Label::unknown;
+}
+
+std::optional<Turn> turn_of(const std::vector<Label>& said, const std::vector<Label>& is) {
+    const auto known = [](Label label) { return label != Label::unknown; };
+    const auto first = std::find_if(is.begin(), is.end(), known);
+    if (first == is.end()) return std::nullopt;
+    const auto turned =
+        std::find_if(first, is.end(), [&](Label label) { return known(label) && label != *first; });
+    if (turned == is.end()) return std::nullopt;
+    const auto onset = turned - is.begin();
+    auto at = onset;
+    if (said[static_cast<std::size_t>(at)] == *turned) {
+        while (at > 0 && said[static_cast<std::size_t>(at - 1)] == *turned) --at;
+        return Turn{at - onset};
+    }
+    const auto later = std::find(said.begin() + onset, said.end(), *turned);
+    if (later == said.end()) return Turn{};
+    return Turn{later - said.begin() - onset};
+}
+
+bool measures(const plan::Plan& plan, Index predicate) {
+    return std::find(plan.predicates.begin(), plan.predicates.end(), predicate) !=
+           plan.predicates.end();
+}
+
+std::vector<Index> unmeasured(const plan::Plan& plan, std::vector<Index> predicates) {
+    std::erase_if(predicates, [&](Index p) { return measures(plan, p); });
+    return predicates;
+}
+
+}  // namespace
+
+EpisodeScorer::EpisodeScorer(const plan::Plan& plan, const plan::Plan& truth,
+                             const Subject& subject, const episodes::Leaks& leaks,
+                             const data::NamesInFile& names)
+    : plan_(plan),
+      subject_(subject),
+      names_(names),
+      measuring_(plan::measuring(*plan.model, unmeasured(plan, subject.labelled))),
+      monitors_(plan),
+      truths_(truth, &subject.truth),
+      measured_(measuring_),
+      wanted_(episodes::wanted(model(), {&plan, &measuring_}, subject.labelled, leaks)) {}
+
+diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
+    auto recording = episodes::Recording::open(wanted_, path, names_);
+    if (!recording) return recording.failure();
+    EpisodeResult result;
+    result.predicates.resize(subject_.labelled.size());
+    result.scored.resize(subject_.labelled.size());
+    result.unmeasured.resize(subject_.labelled.size());
+    tracks_.assign(subject_.monitors.size(), {});
+    const auto rest = [&] {
+        note_verdicts();
+        return true;
+    };
+    const auto frame = [&] {
+        count_predicates(*recording, result);
+        return rest();
+    };
+    const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
+    if (!done) return done.failure();
+    for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
+        result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
+    for (const Index predicate : subject_.labelled)
+        result.from_array.push_back(recording->from_array(predicate));
+    static_cast<episodes::Recorded&>(result) = recording->recorded();
+    return result;
+}
+
+float EpisodeScorer::distance(Index predicate) const {
+    return measures(plan_, predicate) ? monitors_.evaluator().distance(predicate)
+                                      : measured_.evaluator().distance(predicate);
+}
+
+void EpisodeScorer::count_predicates(const episodes::Recording& recording,
+                                     EpisodeResult& result) const {
+    for (std::size_t i = 0; i < subject_.labelled.size(); ++i) {
+        const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
+        const Label is = recording.label(subject_.labelled[i]);
+        const float delta = distance(subject_.labelled[i]);
+        if (std::isnan(delta)) {
+            result.predicates[i].add(Label::unknown, is);
+            result.unmeasured[i] += is == Label::unknown ? 0 : 1;
+            continue;
+        }
+        const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
+        result.predicates[i].add(holds ? Label::yes : Label::no, is);
+        if (is == Label::unknown) continue;
+        result.scored[i].push_back({predicate.upper_bound() ? -delta : delta, 0, is == Label::yes});
+    }
+}
+
+/// Both plans delay a sliding monitor alike: by the horizon of its formula as written.
+void EpisodeScorer::note_verdicts() {
+    for (std::size_t m = 0; m < subject_.monitors.size(); ++m) {
+        const MonitorSubject& subject = subject_.monitors[m];
+        if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
+        tracks_[m].said.push_back(label_of(monitors_.verdict(subject.monitor)));
+        tracks_[m].is.push_back(label_of(truths_.verdict(subject.truth)));
+    }
+}
+
+MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
+    MonitorEpisode result;
+    if (tracks.said.empty()) return result;
+    for (std::size_t i = 0; i < tracks.said.size(); ++i)
+        result.steps.add(tracks.said[i], tracks.is[i]);
+    const bool sliding = model().monitors[subject.monitor].sliding;
+    const auto verdict = [&](const Track& track) {
+        return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
+    };
+    result.episode.add(verdict(tracks.said), verdict(tracks.is));
+    result.turn = turn_of(tracks.said, tracks.is);
+    const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
+    if (!subject.stages.empty() &&
+        std::all_of(subject.stages.begin(), subject.stages.end(), visited))
+        result.ordering = result.episode;
+    return result;
+}
+
+}  // namespace etlc::evaluate
