@@ -342,7 +342,8 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   const Reading reach_avoid_reading = min_of(reach_reading, avoid_reading);
 
   // dubins.etl:28: F (at_a && F at_b)
-  sequential_owing_1_ = max_of(sequential_owing_1_, now.at_a);
+  sequential_owing_1_ = max_of(sequential_owing_1_, now.at_a);  // owed: F at_b
+  // nothing is owed any more
   sequential_met_ = max_of(sequential_met_, min_of(sequential_owing_1_, now.at_b));
   const Reading sequential_reading = {
     sequential_met_,

@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "emit/layout.hpp"
 #include "emit/names.hpp"
+#include "emit/text/layout.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
 #include "plan/program/demand.hpp"

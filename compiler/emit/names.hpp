@@ -35,10 +35,6 @@ private:
     std::set<std::string> taken_;
 };
 
-/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too
-/// long ones give `otherwise`.
-std::string identifier(std::string_view text, const std::string& otherwise);
-
 struct Names {
     /// In measure(): this step's sample; of an embedding, a pointer; none for what is read in
     /// place.

@@ -61,9 +61,15 @@ void print_assignment(Printer& out, const Context& context, std::uint32_t r,
         return print_wrapped(
             out, fmt::format("const Value {} = {};", names.locals[assignment.index], value));
     const std::string condition = open_condition(assignment.positions);
-    print_wrapped(
-        out, fmt::format("{}{} = {};", condition.empty() ? "" : fmt::format("if ({}) ", condition),
-                         names.members[assignment.index], value));
+    const std::string update = fmt::format("{} = {};", names.members[assignment.index], value);
+    const plan::Reading& reading = context.plan.readings[r];
+    const std::string held =
+        plan::comment_of(plan::members_of(reading)[assignment.index], context.graph);
+    // What stands above the reading's code is not said again.
+    const bool said = held == context.graph.text(reading.node);
+    print_with_comment(out,
+                       condition.empty() ? update : fmt::format("if ({}) {}", condition, update),
+                       said ? "" : held);
 }
 
 void print_straight(Printer& out, const Context& context, std::uint32_t r) {

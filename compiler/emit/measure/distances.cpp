@@ -1,5 +1,5 @@
 // The kernels' calls in measure().
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "emit/printer.hpp"
+#include "emit/text/printer.hpp"
 
 namespace etlc::emit {
 
@@ -21,6 +21,9 @@ std::string quoted(std::string_view text);
 
 /// One statement, or the line that opens a block ("if (...) {"). `if (c) s;` becomes a block.
 void print_wrapped(Printer& out, const std::string& text);
+
+/// The same with a comment: behind it where both fit in a line, else above it.
+void print_with_comment(Printer& out, const std::string& text, const std::string& comment);
 
 /// A comment, broken between words: each line begins with the mark and a blank, those after the
 /// first with `hang` blanks more.

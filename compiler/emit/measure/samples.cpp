@@ -1,5 +1,5 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/decide/points.hpp"
 
 namespace etlc::emit {

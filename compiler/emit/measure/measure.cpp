@@ -1,7 +1,7 @@
 // measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/program/literals.hpp"
 
 namespace etlc::emit {

@@ -1,4 +1,4 @@
-#include "emit/layout.hpp"
+#include "emit/text/layout.hpp"
 
 #include <algorithm>
 #include <cctype>
@@ -12,7 +12,7 @@ using Lines = std::vector<std::string>;
 using Text = std::string_view;
 
 constexpr std::size_t kContinued = 4;  ///< columns that the lines after the first are indented
-constexpr std::size_t kLongestQuote = 90;
+constexpr std::size_t kLongestQuote = 84;
 
 bool is_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -133,12 +133,10 @@ Lines broken_at_assignment(Text text, std::size_t width, bool only_if_it_fits) {
 
 /// `f() noexcept { return e; }` as a block; nothing where there is no such function.
 Lines broken_function(Text text, std::size_t width) {
-    constexpr Text kBegins = " noexcept { ";
-    constexpr Text kEnds = " }";
-    const std::size_t begin = text.find(kBegins);
+    const std::size_t begin = text.find(" { ", std::min(text.size(), text.find(" noexcept")));
     if (begin == Text::npos) return {};
-    const std::size_t body = begin + kBegins.size();
-    const std::size_t end = text.rfind(kEnds);
+    const std::size_t body = begin + 3;
+    const std::size_t end = text.rfind(" }");
     Lines lines{std::string(text.substr(0, body - 1))};
     append_indented(lines, broken(text.substr(body, end - body), width - 2), 2);
     lines.emplace_back(text.substr(end + 1));
@@ -197,18 +195,28 @@ void print_wrapped(Printer& out, const std::string& text) {
     for (const std::string& line : broken(text, kLineWidth - out.column())) out.line(line);
 }
 
+void print_with_comment(Printer& out, const std::string& text, const std::string& comment) {
+    const bool one_line = out.column() + text.size() + 5 + comment.size() <= kLineWidth;
+    if (!comment.empty() && one_line && !text.starts_with("if ("))
+        return out.line("{}  // {}", text, comment);
+    if (!comment.empty()) print_comment(out, "//", comment, 4);
+    print_wrapped(out, text);
+}
+
 void print_comment(Printer& out, std::string_view mark, std::string_view text, std::size_t hang) {
     std::string line(mark);
     const std::size_t width = kLineWidth - out.column();
     bool first_word = true;
     while (!text.empty()) {
         const std::string_view word = text.substr(0, text.find(' '));
-        text.remove_prefix(std::min(text.size(), word.size() + 1));
-        if (!first_word && line.size() + 1 + word.size() > width) {
+        // Before two blanks is the best place to break, if the line has to be broken at all.
+        const bool parts = word.empty() && line.size() + 1 + text.size() > width;
+        if (!first_word && (parts || line.size() + 1 + word.size() > width)) {
             out.line(line);
             line = std::string(mark) + std::string(hang, ' ');
         }
-        line.append(1, ' ').append(word);
+        text.remove_prefix(std::min(text.size(), word.size() + 1));
+        if (!parts) line.append(1, ' ').append(word);
         first_word = false;
     }
     out.line(line);
