@@ -20,8 +20,7 @@ std::string data_lines(const Model& model) {
         lines += fmt::format("{} {}\n", target.name, target.hash);
     for (const Distance& distance : model.distances)
         if (!distance.weights.empty())
-            lines += fmt::format("{} {}\n", distance.text,
-                                 data::content_hash({distance.weights.size()}, distance.weights));
+            lines += fmt::format("{} {}\n", distance.text, weights_hash(distance));
     return lines;
 }
 
@@ -40,6 +39,10 @@ std::string threshold_lines(const Model& model) {
 }
 
 }  // namespace
+
+std::string weights_hash(const Distance& distance) {
+    return data::content_hash({distance.weights.size()}, distance.weights);
+}
 
 Fingerprint fingerprint(const Model& model) {
     return {data::xxh64(model.file.text()), hash_of(data_lines(model)),

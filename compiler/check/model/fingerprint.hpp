@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 #include "check/model/model.hpp"
 
@@ -18,5 +19,8 @@ struct Fingerprint {
 };
 
 Fingerprint fingerprint(const Model& model);
+
+/// Content hash of a distance's weights, 16 hex digits.
+std::string weights_hash(const Distance& distance);
 
 }  // namespace etlc::check
