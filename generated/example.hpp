@@ -1,5 +1,10 @@
 // Made by etlc 0.2.0 from example.etl: change that, and run etlc again.
 //
+//   made from                XXH64
+//   example.etl              b969834d30a9eb86
+//   target sets and weights  541b091ac8a2d1e1
+//   thresholds               5fd205765801e84c
+//
 //   monitor       about       state B  targets B  operations  distance elements
 //   stays         the prefix       16         16           2                  4
 //   all together                   20         16           2                  4
@@ -7,8 +12,9 @@
 //   predicate  measures             threshold  origin
 //   near_goal  min l2(z, goal) <=   0.409      written in the spec; no guarantee
 //
-// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and comparisons of
-// robustness keys in the worst step. distance elements: target elements that a step compares with its input.
+// state B: of a monitor alone, what it shares with others counted in each. operations: min, max and
+// comparisons of robustness keys in the worst step. distance elements: target elements that a step
+// compares with its input.
 #pragma once
 
 #include <stddef.h>
@@ -26,7 +32,7 @@
 #endif
 
 namespace example {
-inline namespace ETLMON_BUILD {  // units compiled with other flags have a class of their own
+inline namespace ETLMON_BUILD {  // units compiled with other flags have another class
 
 /// What the monitors see at one step. Inputs{} lacks everything.
 struct Inputs {
@@ -42,15 +48,30 @@ struct Verdicts {
 namespace targets {
 /// literal: 2 rows of 2 elements
 alignas(64) inline constexpr float goal[2 * 2] = {
-  0.0f, 0.0f, 1.0f, 0.0f
+  0.0f, 0.0f,
+  1.0f, 0.0f
 };
 }  // namespace targets
 
-/// Every monitor of the spec, stepped together. Any number of instances; none of them shares anything.
+/// Every monitor of the spec, stepped together. Any number of instances; none of them shares
+/// anything.
 class Monitor {
  public:
-  static constexpr size_t kStateBytes = 20;  ///< sizeof(Monitor)
-  static constexpr uint32_t kOperations = 2;  ///< of the temporal part in the worst step: min, max, compare
+  using Value = etlmon::Value;      ///< a robustness; its ends differ where a sample is missing
+  using Reading = etlmon::Reading;  ///< a value, and bounds that no continuation leaves
+
+  /// What a step says about each predicate.
+  struct Atoms {
+    etlmon::Value near_goal;
+  };
+
+  /// What the class was made from, as XXH64: to be kept with its verdicts.
+  static constexpr uint64_t kSpecHash = 0xb969834d30a9eb86u;        ///< example.etl
+  static constexpr uint64_t kDataHash = 0x541b091ac8a2d1e1u;        ///< target sets and weights
+  static constexpr uint64_t kThresholdsHash = 0x5fd205765801e84cu;  ///< thresholds, as they begin
+  /// What it takes.
+  static constexpr size_t kStateBytes = 20;         ///< sizeof(Monitor)
+  static constexpr uint32_t kOperations = 2;        ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
 
   Monitor() noexcept { reset(); }
@@ -65,8 +86,17 @@ class Monitor {
   /// One call, one time step.
   Verdicts step(const Inputs& in) noexcept { return judge(measure(in)); }
 
-  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown, beside its
-  /// threshold, and the row of the nearest target.
+  // A step in two halves: step(in) is judge(measure(in)). They share no member that either changes,
+  // so one may interrupt the other; every measure() is followed by one judge() of what it gave, in
+  // the same order.
+
+  /// The robustness of every predicate at this step; counts the step if something was missing.
+  Atoms measure(const Inputs& in) noexcept;
+  /// One step of every formula, given this step's predicates.
+  Verdicts judge(const Atoms& now) noexcept;
+
+  /// Telemetry of the last step: a predicate's distance or expression, NaN where it was unknown,
+  /// next to its threshold, and the row of the nearest target.
   float distance_near_goal() const noexcept { return near_goal_.delta; }
   static constexpr float threshold_near_goal() noexcept { return 0.409f; }
   uint32_t nearest_near_goal() const noexcept { return near_goal_.nearest; }
@@ -75,55 +105,44 @@ class Monitor {
   uint32_t missing_steps() const noexcept { return incomplete; }
 
  private:
-  using Value = etlmon::Value;
-  using Key = etlmon::Key;
-  using Reading = etlmon::Reading;
-
- public:
-  // A step in two halves: step(in) is judge(measure(in)). They share no member that either changes, so one may
-  // interrupt the other; every measure() is followed by one judge() of what it gave, in the same order.
-
-  /// What this step says about each predicate.
-  struct Atoms {
-    etlmon::Value near_goal;
-  };
-
-  /// The robustness of every predicate at this step; counts the step if something was missing.
-  Atoms measure(const Inputs& in) noexcept {
-    Atoms now;
-    bool missing = false;
-
-    // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
-    near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
-    now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), Value{etlmon::kBottom,
-        etlmon::key_of(0.409f)});
-    missing |= etlmon::is_nan(near_goal_.delta);
-
-    if (missing && incomplete != 0xffffffffu) ++incomplete;
-    return now;
+  /// What stands for a predicate that is not seen: all that its robustness can be.
+  static Value unseen_near_goal() noexcept {
+    return Value{etlmon::kBottom, etlmon::key_of(0.409f)};
   }
 
-  /// One step of every formula, given this step's predicates. A Reading is rho on the prefix, and the lower and upper
-  /// bound that no continuation leaves.
-  Verdicts judge(const Atoms& now) noexcept {
-    using etlmon::max_of;
-    using etlmon::min_of;
-
-    // example.etl:10: G near_goal
-    stays_ = min_of(stays_, now.near_goal);
-    const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
-
-    Verdicts verdicts;
-    verdicts.stays = etlmon::prefix_verdict(stays_reading);
-    return verdicts;
-  }
-
- private:
   etlmon::Register stays_;      // G near_goal
-  etlmon::Measured near_goal_;  // telemetry
+  etlmon::Measured near_goal_;  // telemetry of near_goal
   uint32_t incomplete;          // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
+
+inline Monitor::Atoms Monitor::measure(const Inputs& in) noexcept {
+  Atoms now;
+  bool missing = false;
+
+  // example.etl:8: predicate near_goal = min l2(z, goal) <= 0.409
+  near_goal_ = etlmon::measure<etlmon::L2, etlmon::Min, 2, 2, targets::goal>(in.z);
+  now.near_goal = etlmon::at_most(near_goal_.delta, threshold_near_goal(), unseen_near_goal());
+  missing = etlmon::is_nan(near_goal_.delta) || missing;
+
+  if (missing && incomplete != UINT32_MAX) {
+    ++incomplete;
+  }
+  return now;
+}
+
+inline Verdicts Monitor::judge(const Atoms& now) noexcept {
+  using etlmon::max_of;
+  using etlmon::min_of;
+
+  // example.etl:10: G near_goal
+  stays_ = min_of(stays_, now.near_goal);
+  const Reading stays_reading = {stays_, etlmon::kBottom, stays_.high};
+
+  Verdicts verdicts;
+  verdicts.stays = etlmon::prefix_verdict(stays_reading);
+  return verdicts;
+}
 
 }  // namespace ETLMON_BUILD
 }  // namespace example

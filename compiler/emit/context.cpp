@@ -1,7 +1,6 @@
 #include "emit/context.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "plan/narrow_targets.hpp"
 
@@ -10,26 +9,6 @@ namespace etlc::emit {
 namespace {
 
 using plan::StreamOp;
-
-constexpr std::size_t kLongestQuote = 90;
-
-/// Spec text on one line, shortened where it is long.
-std::string quoted(std::string_view text) {
-    std::string line;
-    for (char c : text) {
-        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
-        if (!blank)
-            line += c;
-        else if (!line.empty() && line.back() != ' ')
-            line += ' ';
-    }
-    while (!line.empty() && line.back() == ' ') line.pop_back();
-    if (line.size() <= kLongestQuote) return line;
-    std::size_t cut = kLongestQuote - 4;
-    while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U)
-        --cut;  // not inside a code point
-    return line.substr(0, cut) + " ...";
-}
 
 }  // namespace
 
@@ -40,14 +19,6 @@ std::string open_condition(ir::Interval interval) {
     if (interval.bounded())
         text += fmt::format("{}position <= {}", text.empty() ? "" : " && ", interval.high);
     return text;
-}
-
-std::string float_literal(float x) {
-    if (std::isinf(x))
-        return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
-    std::string text = fmt::format("{}", x);
-    if (text.find_first_of(".e") == std::string::npos) text += ".0";
-    return text + "f";
 }
 
 std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy) {
@@ -61,34 +32,6 @@ std::string call(std::string_view function, const std::vector<std::string>& argu
     text.clear();
     for (const std::string& argument : arguments) text += (text.empty() ? "" : ", ") + argument;
     return fmt::format("{}({})", function, text);
-}
-
-void print_wrapped(Printer& out, const std::string& text) {
-    std::size_t begin = 0;
-    bool first = true;
-    while (begin < text.size()) {
-        const std::size_t room = kLineWidth - out.column() - (first ? 0 : 4);
-        std::size_t end = text.size();
-        if (end - begin > room) {
-            const std::size_t blank = text.rfind(' ', begin + room);
-            if (blank != std::string::npos && blank > begin) end = blank;
-        }
-        out.line("{}{}", first ? "" : "    ", text.substr(begin, end - begin));
-        begin = end + 1;
-        first = false;
-    }
-}
-
-void print_aligned(Printer& out,
-                   const std::vector<std::pair<std::string, std::string>>& declarations) {
-    constexpr std::size_t kWidest = 56;  // longer ones push their own comment out
-    std::size_t width = 0;
-    for (const auto& [declaration, comment] : declarations)
-        if (!comment.empty() && declaration.size() <= kWidest)
-            width = std::max(width, declaration.size());
-    for (const auto& [declaration, comment] : declarations)
-        out.line(comment.empty() ? declaration
-                                 : fmt::format("{:<{}}  // {}", declaration, width, comment));
 }
 
 bool Context::enclosed(check::Index distance) const {

@@ -8,7 +8,7 @@
 #include <string_view>
 
 #include "emit/names.hpp"
-#include "emit/printer.hpp"
+#include "emit/text/layout.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
 #include "plan/program/demand.hpp"
@@ -73,14 +73,6 @@ struct Context {
 
 /// "step_ >= 2 && step_ <= 5", empty where the window is always open.
 std::string open_condition(ir::Interval interval);
-/// A float32 literal that reads back to the same bits: "0.31f".
-std::string float_literal(float x);
-/// `text` broken at commas and operators so that no line is longer than kLineWidth, continued four
-/// spaces deeper.
-void print_wrapped(Printer& out, const std::string& text);
-/// Declarations with their comments in one column.
-void print_aligned(Printer& out,
-                   const std::vector<std::pair<std::string, std::string>>& declarations);
 /// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
 /// "max_of(max_of(a, b), c)".
 std::string call(std::string_view function, const std::vector<std::string>& arguments,
@@ -90,9 +82,13 @@ std::string call(std::string_view function, const std::vector<std::string>& argu
 void print_summary(Printer& out, const Context& context);
 void print_inputs_and_verdicts(Printer& out, const Context& context);
 void print_constants(Printer& out, const Context& context);
+void print_class(Printer& out, const Context& context);
 void print_measure(Printer& out, const Context& context);
 void print_atoms_on_demand(Printer& out, const Context& context);
 void print_judge(Printer& out, const Context& context);
+/// Opens the definition of a function that a step is made of: "Verdicts", "judge(...)".
+void open_half(Printer& out, const Context& context, std::string_view result,
+               std::string_view function);
 /// Of a Boolean class: measure() and judge() in one, since what is measured depends on what is
 /// judged.
 void print_advance(Printer& out, const Context& context);

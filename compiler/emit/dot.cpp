@@ -2,7 +2,7 @@
 #include <set>
 
 #include "emit/emit.hpp"
-#include "emit/printer.hpp"
+#include "emit/text/printer.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::emit {

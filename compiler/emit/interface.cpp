@@ -37,28 +37,31 @@ std::string remark_on(const check::Input& input) {
     return text;
 }
 
-/// `alignas(64) inline constexpr TYPE NAME[SIZE] = {...};`
+/// `alignas(64) inline constexpr TYPE NAME[SIZE] = {...};`, each row on a line of its own; a row of
+/// several lines with its number above it.
 template <class Number, class Spell>
 void print_array(Printer& out, const std::string& type_and_name, const std::string& size,
-                 const std::vector<Number>& numbers, Spell spell) {
+                 const std::vector<Number>& numbers, std::size_t row_length, Spell spell) {
     out.line("alignas(64) inline constexpr {}[{}] = {{", type_and_name, size);
     out.indent();
-    std::string line;
-    for (std::size_t i = 0; i < numbers.size(); ++i) {
-        const std::string number = spell(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
-        if (!line.empty() && out.column() + line.size() + 1 + number.size() > kLineWidth) {
-            out.line(line);
-            line.clear();
+    for (std::size_t begin = 0; begin < numbers.size(); begin += row_length) {
+        std::vector<std::string> lines(1);
+        for (std::size_t i = begin; i < begin + row_length; ++i) {
+            const std::string number = spell(numbers[i]) + (i + 1 < numbers.size() ? "," : "");
+            if (out.column() + lines.back().size() + 1 + number.size() > kLineWidth)
+                lines.emplace_back();
+            lines.back() += (lines.back().empty() ? "" : " ") + number;
         }
-        line += (line.empty() ? "" : " ") + number;
+        if (lines.size() > 1 && numbers.size() > row_length)
+            out.line("// row {}", begin / row_length);
+        for (const std::string& line : lines) out.line(line);
     }
-    out.line(line);
     out.close("};");
 }
 
 void print_numbers(Printer& out, const std::string& name, const std::string& size,
-                   const std::vector<float>& numbers) {
-    print_array(out, "float " + name, size, numbers, float_literal);
+                   const std::vector<float>& numbers, std::size_t row_length) {
+    print_array(out, "float " + name, size, numbers, row_length, float_literal);
 }
 
 std::string rows_of(const check::Target& target, const check::Distance& distance) {
@@ -71,38 +74,39 @@ std::string rows_of(const check::Target& target, const check::Distance& distance
 void print_rows(Printer& out, const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
     const check::Target& target = context.model.targets[distance.target];
-    out.line("/// {}", rows_of(target, distance));
+    print_doc(out, rows_of(target, distance));
     if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
-        out.line("inline constexpr size_t {} = {};  // floats from the beginning of {}",
-                 context.names.target_array.at(d), set->offset / sizeof(float),
-                 context.targets_file);
-        return;
+        print_doc(out, fmt::format("begin so many floats into {}", context.targets_file));
+        return out.line("inline constexpr size_t {} = {};", context.names.target_array.at(d),
+                        set->offset / sizeof(float));
     }
     print_numbers(out, context.names.target_array.at(d),
                   fmt::format("{} * {}", target.rows, target.dimension),
-                  plan::prepared_rows(context.model, distance));
+                  plan::prepared_rows(context.model, distance), target.dimension);
 }
 
 void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowSet& set) {
     const check::Distance& distance = context.model.distances[set.distance];
     const bool halves = set.storage == plan::Storage::f16;
-    out.line("/// {}; as {}{}", rows_of(context.model.targets[distance.target], distance),
-             halves ? "the bits of float16" : fmt::format("int8, value = {} x integer", set.scale),
-             set.lossless ? ", which hold them exactly" : "");
+    print_doc(out,
+              fmt::format("{}; as {}{}", rows_of(context.model.targets[distance.target], distance),
+                          halves ? "the bits of float16"
+                                 : fmt::format("int8, value = {} x integer", set.scale),
+                          set.lossless ? ", which hold them exactly" : ""));
     const std::string& name = context.names.narrow_array.at(set.distance);
     const std::string size = fmt::format("{} * {}", set.rows, set.dimension);
     if (halves)
-        print_array(out, "uint16_t " + name, size, set.halves,
+        print_array(out, "uint16_t " + name, size, set.halves, set.dimension,
                     [](std::uint16_t x) { return fmt::format("0x{:04x}", x); });
     else
-        print_array(out, "int8_t " + name, size, set.bytes,
+        print_array(out, "int8_t " + name, size, set.bytes, set.dimension,
                     [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
 }  // namespace
 
 void print_inputs_and_verdicts(Printer& out, const Context& context) {
-    out.line("/// What the monitors see at one step. Inputs{} lacks everything.");
+    print_doc(out, "What the monitors see at one step. Inputs{} lacks everything.");
     out.open("struct Inputs {");
     std::vector<std::pair<std::string, std::string>> inputs;
     for (Index i : context.plan.inputs) {
@@ -115,9 +119,9 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     print_aligned(out, inputs);
     out.close("};");
     out.line();
-    out.line(
-        "/// What they answer: about the prefix so far or, sliding, about the position their "
-        "horizon ago.");
+    print_doc(out,
+              "What they answer: about the prefix so far or, sliding, about the position their "
+              "horizon ago.");
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
@@ -133,12 +137,10 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
 void print_constants(Printer& out, const Context& context) {
     if (context.plan.distances.empty()) return;
     if (context.stores_targets()) {
-        out.line(
-            "/// The bytes of {}: mapped by etlmon/hosted/mapped_targets.hpp, or linked in at a "
-            "multiple "
-            "of 64.",
-            context.targets_file);
-        out.line("/// The type holds their size and their XXH64: it is ready with no others.");
+        print_doc(out, fmt::format("The bytes of {}: mapped by etlmon/hosted/mapped_targets.hpp, "
+                                   "or linked in at a multiple of 64. The type holds their size "
+                                   "and their XXH64: it is ready with no others.",
+                                   context.targets_file));
         out.line("using Targets = etlmon::Targets<{}u, 0x{:016x}u>;",
                  plan::stored_bytes(context.plan), plan::stored_hash(context.plan));
         out.line();
@@ -155,9 +157,10 @@ void print_constants(Printer& out, const Context& context) {
         const auto weights = context.names.weight_array.find(d);
         if (weights == context.names.weight_array.end()) continue;
         const check::Distance& distance = context.model.distances[d];
-        out.line("/// the weights of {}", distance.text);
+        print_doc(out, fmt::format("the weights of {}", distance.text));
+        const std::size_t dimension = context.model.targets[distance.target].dimension;
         print_numbers(out, weights->second, fmt::format("{}", distance.weights.size()),
-                      distance.weights);
+                      distance.weights, dimension);
     }
     out.line("}  // namespace targets");
     out.line();

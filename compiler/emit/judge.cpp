@@ -32,7 +32,9 @@ void print_reading_while_open(Printer& out, const Context& context, std::uint32_
     if (!reading.operands.empty())
         return print_reading(out, context, r);  // of others: nothing is asked for
     out.line("Reading {}{{}};", context.names.readings[r].local);
-    out.open(fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
+    print_wrapped(
+        out, fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
+    out.indent();
     print_reading(out, context, r);
     out.close();
 }
@@ -49,13 +51,14 @@ void print_readings(Printer& out, const Context& context) {
     }
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
-        out.line("// {}", context.place(plan.readings[r].node));
+        print_comment(out, "//", context.place(plan.readings[r].node), 4);
         context.boolean() ? print_reading_while_open(out, context, r)
                           : print_reading(out, context, r);
     }
     if (!ends) return;
     for (const auto& [m, name] : context.names.verdict_member)
-        out.line("{} = {};", name, prefix_verdict(context, plan.monitors[m]));
+        print_wrapped(out,
+                      fmt::format("{} = {};", name, prefix_verdict(context, plan.monitors[m])));
     out.close();
 }
 
@@ -79,30 +82,25 @@ void print_open_verdicts(Printer& out, const Context& context) {
 
 void print_advance(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
-    out.line(
-        "/// One step of every formula: min is \"and\", max is \"or\". A predicate is measured "
-        "when a verdict that "
-        "can");
-    out.line(
-        "/// still change first depends on it; min and max ask from left to right and stop where "
-        "one decides.");
-    out.open(fmt::format("{}Verdicts advance({}const Inputs& in) noexcept {{",
-                         context.step_qualifier(), plan.inputs.empty() ? "[[maybe_unused]] " : ""));
+    open_half(
+        out, context, "Verdicts",
+        fmt::format("advance({}const Inputs& in)", plan.inputs.empty() ? "[[maybe_unused]] " : ""));
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.line("bool missing = false;");
     print_atoms_on_demand(out, context);
     out.gap();
     for (const auto& [m, open] : context.names.open_local)
-        out.line("const bool {} = {}!answers.{}.final();", open,
-                 plan.has_sliding ? "finishes == 0 && " : "", plan.monitors[m].name);
+        print_wrapped(
+            out, fmt::format("const bool {} = {}!answers.{}.final();", open,
+                             plan.has_sliding ? "finishes == 0 && " : "", plan.monitors[m].name));
     out.gap();
     print_streams(out, context);
     print_readings(out, context);
     out.gap();
     print_open_verdicts(out, context);
-    out.line("if (missing && incomplete != 0xffffffffu) ++incomplete;");
-    if (plan.counts_steps) out.line("if (position != 0xffffffffu) ++position;");
+    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
+    if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return answers;");
     out.close();
 }
@@ -111,13 +109,8 @@ void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool reads_atoms =
         !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
-    out.line(
-        "/// One step of every formula, given this step's predicates. A Reading is rho on the "
-        "prefix, and the lower "
-        "and upper");
-    out.line("/// bound that no continuation leaves.");
-    out.open(fmt::format("{}Verdicts judge({}const Atoms& now) noexcept {{",
-                         context.step_qualifier(), reads_atoms ? "" : "[[maybe_unused]] "));
+    open_half(out, context, "Verdicts",
+              fmt::format("judge({}const Atoms& now)", reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.gap();
@@ -128,7 +121,7 @@ void print_judge(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out,
                       fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
-    if (plan.counts_steps) out.line("if (position != 0xffffffffu) ++position;");
+    if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return verdicts;");
     out.close();
 }

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cctype>
 
+#include "emit/text/identifiers.hpp"
 #include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -14,43 +14,7 @@ namespace etlc::emit {
 
 namespace {
 
-constexpr std::size_t kLongestName = 36;
 constexpr std::size_t kLongestPartName = 24;
-
-/// Words for the symbols of formulas and expressions.
-std::string_view word_for(char symbol) {
-    switch (symbol) {
-        case '!': return "not";
-        case '&': return "and";
-        case '|': return "or";
-        case '<': return "below";
-        case '>': return "above";
-        case '+': return "plus";
-        case '-': return "minus";
-        case '*': return "times";
-        case '/': return "over";
-        default: return "";
-    }
-}
-
-std::string_view word_for_operator(std::string_view letter) {
-    if (letter == "F") return "eventually";
-    if (letter == "G") return "always";
-    if (letter == "U") return "until";
-    if (letter == "R") return "release";
-    if (letter == "O") return "once";
-    if (letter == "H") return "historically";
-    if (letter == "S") return "since";
-    if (letter == "X") return "next";
-    if (letter == "Y") return "previous";
-    return letter;
-}
-
-void append_word(std::string& name, std::string_view word) {
-    if (word.empty()) return;
-    if (!name.empty()) name += '_';
-    name += word;
-}
 
 /// A data member that is named after the spec.
 std::string member(Scope& scope, const std::string& name) {
@@ -68,8 +32,8 @@ std::string local(Scope& scope, const std::string& name) {
 std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
     std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
-        for (const char* prefix : {"distance_", "nearest_", "threshold_", "initial_threshold_",
-                                   "set_threshold_", "observe_"})
+        for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
+                                   "initial_threshold_", "set_threshold_", "observe_"})
             names.insert(prefix + model.predicates[p].name);
     return names;
 }
@@ -130,12 +94,17 @@ private:
         for (check::Index p : plan_.predicates)
             if (!model_.predicates[p].name.empty())
                 names_.predicate_atom[p] = atom(model_.predicates[p].name);
+        for (check::Index p : plan_.predicates)
+            if (model_.predicates[p].name.empty())
+                names_.predicate_atom[p] =
+                    local(boolean_ ? judge_ : atoms_, predicate_name(model_.predicates[p]));
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
+            if (!boolean_) names_.predicate_unseen[p] = "unseen_" + names_.predicate_atom[p];
             if (!predicate.name.empty()) continue;
-            const std::string words = predicate_name(predicate);
-            names_.predicate_atom[p] = local(boolean_ ? judge_ : atoms_, words);
-            names_.predicate_local[p] = local(measure_, words + "_delta");
+            if (!boolean_)
+                for (Scope* scope : {&judge_, &measure_}) scope->claim(names_.predicate_unseen[p]);
+            names_.predicate_local[p] = local(measure_, predicate_name(predicate) + "_delta");
         }
     }
 
@@ -177,12 +146,18 @@ private:
     }
 
     std::string stream_name(const plan::Stream& stream) const {
-        if (stream.node != plan::kNone) return identifier(graph_.text(stream.node), "value");
+        if (stream.node != plan::kNone) {
+            const std::string words = name_of(graph_, stream.node);
+            if (!words.empty()) return words;
+        }
         if (stream.op == plan::StreamOp::predicate)
             return predicate_name(model_.predicates[stream.index]);
-        const std::string suffix = suffix_of(stream);
-        if (suffix.empty()) return "value";
-        return stream_name(signal_of(stream)) + suffix;
+        if (stream.op == plan::StreamOp::flag) return model_.inputs[stream.index].name;
+        if (stream.operands.empty()) return "value";
+        const std::string signal = stream_name(signal_of(stream));
+        if (signal.size() > kLongestName) return "value";
+        return stream.op == plan::StreamOp::combination ? with_more(signal, stream.max)
+                                                        : signal + suffix_of(stream);
     }
 
     /// The last operand; of a window that is widened from a shorter one, what both watch.
@@ -197,10 +172,14 @@ private:
             case plan::StreamOp::within: return "_within";
             case plan::StreamOp::delay: return "_delayed";
             case plan::StreamOp::shift: return "_before";
+            case plan::StreamOp::running: return "_so_far";
             case plan::StreamOp::since: return "_pending";
+            case plan::StreamOp::negation: return "_negated";
             case plan::StreamOp::window:
-            case plan::StreamOp::widening: return fmt::format("_last_{}", stream.length);
-            default: return "";
+            case plan::StreamOp::widening:
+            case plan::StreamOp::window_since:
+            case plan::StreamOp::window_until: return fmt::format("_last_{}", stream.length);
+            default: return "_value";
         }
     }
 
@@ -332,30 +311,6 @@ std::string Scope::number(const std::string& wanted) {
     int i = 1;
     while (!taken_.insert(fmt::format("{}_{}", wanted, i)).second) ++i;
     return fmt::format("{}_{}", wanted, i);
-}
-
-std::string identifier(std::string_view text, const std::string& otherwise) {
-    if (text.find("...") != std::string_view::npos)
-        return otherwise;  // parts of the formula were left out
-    std::string name;
-    for (std::size_t i = 0; i < text.size();) {
-        std::size_t end = i;
-        while (end < text.size() &&
-               (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
-            ++end;
-        if (end > i) {
-            append_word(name, word_for_operator(text.substr(i, end - i)));
-        } else {
-            end = i + 1;
-            append_word(name, word_for(text[i]));
-            while (end < text.size() && text[end] == text[i]) ++end;  // && and ||
-        }
-        i = end;
-    }
-    const bool legal = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
-                       name[0] != '_' && name.find("__") == std::string::npos &&
-                       name.size() <= kLongestName;
-    return legal ? name : otherwise;
 }
 
 Names make_names(const plan::Plan& plan) {

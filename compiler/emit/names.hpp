@@ -4,16 +4,13 @@
 // run. None is a name that the class has of itself, or that its code reads. For that there is one
 // rule:
 // - a name of the spec stands alone only as a field of Inputs, Verdicts or Atoms and in the
-// namespace targets, where
-//   nothing else is declared; in names of the spec every underscore stands between two other
-//   characters;
+//   namespace targets, where nothing else is declared; in names of the spec every underscore stands
+//   between two other characters;
 // - members that are named after the spec end in an underscore; locals are a name or words of a
-// formula with an
-//   underscore and more behind it; functions are distance_P, threshold_P and the like, which no
-//   local is called;
+//   formula with an underscore and more behind it; functions are distance_P, threshold_P and the
+//   like, which no local is called;
 // - what the class calls something of its own has no underscore: position, now, kStateBytes. (What
-// has one is of no
-//   such form: missing_steps(), uint32_t, macros.)
+//   has one is of no such form: missing_steps(), uint32_t, macros.)
 #pragma once
 
 #include <map>
@@ -38,10 +35,6 @@ private:
     std::set<std::string> taken_;
 };
 
-/// A formula or expression as an identifier: "F (at_a && held)" is eventually_at_a_and_held; too
-/// long ones give `otherwise`.
-std::string identifier(std::string_view text, const std::string& otherwise);
-
 struct Names {
     /// In measure(): this step's sample; of an embedding, a pointer; none for what is read in
     /// place.
@@ -55,7 +48,9 @@ struct Names {
     std::map<check::Index, std::string> predicate_local;
     /// Field of Atoms; of a Boolean class, a local.
     std::map<check::Index, std::string> predicate_atom;
-    std::map<check::Index, std::string> flag_atom;         ///< likewise
+    /// Function of a class of robustness: all that the predicate can be.
+    std::map<check::Index, std::string> predicate_unseen;
+    std::map<check::Index, std::string> flag_atom;         ///< as predicate_atom
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
     /// Of adaptive predicates: the threshold as it is now.
     std::map<check::Index, std::string> threshold_member;

@@ -20,13 +20,13 @@ void print_part(Printer& out, const Context& context, const Pending& pending,
         out.line("{}.list({}, {});", leaf, array, names.count);
         return;
     }
-    out.line("// {}", context.graph.text(part.node));
+    print_comment(out, "//", context.graph.text(part.node), 4);
     if (part.unseen == kNone) {
         const char* function = part.max ? "pending_or" : "pending_and";
         std::string left = names.parts[part.operands[0]];
         for (std::size_t i = 1; i < part.operands.size(); ++i) {
-            out.line("etlmon::{}({}, {}, {}, {});", function, left, names.parts[part.operands[i]],
-                     array, names.count);
+            print_wrapped(out, fmt::format("etlmon::{}({}, {}, {}, {});", function, left,
+                                           names.parts[part.operands[i]], array, names.count));
             left = array;
         }
         return;

@@ -61,9 +61,15 @@ void print_assignment(Printer& out, const Context& context, std::uint32_t r,
         return print_wrapped(
             out, fmt::format("const Value {} = {};", names.locals[assignment.index], value));
     const std::string condition = open_condition(assignment.positions);
-    print_wrapped(
-        out, fmt::format("{}{} = {};", condition.empty() ? "" : fmt::format("if ({}) ", condition),
-                         names.members[assignment.index], value));
+    const std::string update = fmt::format("{} = {};", names.members[assignment.index], value);
+    const plan::Reading& reading = context.plan.readings[r];
+    const std::string held =
+        plan::comment_of(plan::members_of(reading)[assignment.index], context.graph);
+    // What stands above the reading's code is not said again.
+    const bool said = held == context.graph.text(reading.node);
+    print_with_comment(out,
+                       condition.empty() ? update : fmt::format("if ({}) {}", condition, update),
+                       said ? "" : held);
 }
 
 void print_straight(Printer& out, const Context& context, std::uint32_t r) {
@@ -108,9 +114,11 @@ void print_table_machine(Printer& out, const Context& context, std::uint32_t r) 
     print_wrapped(out, fmt::format("const Value {}[] = {};", names.guards, list(guards)));
     print_machine_keys(out, context, r);
     const std::string tables = "tables::" + names.local;
-    out.line("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables, names.guards);
-    out.line("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept, tables,
-             names.weak, names.strong);
+    print_wrapped(out, fmt::format("{}.advance({}_transitions, {}_ends, {});", kept, tables, tables,
+                                   names.guards));
+    print_wrapped(
+        out, fmt::format("{} = {}.read({}_owed, {}, {});", reading_declaration(context, r), kept,
+                         tables, names.weak, names.strong));
 }
 
 template <class Items, class Spell>
@@ -125,8 +133,10 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const Reading& reading = context.plan.readings[r];
     const plan::Table& table = *plan::table_of(reading);
     const std::string& name = context.names.readings[r].local;
-    out.line("// {}: {} states, {} transitions", context.graph.text(reading.node),
-             table.ends.size(), table.transitions.size());
+    print_comment(out, "//",
+                  fmt::format("{}: {} states, {} transitions", context.graph.text(reading.node),
+                              table.ends.size(), table.transitions.size()),
+                  4);
     print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
                 [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });
     print_array(out, "uint32_t", name + "_ends", table.ends,
@@ -169,9 +179,9 @@ void print_reading(Printer& out, const Context& context, std::uint32_t r) {
 void print_tables(Printer& out, const Context& context) {
     const std::vector<Reading>& readings = context.plan.readings;
     if (std::none_of(readings.begin(), readings.end(), plan::table_of)) return;
-    out.line(
-        "/// State machines: the transitions into each state, where they end, what each state "
-        "owes.");
+    print_doc(out,
+              "State machines: the transitions into each state, where they end, what each state "
+              "owes.");
     out.line("namespace tables {");
     for (std::uint32_t r = 0; r < readings.size(); ++r)
         if (plan::table_of(readings[r]) != nullptr) print_table(out, context, r);

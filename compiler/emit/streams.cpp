@@ -16,7 +16,7 @@ std::string guarded(const Context& context, const Stream& stream, std::size_t i,
     const bool trace_may_end =
         context.plan.has_sliding;  // finish() moves on beyond the last position
     if (stream.operand_lag == 0 && (stream.lag == 0 || !trace_may_end)) return value;
-    if (context.lazy(stream.operands[i])) value = fmt::format("Value({})", value);
+    if (context.lazy(stream.operands[i])) value = fmt::format("static_cast<Value>({})", value);
     return fmt::format("exists({}) ? {} : {}", stream.operand_lag, value, where_none);
 }
 
@@ -47,15 +47,16 @@ std::string since(const Context& context, const Stream& stream, const std::strin
 
 /// The operand within its window, found out when it is asked for.
 std::string lazy_within(const Context& context, const Stream& stream, const std::string& name) {
-    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {} ? Value({}) : {}; }});",
-                       name, open_condition(stream.interval), context.value(stream.operands[0]),
-                       context.literal(stream.value));
+    return fmt::format(
+        "const etlmon::Lazy {}([&]() noexcept {{ return {} ? static_cast<Value>({}) : {}; }});",
+        name, open_condition(stream.interval), context.value(stream.operands[0]),
+        context.literal(stream.value));
 }
 
 /// The value of a statement, found out when it is first asked for.
 std::string lazy_value(std::string statement, const std::string& name) {
     statement.pop_back();
-    return fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return Value({}); }});", name,
+    return fmt::format("const etlmon::Lazy {}([&]() noexcept -> Value {{ return {}; }});", name,
                        statement);
 }
 
@@ -80,10 +81,10 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
         case StreamOp::delay: {
             // In a Boolean monitor a delayed atom is measured: not where the trace has ended.
             const bool lazy = context.lazy(stream.operands[0]) && context.plan.has_sliding;
-            return fmt::format(
-                "{}{}.push({});", local, kept(),
-                lazy ? fmt::format("exists({}) ? Value({}) : {}", stream.operand_lag, at(0), other)
-                     : at(0));
+            return fmt::format("{}{}.push({});", local, kept(),
+                               lazy ? fmt::format("exists({}) ? static_cast<Value>({}) : {}",
+                                                  stream.operand_lag, at(0), other)
+                                    : at(0));
         }
         case StreamOp::shift:
             return fmt::format("{}{}.push({});", local, kept(),
@@ -140,7 +141,7 @@ void print_streams(Printer& out, const Context& context) {
         const plan::NodeId node = context.plan.streams[slot].node;
         if (node != plan::kNone && context.plan.streams[slot].op != StreamOp::negation) {
             out.gap();
-            out.line("// {}", context.place(node));
+            print_comment(out, "//", context.place(node), 4);
         }
         if (!statement.declaration.empty()) out.line(statement.declaration);
         print_wrapped(out, statement.text);

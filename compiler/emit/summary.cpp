@@ -3,11 +3,11 @@
 #include <algorithm>
 
 #include "check/guarantees/guarantees.hpp"
+#include "check/model/fingerprint.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
-#include "source/escape.hpp"
 
 namespace etlc::emit {
 
@@ -16,19 +16,72 @@ namespace {
 using check::Index;
 using Row = std::vector<std::string>;
 
-/// Columns as wide as their widest cell; numbers (all columns from `first_number` on) to the right.
-void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
-                 std::size_t first_number) {
+bool is_comment(const std::string& prefix) {
+    return prefix.starts_with("//");
+}
+
+/// "//   " without its blanks, and a report's prefix: an empty line.
+std::string blank(const std::string& prefix) {
+    return prefix.substr(0, prefix.find_last_not_of(' ') + 1);
+}
+
+/// Sentences, next to the margin.
+void print_sentences(Printer& out, const std::string& prefix, std::string_view text) {
+    print_comment(out, is_comment(prefix) ? "//" : prefix.substr(1), text);
+}
+
+/// The words of a cell in lines of at most `width`, where that many hold a word.
+std::vector<std::string> lines_of(std::string cell, std::size_t width) {
+    std::vector<std::string> lines;
+    while (cell.size() > width) {
+        std::size_t end = cell.rfind(' ', width);
+        if (end == std::string::npos) end = cell.find(' ');
+        if (end == std::string::npos) break;
+        lines.push_back(cell.substr(0, end));
+        cell.erase(0, end + 1);
+    }
+    lines.push_back(cell);
+    return lines;
+}
+
+/// How wide each column is: as its widest cell. In a comment words that do not fit go on below.
+std::vector<std::size_t> column_widths(const std::string& prefix, const std::vector<Row>& rows,
+                                       std::size_t first_number) {
+    constexpr std::size_t kWidestText = 40;
     std::vector<std::size_t> widths(rows.front().size(), 0);
     for (const Row& row : rows)
         for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+    if (!is_comment(prefix)) return widths;
+    std::size_t before = prefix.size();
+    for (std::size_t c = 0; c < widths.size() && c < first_number; ++c) {
+        const bool last = c + 1 == widths.size();
+        widths[c] = std::min(widths[c], last ? kLineWidth - before : kWidestText);
+        before += widths[c] + 2;
+    }
+    return widths;
+}
+
+/// Numbers, which are all columns from `first_number` on, stand to the right.
+void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
+                 std::size_t first_number) {
+    const std::vector<std::size_t> widths = column_widths(prefix, rows, first_number);
     for (const Row& row : rows) {
-        std::string line = prefix;
-        for (std::size_t c = 0; c < row.size(); ++c)
-            line += c < first_number ? fmt::format("{:<{}}  ", row[c], widths[c])
-                                     : fmt::format("{:>{}}  ", row[c], widths[c]);
-        line.erase(line.find_last_not_of(' ') + 1);
-        out.line(line);
+        std::vector<std::vector<std::string>> cells;
+        std::size_t height = 1;
+        for (std::size_t c = 0; c < row.size(); ++c) {
+            cells.push_back(lines_of(row[c], widths[c]));
+            height = std::max(height, cells.back().size());
+        }
+        for (std::size_t i = 0; i < height; ++i) {
+            std::string line = prefix;
+            for (std::size_t c = 0; c < row.size(); ++c) {
+                const std::string text = i < cells[c].size() ? cells[c][i] : "";
+                line += c < first_number ? fmt::format("{:<{}}  ", text, widths[c])
+                                         : fmt::format("{:>{}}  ", text, widths[c]);
+            }
+            line.erase(line.find_last_not_of(' ') + 1);
+            out.line(line);
+        }
     }
 }
 
@@ -172,8 +225,7 @@ std::vector<Row> guarantee_rows(const plan::Plan& plan) {
 }
 
 /// What is guaranteed of adaptive thresholds: a rate, whatever the world does.
-void print_miss_rates(Printer& out, const std::string& prefix, const std::string& margin,
-                      const plan::Plan& plan) {
+void print_miss_rates(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     std::vector<Row> rows{
         {"adaptive", "of the first T labelled positive frames it misses at most"}};
     for (Index p : plan.predicates) {
@@ -182,51 +234,57 @@ void print_miss_rates(Printer& out, const std::string& prefix, const std::string
             rows.push_back({predicate.name, check::miss_bound(predicate)});
     }
     if (rows.size() == 1) return;
-    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    out.line(blank(prefix));
     print_table(out, prefix, rows, 2);
-    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
-    out.line(margin +
-             "A miss: beyond the threshold that holds when its label comes. H: of those misses, "
-             "how many came when the "
-             "threshold");
-    out.line(margin +
-             "was held back at the end of its range. Before the first label the threshold is the "
-             "conformal one.");
+    out.line(blank(prefix));
+    print_sentences(out, prefix,
+                    "A miss: beyond the threshold that holds when its label comes. H: of those "
+                    "misses, how many came when the threshold was held back at the end of its "
+                    "range. Before the first label the threshold is the conformal one.");
 }
 
 void print_guarantees(Printer& out, const std::string& prefix, const plan::Plan& plan) {
-    const std::string blank = prefix.substr(0, prefix.find_last_not_of(' ') + 1);
-    out.line(blank);
+    out.line(blank(prefix));
     print_table(out, prefix, guarantee_rows(plan), 2);
-    const std::string margin = prefix.starts_with("//") ? "// " : prefix;
-    print_miss_rates(out, prefix, margin, plan);
+    print_miss_rates(out, prefix, plan);
     const std::vector<std::string>& reservations = plan.model->reservations;
     const bool of_episodes = is_calibrated(plan, true);
     const bool zero_aside = sets_zero_aside(plan);
-    if (of_episodes || zero_aside || !reservations.empty()) out.line(blank);
-    if (zero_aside) out.line(margin + std::string(check::kZeroAside));
-    for (const std::string& reservation : reservations)
-        out.line(margin + source::code_line(reservation));
-    if (!of_episodes) return;
-    out.line(margin +
-             "Probabilities are over the demonstrations and the new episode together, "
-             "exchangeable, per episode as "
-             "recorded. coverage: of");
-    out.line(margin +
-             "a new episode, given these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - "
-             "k), more where "
-             "scores tie. Where a");
-    out.line(margin + "sample is missing, what is said of successes does not hold.");
+    if (of_episodes || zero_aside || !reservations.empty()) out.line(blank(prefix));
+    if (zero_aside) print_sentences(out, prefix, check::kZeroAside);
+    for (const std::string& reservation : reservations) print_sentences(out, prefix, reservation);
+    if (of_episodes)
+        print_sentences(out, prefix,
+                        "Probabilities are over the demonstrations and the new episode together, "
+                        "exchangeable, per episode as recorded. coverage: of a new episode, given "
+                        "these demonstrations: 5 % and 95 % quantile of Beta(k, n + 1 - k), more "
+                        "where scores tie. Where a sample is missing, what is said of successes "
+                        "does not hold.");
+}
+
+/// What the class was made from; its constants say the same.
+void print_made_from(Printer& out, const std::string& prefix, const Context& context) {
+    const check::Fingerprint made_from = check::fingerprint(context.model);
+    const auto hash = [](std::uint64_t value) {
+        return value == 0 ? std::string("none") : fmt::format("{:016x}", value);
+    };
+    print_table(out, prefix,
+                {{"made from", "XXH64"},
+                 {context.spec_file, hash(made_from.spec)},
+                 {"target sets and weights", hash(made_from.data)},
+                 {"thresholds", hash(made_from.thresholds)}},
+                2);
+    out.line(blank(prefix));
 }
 
 void print_tables(Printer& out, const std::string& prefix, const plan::Plan& plan) {
     print_table(out, prefix, monitor_rows(plan), 2);
     if (laid_out_by_machine(plan))
         out.line(prefix + "targets B on x86-64 and 64-bit Arm; without SIMD: on microcontrollers");
-    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    out.line(blank(prefix));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
     if (!plan.narrow.empty()) {
-        out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+        out.line(blank(prefix));
         print_table(out, prefix, storage_rows(plan), 2);
     }
     if (is_calibrated(plan, false)) print_guarantees(out, prefix, plan);
@@ -244,7 +302,7 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
                         number(target.rows * set.row_bytes)});
     }
     rows.push_back({"all together", "", "", number(plan::stored_bytes(plan))});
-    out.line(prefix.substr(0, prefix.find_last_not_of(' ') + 1));
+    out.line(blank(prefix));
     print_table(out, prefix, rows, 1);
 }
 
@@ -252,17 +310,14 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
 
 void print_summary(Printer& out, const Context& context) {
     out.line("//");
+    print_made_from(out, "//   ", context);
     print_tables(out, "//   ", context.plan);
     print_stored(out, "//   ", context.plan, context.targets_file);
     out.line("//");
-    out.line(
-        "// state B: of a monitor alone, what it shares with others counted in each. operations: "
-        "min, max and "
-        "comparisons of");
-    out.line(
-        "// robustness keys in the worst step. distance elements: target elements that a step "
-        "compares with its "
-        "input.");
+    print_sentences(out, "//",
+                    "state B: of a monitor alone, what it shares with others counted in each. "
+                    "operations: min, max and comparisons of robustness keys in the worst step. "
+                    "distance elements: target elements that a step compares with its input.");
     if (context.stores_targets())
         out.line("// Besides state B, a monitor holds a pointer to its targets.");
 }

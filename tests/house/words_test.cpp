@@ -29,7 +29,6 @@ const std::set<std::string> kEdited = {
 
 /// Folders of what programs write, or of what is wrong on purpose.
 const std::vector<std::string> kNotEdited = {
-    "generated/",          // what etlc makes
     "tests/fuzz/corpus/",  // bytes for parsers
     "tests/spec/error/",   // specs whose mistakes the expected messages quote, line by line
 };

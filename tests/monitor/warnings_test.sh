@@ -23,8 +23,7 @@ gcc_warnings=(-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wsign-conversion -
     -Wdouble-promotion -Wuseless-cast -Wold-style-cast -Wcast-align=strict -Wcast-qual
     -Wduplicated-cond -Wduplicated-branches -Wlogical-op -Wnull-dereference -Wundef
     -Wredundant-decls -Wswitch-enum -Wzero-as-null-pointer-constant)
-# All that clang++ knows, less what no C++17 can do without: advice for C++98 to C++14, and the
-# padding of classes.
+# All that clang++ knows, less what docs/coding_rules.md lists.
 clang_warnings=(-Weverything -Wno-c++98-compat -Wno-c++98-compat-pedantic
     -Wno-c++98-compat-local-type-template-args -Wno-pre-c++14-compat -Wno-pre-c++17-compat
     -Wno-padded -Wno-unused-macros)
@@ -44,6 +43,8 @@ done <<'END'
 examples/dubins/dubins.etl f32
 examples/firmware_loop/grasp.etl i8
 tests/monitor/demand.etl f32
+tests/spec/ok/adaptive.etl f32
+tests/spec/ok/inputs.etl i8
 tests/monitor/cases/pending.etl f32
 tests/monitor/cases/shared.etl f32
 END

@@ -4,15 +4,12 @@
 
 #include <set>
 
+#include "check/model/fingerprint.hpp"
 #include "data/arrays/array.hpp"
 
 namespace etlc::check {
 
 namespace {
-
-std::string weights_hash(const Distance& distance) {
-    return data::content_hash({distance.weights.size()}, distance.weights);
-}
 
 using Hashes = std::map<std::string, std::string>;
 

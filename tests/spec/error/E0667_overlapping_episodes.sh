@@ -25,8 +25,8 @@ echo "exit status $?"
 "$ETLC" calibrate dock.etl --data a.csv less_its_last.csv b.csv most_of_it.csv \
     --allow-overlap 'the room has few places'
 grep -A1 '"allowances"' dock.thresholds.json
-"$ETLC" dock.etl --emit report | grep allow
-"$ETLC" dock.etl -o dock.hpp && grep allow dock.hpp
+"$ETLC" dock.etl --emit report | grep -A 1 allow
+"$ETLC" dock.etl -o dock.hpp && grep -A 1 allow dock.hpp
 # Equal ones do not pass; nor does a reason that is none.
 cp a.csv c.csv
 "$ETLC" calibrate dock.etl --data a.csv c.csv --allow-overlap 'the room has few places'

@@ -1,5 +1,5 @@
 // The kernels' calls in measure().
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/decide/points.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -124,6 +124,7 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
         return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
     const plan::NarrowSet& set = *plan::narrow_set(context.plan, d);
     print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, set, z)));
+    print_comment(out, "//", "too near to a threshold to say: measured on float32 rows");
     print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, set)));
     out.indent();
     print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));

@@ -53,6 +53,6 @@ private:
 };
 
 /// Longest line of generated code.
-inline constexpr std::size_t kLineWidth = 118;
+inline constexpr std::size_t kLineWidth = 100;
 
 }  // namespace etlc::emit

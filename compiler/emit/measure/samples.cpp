@@ -1,5 +1,5 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/decide/points.hpp"
 
 namespace etlc::emit {
@@ -48,9 +48,14 @@ void print_widened(Printer& out, const Context& context, Index i) {
     out.line("float {}[{}];", buffer, input.dimension);
     out.line("const float* {} = nullptr;", local);
     out.open(fmt::format("if ({}) {{", present(context, i)));
-    out.line(widening(context, i));
+    print_wrapped(out, widening(context, i));
     out.line("{} = {};", local, buffer);
     out.close();
+}
+
+/// A bool that is held, as a Flag.
+std::string held_flag(const std::string& word) {
+    return fmt::format("{0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag()", word);
 }
 
 void print_flag(Printer& out, const Context& context, Index i) {
@@ -59,45 +64,45 @@ void print_flag(Printer& out, const Context& context, Index i) {
     if (on_demand(context, i)) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
-        out.line("missing |= !in.{}.present();", input.name);
+        out.line(missed(fmt::format("!in.{}.present()", input.name)));
         out.line("return etlmon::truth_of(in.{});", input.name);
         out.close("});");
         return;
     }
     if (input.hold == 0) {
         out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
-        out.line("missing |= !in.{}.present();", input.name);
+        out.line(missed(fmt::format("!in.{}.present()", input.name)));
         return;
     }
     const std::string& word = context.names.input_buffer.at(i);
     out.line("const uint32_t {} = in.{}.value();", word, input.name);
-    out.line("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : nullptr);", local,
-             context.names.hold_member.at(i), input.name, word);
+    print_wrapped(out, fmt::format("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : "
+                                   "nullptr);",
+                                   local, context.names.hold_member.at(i), input.name, word));
     if (context.boolean()) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
-        out.line("missing |= {} == nullptr;", local);
-        out.line(
-            "return etlmon::truth_of({0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag());",
-            local);
+        out.line(missed(local + " == nullptr"));
+        print_wrapped(out, fmt::format("return etlmon::truth_of({});", held_flag(local)));
         out.close("});");
         return;
     }
-    out.line("now.{} = etlmon::value_of({} != nullptr ? etlmon::Flag(*{} != 0) : etlmon::Flag());",
-             context.names.flag_atom.at(i), local, local);
-    out.line("missing |= {} == nullptr;", local);
+    print_wrapped(out, fmt::format("now.{} = etlmon::value_of({});", context.names.flag_atom.at(i),
+                                   held_flag(local)));
+    out.line(missed(local + " == nullptr"));
 }
 
 void print_scalar(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i))
-        out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local, accepted(input));
+        print_wrapped(out, fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});",
+                                       local, accepted(input)));
     else if (input.hold > 0)
-        out.line("const float {} = {}.take({});", local, context.names.hold_member.at(i),
-                 accepted(input));
+        print_wrapped(out, fmt::format("const float {} = {}.take({});", local,
+                                       context.names.hold_member.at(i), accepted(input)));
     else
-        out.line("const float {} = {};", local, accepted(input));
+        print_wrapped(out, fmt::format("const float {} = {};", local, accepted(input)));
 }
 
 /// The elements as float32, null where they are missing.
@@ -110,13 +115,14 @@ void print_embedding_on_demand(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string& local = context.names.input_local.at(i);
     if (!is_widened(input))
-        return out.line("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local,
-                        elements(context, i));
+        return print_wrapped(
+            out, fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});", local,
+                             elements(context, i)));
     const std::string& buffer = context.names.input_buffer.at(i);
     out.line("float {}[{}];", buffer, input.dimension);
     out.open(fmt::format("const etlmon::Lazy {}([&]() noexcept -> const float* {{", local));
-    out.line("if (!{}) return nullptr;", present(context, i));
-    out.line(widening(context, i));
+    print_wrapped(out, fmt::format("if (!{}) return nullptr;", present(context, i)));
+    print_wrapped(out, widening(context, i));
     out.line("return {};", buffer);
     out.close("});");
 }
@@ -129,11 +135,16 @@ void print_embedding(Printer& out, const Context& context, Index i) {
     if (is_widened(input))
         print_widened(out, context, i);
     else
-        out.line("const float* {}{} = {};", held ? "" : "const ", local, elements(context, i));
+        print_wrapped(out, fmt::format("const float* {}{} = {};", held ? "" : "const ", local,
+                                       elements(context, i)));
     if (held) out.line("{} = {}.take({});", local, context.names.hold_member.at(i), local);
 }
 
 }  // namespace
+
+std::string missed(const std::string& condition) {
+    return fmt::format("missing = {} || missing;", condition);
+}
 
 std::string sample(const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
@@ -147,10 +158,8 @@ void print_input(Printer& out, const Context& context, Index i) {
     const auto direction = context.names.direction_local.find(i);
     if (direction != context.names.direction_local.end()) {
         const std::string& name = context.model.inputs[i].name;
-        out.line(
-            "const auto {} = etlmon::direction_of(in.{});  // |{}|, once for all distances that "
-            "need it",
-            direction->second, name, name);
+        print_comment(out, "//", fmt::format("|{}|, once for all distances that need it", name));
+        out.line("const auto {} = etlmon::direction_of(in.{});", direction->second, name);
     }
     if (context.names.input_local.count(i) == 0) return;  // read in place
     switch (context.model.inputs[i].type) {

@@ -33,21 +33,14 @@ std::vector<Member> threshold_members(const Context& context) {
 
 void print_adaptive_interface(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
-    out.line(
-        "/// Adaptive thresholds. observe_P takes the label of a step when it comes, at any later "
-        "time: the "
-        "distance_P()");
-    out.line(
-        "/// of that step, and whether P was true. Of steps where it was, the threshold of the "
-        "steps to come learns: a "
-        "miss");
-    out.line(
-        "/// widens it, a hit tightens it. A NaN distance changes nothing. reset() keeps what was "
-        "learnt; after a "
-        "reboot");
-    out.line(
-        "/// set_threshold_P goes on from a threshold_P() that was kept, and NaN changes nothing;");
-    out.line("/// set_threshold_P(initial_threshold_P()) goes back to the calibrated one.");
+    print_doc(
+        out,
+        "Adaptive thresholds. observe_P takes the label of a step when it comes, at any later "
+        "time: the distance_P() of that step, and whether P was true. Of steps where it was, "
+        "the threshold of the steps to come learns: a miss widens it, a hit tightens it. A "
+        "NaN distance changes nothing. reset() keeps what was learnt; after a reboot "
+        "set_threshold_P goes on from a threshold_P() that was kept, and NaN changes nothing; "
+        "set_threshold_P(initial_threshold_P()) goes back to the calibrated one.");
     for (const auto& [p, member] : context.names.threshold_member) {
         const check::Predicate& predicate = context.model.predicates[p];
         out.open(fmt::format("void observe_{}(const float& distance, bool truth) noexcept {{",
@@ -70,9 +63,9 @@ void print_adaptive_interface(Printer& out, const Context& context) {
 
 void print_adaptation_constants(Printer& out, const Context& context) {
     if (context.names.threshold_member.empty()) return;
-    out.line(
-        "/// Adaptive thresholds: least, greatest, what a miss adds, what a hit adds, and what all "
-        "are multiples of.");
+    print_doc(out,
+              "Adaptive thresholds: least, greatest, what a miss adds, what a hit adds, and what "
+              "all are multiples of.");
     for (const auto& [p, member] : context.names.threshold_member)
         print_wrapped(out, constant(context, p));
     out.line();

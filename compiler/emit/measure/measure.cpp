@@ -1,7 +1,7 @@
 // measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
-#include "emit/measurements.hpp"
+#include "emit/measure/measurements.hpp"
 #include "plan/program/literals.hpp"
 
 namespace etlc::emit {
@@ -71,7 +71,7 @@ private:
     void print_shared(Index d) {
         const std::string& local = context_.names.distance_local.at(d);
         out_.gap();
-        out_.line("// {}", context_.model.distances[d].text);
+        print_comment(out_, "//", context_.model.distances[d].text, 4);
         if (!context_.boolean()) {
             if (const auto call = measured_at_once(context_, d))
                 return print_wrapped(out_,
@@ -106,18 +106,19 @@ private:
         const std::string threshold = kept ? fmt::format("threshold_{}()", predicate.name)
                                            : float_literal(predicate.threshold.value);
         out_.gap();
-        out_.line("// {}", context_.place(predicate.span));
+        print_comment(out_, "//", context_.place(predicate.span), 4);
         if (context_.boolean())
             out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
         const std::string delta = predicate.plain_distance() ? plain(predicate, variable, kept)
                                                              : general(predicate, variable, kept);
-        const std::string range =
-            context_.literal(plan::unseen_range(predicate, context_.plan.values));
         if (context_.boolean()) {
-            out_.line("missing |= etlmon::is_nan({});", delta);
+            const std::string range =
+                context_.literal(plan::unseen_range(predicate, context_.plan.values));
+            out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
             const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
-            out_.line("return etlmon::{}({}, {}{});", comparison_name(predicate), delta, threshold,
-                      otherwise);
+            print_wrapped(
+                out_, fmt::format("return etlmon::{}({}, {}{});", comparison_name(predicate), delta,
+                                  threshold, otherwise));
             out_.close("});");
             return;
         }
@@ -127,8 +128,8 @@ private:
             enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
                                         predicate.upper_bound() ? "at_most" : "at_least", known,
-                                        threshold, range));
-        out_.line("missing |= etlmon::is_nan({});", delta);
+                                        threshold, context_.names.predicate_unseen.at(p) + "()"));
+        out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
     }
 
     /// AGG DIST(point, target): kept with its nearest row.
@@ -171,16 +172,13 @@ private:
 
 void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
-    out.line(
-        "/// The robustness of every predicate at this step; counts the step if something was "
-        "missing.");
-    out.open(fmt::format("{}Atoms measure({}const Inputs& in) noexcept {{",
-                         context.step_qualifier(), reads_inputs ? "" : "[[maybe_unused]] "));
+    open_half(out, context, "Monitor::Atoms",
+              fmt::format("measure({}const Inputs& in)", reads_inputs ? "" : "[[maybe_unused]] "));
     out.line("Atoms now;");
     out.line("bool missing = false;");
     MeasurePrinter(out, context).print();
     out.line();
-    out.line("if (missing && incomplete != 0xffffffffu) ++incomplete;");
+    print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
     out.line("return now;");
     out.close();
 }

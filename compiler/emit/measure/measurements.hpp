@@ -14,6 +14,9 @@ namespace etlc::emit {
 /// is missing, or the view itself, where the kernels look whether it is there.
 std::string sample(const Context& context, check::Index input);
 
+/// The statement that takes note of a sample that is missing, or of something that is not known.
+std::string missed(const std::string& condition);
+
 /// What has to be said before sample() of this input can be.
 void print_input(Printer& out, const Context& context, check::Index input);
 

@@ -1,0 +1,352 @@
+// The class Monitor: its types and constants, its interface, its state, and the halves of a step.
+#include <algorithm>
+
+#include "check/model/fingerprint.hpp"
+#include "emit/context.hpp"
+#include "plan/program/literals.hpp"
+#include "plan/stored.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+using check::InputType;
+using plan::StreamOp;
+
+std::vector<Member> telemetry_members(const Context& context) {
+    std::vector<Member> result;
+    for (const auto& [p, name] : context.names.predicate_member) {
+        const bool plain = context.model.predicates[p].plain_distance();
+        result.push_back({plain ? "etlmon::Measured" : "float", name,
+                          "telemetry of " + context.model.predicates[p].name,
+                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing"),
+                          ""});
+    }
+    return result;
+}
+
+std::vector<Member> own_members(const Context& context) {
+    const plan::Plan& plan = context.plan;
+    std::vector<Member> result;
+    for (Index i : plan.inputs) {
+        const auto held = context.names.hold_member.find(i);
+        if (held == context.names.hold_member.end()) continue;
+        const check::Input& input = context.model.inputs[i];
+        const char* type = input.type == InputType::boolean ? "uint32_t" : "float";
+        result.push_back(
+            {fmt::format("etlmon::Hold<{}, {}, {}>", type, input.dimension, input.hold),
+             held->second, fmt::format("the last {} that was there", input.name),
+             held->second + ".reset();", ""});
+    }
+    for (const auto& [d, name] : context.names.search_member) {
+        const check::Target& target = context.model.targets[context.model.distances[d].target];
+        result.push_back({fmt::format("etlmon::Search<{}, {}>", target.rows, target.dimension),
+                          name, "what it remembers of " + context.model.distances[d].text,
+                          name + ".reset();"});
+    }
+    const std::vector<Member> telemetry = telemetry_members(context);
+    result.insert(result.end(), telemetry.begin(), telemetry.end());
+    const std::vector<Member> thresholds = threshold_members(context);
+    result.insert(result.end(), thresholds.begin(), thresholds.end());
+    for (const auto& [m, name] : context.names.verdict_member)
+        result.push_back({"etlmon::Verdict", name, "the last one, for finish()",
+                          name + " = etlmon::Verdict();", ""});
+    if (context.boolean())
+        result.push_back(
+            {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
+    if (plan.counts_steps)
+        result.push_back(
+            {"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
+    if (plan.has_sliding)
+        result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
+    result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
+                      "incomplete = 0;", ""});
+    return result;
+}
+
+void print_telemetry(Printer& out, const Context& context) {
+    for (const auto& [p, member] : context.names.predicate_member) {
+        const check::Predicate& predicate = context.model.predicates[p];
+        const bool plain = predicate.plain_distance();
+        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member,
+                 plain ? ".delta" : "");
+        const auto adaptive = context.names.threshold_member.find(p);
+        if (adaptive == context.names.threshold_member.end())
+            out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}",
+                     predicate.name, float_literal(predicate.threshold.value));
+        else
+            out.line("float threshold_{}() const noexcept {{ return {}; }}", predicate.name,
+                     adaptive->second);
+        if (plain)
+            out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}",
+                     predicate.name, member);
+    }
+}
+
+/// Some stream looks at positions that may lie before the trace, or after its end.
+bool asks_what_exists(const plan::Plan& plan) {
+    return plan.has_sliding ||
+           std::any_of(plan.streams.begin(), plan.streams.end(), [](const plan::Stream& stream) {
+               return stream.operand_lag > 0 && stream.op != StreamOp::delay &&
+                      stream.op != StreamOp::combination;
+           });
+}
+
+void print_exists(Printer& out, const Context& context) {
+    print_doc(out, "Whether the trace has the position `lag` steps before this one.");
+    out.open("bool exists(uint32_t lag) const noexcept {");
+    out.line("return position >= lag{};", context.plan.has_sliding ? " && finishes <= lag" : "");
+    out.close();
+    out.line();
+}
+
+// ---- types and constants
+
+void print_types(Printer& out, const Context& context) {
+    const bool boolean = context.boolean();
+    const std::vector<Names::OfReading>& readings = context.names.readings;
+    const bool has_tables = std::any_of(readings.begin(), readings.end(),
+                                        [](const auto& names) { return !names.weak.empty(); });
+    std::vector<std::pair<std::string, std::string>> types;
+    types.emplace_back(fmt::format("using Value = etlmon::{};", boolean ? "Truth" : "Value"),
+                       boolean ? "surely true, and perhaps true"
+                               : "a robustness; its ends differ where a sample is missing");
+    if (!readings.empty())
+        types.emplace_back(
+            fmt::format("using Reading = etlmon::{};", boolean ? "BasicReading<Value>" : "Reading"),
+            "a value, and bounds that no continuation leaves");
+    if (has_tables)
+        types.emplace_back(fmt::format("using Key = {};", boolean ? "bool" : "etlmon::Key"),
+                           "one end of a value");
+    print_aligned(out, types, "///<");
+    out.line();
+    if (boolean) return;
+    print_doc(out, "What a step says about each predicate.");
+    out.open("struct Atoms {");
+    for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
+    for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
+    out.close("};");
+    out.line();
+}
+
+void print_class_constants(Printer& out, const Context& context) {
+    const check::Fingerprint made_from = check::fingerprint(context.model);
+    const plan::Cost& cost = context.plan.cost;
+    print_doc(out, "What the class was made from, as XXH64: to be kept with its verdicts.");
+    const auto hash = [](const char* name, std::uint64_t value) {
+        return fmt::format("static constexpr uint64_t {} = 0x{:016x}u;", name, value);
+    };
+    print_aligned(out,
+                  {{hash("kSpecHash", made_from.spec), context.spec_file},
+                   {hash("kDataHash", made_from.data), "target sets and weights"},
+                   {hash("kThresholdsHash", made_from.thresholds), "thresholds, as they begin"}},
+                  "///<");
+    print_doc(out, "What it takes.");
+    std::vector<std::pair<std::string, std::string>> sizes;
+    sizes.emplace_back(fmt::format("static constexpr size_t kStateBytes = {};",
+                                   context.stores_targets()
+                                       ? fmt::format("etlmon::with_pointer({})", cost.state_bytes)
+                                       : fmt::format("{}", cost.state_bytes)),
+                       "sizeof(Monitor)");
+    if (cost.stack_bytes > 0)
+        sizes.emplace_back(
+            fmt::format("static constexpr size_t kStackBytes = {};", cost.stack_bytes),
+            "of a step, for positions evaluated anew");
+    sizes.emplace_back(fmt::format("static constexpr uint32_t kOperations = {};", cost.operations),
+                       "min, max, compare in the worst step");
+    sizes.emplace_back(
+        fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
+        "target elements measured in a step");
+    print_aligned(out, sizes, "///<");
+    out.line();
+}
+
+// ---- interface
+
+void print_boolean_step(Printer& out, const Context& context) {
+    out.open(
+        fmt::format("{}Verdicts step(const Inputs& in) noexcept {{", context.step_qualifier()));
+    for (const Member& member : telemetry_members(context)) out.line(member.reset);
+    out.line("return advance(in);");
+    out.close();
+}
+
+void print_constructors(Printer& out, const Context& context) {
+    if (!context.stores_targets()) {
+        out.line("Monitor() noexcept { reset(); }");
+        return out.line();
+    }
+    print_doc(out, fmt::format("Over the targets of {}, which must stay where they are. Where they "
+                               "are not ready, every predicate on them is unknown at every step.",
+                               context.targets_file));
+    out.open("explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) {");
+    out.line("reset();");
+    out.close();
+    print_doc(out,
+              "The same from the bytes of the file, all of which are read once to check them.");
+    out.line(
+        "Monitor(const uint8_t* bytes, size_t size) noexcept : Monitor(Targets(bytes, size)) {}");
+    out.line();
+    print_doc(out, "Whether these are the bytes that the class was made with.");
+    out.open("static bool valid(const uint8_t* bytes, size_t size) noexcept {");
+    out.line("return Targets(bytes, size).ready();");
+    out.close();
+    print_doc(out, "Whether this monitor has its targets.");
+    out.line("bool ready() const noexcept { return rows != nullptr; }");
+    out.line();
+}
+
+void print_finish(Printer& out, const Context& context) {
+    print_doc(out,
+              "The trace has ended: each call reports one of the last positions of the sliding "
+              "monitors, cut at the end; a monitor that has reported its last is undecided from "
+              "then on. Prefix monitors repeat their verdict.");
+    out.open("Verdicts finish() noexcept {");
+    print_wrapped(out, counted("finishes"));
+    out.line(context.boolean() ? "return advance(Inputs());" : "return judge(Atoms());");
+    out.close();
+    out.line();
+}
+
+/// Public, and on disjoint members, for loops that do them at different times.
+void declare_halves(Printer& out) {
+    print_comment(out, "//",
+                  "A step in two halves: step(in) is judge(measure(in)). They share no member that "
+                  "either changes, so one may interrupt the other; every measure() is followed by "
+                  "one judge() of what it gave, in the same order.");
+    out.line();
+    print_doc(out,
+              "The robustness of every predicate at this step; counts the step if something was "
+              "missing.");
+    out.line("Atoms measure(const Inputs& in) noexcept;");
+    print_doc(out, "One step of every formula, given this step's predicates.");
+    out.line("Verdicts judge(const Atoms& now) noexcept;");
+    out.line();
+}
+
+void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
+    print_constructors(out, context);
+    print_doc(out, context.names.threshold_member.empty()
+                       ? "A new episode."
+                       : "A new episode; adaptive thresholds stay where they are.");
+    out.open("void reset() noexcept {");
+    for (const Member& member : all)
+        if (!member.reset.empty()) out.line(member.reset);
+    out.close();
+    out.line();
+    print_doc(out, "One call, one time step.");
+    if (context.boolean())
+        print_boolean_step(out, context);
+    else
+        out.line("{}Verdicts step(const Inputs& in) noexcept {{ return judge(measure(in)); }}",
+                 context.step_qualifier());
+    out.line();
+    if (context.plan.has_sliding) print_finish(out, context);
+    if (!context.boolean()) declare_halves(out);
+    if (!context.names.predicate_member.empty()) {
+        print_doc(out, fmt::format("Telemetry of the last step: a predicate's distance or "
+                                   "expression, NaN where it was unknown{}, next to its threshold, "
+                                   "and the row of the nearest target.",
+                                   context.boolean() ? " or not asked for" : ""));
+        print_telemetry(out, context);
+        out.line();
+    }
+    print_adaptive_interface(out, context);
+    print_doc(out,
+              fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
+                          context.boolean() ? "that was asked for " : ""));
+    out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
+    out.line();
+}
+
+// ---- what is private
+
+void declare_advance(Printer& out) {
+    print_doc(out,
+              "One step of every formula: min is \"and\", max is \"or\". A predicate is measured "
+              "when a verdict that can still change first depends on it; min and max ask from left "
+              "to right and stop where one decides.");
+    out.line("Verdicts advance(const Inputs& in) noexcept;");
+    out.line();
+}
+
+/// What stands for a predicate that is not seen: at a step that lacks its sample.
+void print_unseen(Printer& out, const Context& context) {
+    if (context.names.predicate_unseen.empty()) return;
+    print_doc(out, "What stands for a predicate that is not seen: all that its robustness can be.");
+    for (const auto& [p, name] : context.names.predicate_unseen)
+        print_wrapped(out, fmt::format("static Value {}() noexcept {{ return {}; }}", name,
+                                       context.literal(plan::unseen_range(
+                                           context.model.predicates[p], context.plan.values))));
+    out.line();
+}
+
+void print_state(Printer& out, const std::vector<Member>& all) {
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const Member& member : all)
+        lines.emplace_back(fmt::format("{} {}{};", member.type, member.name,
+                                       member.initial.empty() ? "" : " = " + member.initial),
+                           member.comment);
+    print_aligned(out, lines);
+}
+
+/// Members of a Boolean class that are made of bytes.
+bool is_bytes(const Member& member) {
+    return member.type == "Value" || member.type == "Verdicts" ||
+           member.type.find("PendingMachine") != std::string::npos;
+}
+
+}  // namespace
+
+std::vector<Member> members(const Context& context) {
+    std::vector<Member> all = temporal_members(context);
+    const std::vector<Member> own = own_members(context);
+    all.insert(all.end(), own.begin(), own.end());
+    // Words before bytes: no padding but at the end.
+    std::stable_partition(all.begin(), all.end(), [&](const Member& member) {
+        return !context.boolean() || !is_bytes(member);
+    });
+    if (context.stores_targets())
+        all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
+    return all;
+}
+
+void open_half(Printer& out, const Context& context, std::string_view result,
+               std::string_view function) {
+    const std::string_view qualifier = context.step_qualifier();
+    out.open(fmt::format("{}{} Monitor::{} noexcept {{", qualifier.empty() ? "inline " : qualifier,
+                         result, function));
+}
+
+void print_class(Printer& out, const Context& context) {
+    const std::vector<Member> all = members(context);
+    print_doc(out,
+              "Every monitor of the spec, stepped together. Any number of instances; none of them "
+              "shares anything.");
+    out.open("class Monitor {");
+    out.label("public:");
+    print_types(out, context);
+    print_class_constants(out, context);
+    print_interface(out, context, all);
+    out.label("private:");
+    print_unseen(out, context);
+    if (asks_what_exists(context.plan)) print_exists(out, context);
+    if (context.boolean()) declare_advance(out);
+    print_adaptation_constants(out, context);
+    print_state(out, all);
+    out.close("};");
+    out.line(
+        "static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");
+    out.line();
+    if (context.boolean()) {
+        print_advance(out, context);
+    } else {
+        print_measure(out, context);
+        out.line();
+        print_judge(out, context);
+    }
+    out.line();
+}
+
+}  // namespace etlc::emit

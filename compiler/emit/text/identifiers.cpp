@@ -1,0 +1,122 @@
+#include "emit/text/identifiers.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <vector>
+
+namespace etlc::emit {
+
+namespace {
+
+/// Words for the symbols of formulas and expressions.
+std::string_view word_for(char symbol) {
+    switch (symbol) {
+        case '!': return "not";
+        case '&': return "and";
+        case '|': return "or";
+        case '<': return "below";
+        case '>': return "above";
+        case '+': return "plus";
+        case '-': return "minus";
+        case '*': return "times";
+        case '/': return "over";
+        default: return "";
+    }
+}
+
+std::string_view word_for_operator(std::string_view letter) {
+    if (letter == "F") return "eventually";
+    if (letter == "G") return "always";
+    if (letter == "U") return "until";
+    if (letter == "R") return "release";
+    if (letter == "O") return "once";
+    if (letter == "H") return "historically";
+    if (letter == "S") return "since";
+    if (letter == "T") return "trigger";
+    if (letter == "X") return "next";
+    if (letter == "Y") return "previous";
+    return letter;
+}
+
+void append_word(std::string& name, std::string_view word) {
+    if (word.empty()) return;
+    if (!name.empty()) name += '_';
+    name += word;
+}
+
+/// "F[0, 3]", "O": a temporal operator without its operands.
+std::string head_of(const ir::Node& node) {
+    const std::string symbol = ir::info(node.op).symbol;
+    if (node.interval == ir::Interval{}) return symbol;
+    if (!node.interval.bounded()) return fmt::format("{}[{}, inf]", symbol, node.interval.low);
+    return fmt::format("{}[{}, {}]", symbol, node.interval.low, node.interval.high);
+}
+
+}  // namespace
+
+std::string identifier(std::string_view text, const std::string& otherwise) {
+    if (text.find("...") != std::string_view::npos)
+        return otherwise;  // parts of the formula were left out
+    std::string name;
+    for (std::size_t i = 0; i < text.size();) {
+        std::size_t end = i;
+        while (end < text.size() &&
+               (std::isalnum(static_cast<unsigned char>(text[end])) != 0 || text[end] == '_'))
+            ++end;
+        if (end > i) {
+            append_word(name, word_for_operator(text.substr(i, end - i)));
+        } else {
+            end = i + 1;
+            append_word(name, word_for(text[i]));
+            while (end < text.size() && text[end] == text[i]) ++end;  // && and ||
+        }
+        i = end;
+    }
+    const bool legal = !name.empty() && std::isdigit(static_cast<unsigned char>(name[0])) == 0 &&
+                       name[0] != '_' && name.find("__") == std::string::npos &&
+                       name.size() <= kLongestName;
+    return legal ? name : otherwise;
+}
+
+std::string with_more(const std::string& operand, bool max) {
+    return operand + (max ? "_or_more" : "_and_more");
+}
+
+namespace {
+
+/// The shortest that is said in its own words, of the first few; else the first in what words fit.
+std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& operands,
+                        std::size_t room) {
+    constexpr std::size_t kFew = 8;
+    std::string shortest;
+    for (std::size_t i = 0; i < std::min(kFew, operands.size()); ++i) {
+        const std::string words = identifier(graph.text(operands[i]), "");
+        const bool shorter = shortest.empty() || words.size() < shortest.size();
+        if (!words.empty() && words.size() <= room && shorter) shortest = words;
+    }
+    return shortest.empty() ? name_of(graph, operands[0], room) : shortest;
+}
+
+}  // namespace
+
+std::string name_of(const ir::Graph& graph, ir::NodeId id, std::size_t room) {
+    const std::string words = identifier(graph.text(id), "");
+    if (!words.empty() && words.size() <= room) return words;
+    const ir::Node& node = graph[id];
+    if (node.operands.empty()) return "";
+    if (ir::info(node.op).arity == ir::Arity::many) {
+        const bool max = node.op == ir::Op::disjunction;
+        const std::size_t more = with_more("", max).size();
+        const std::string one = room > more ? name_of_one(graph, node.operands, room - more) : "";
+        return one.empty() ? "" : with_more(one, max);
+    }
+    const std::string head = identifier(head_of(node), "");
+    if (head.size() > room) return "";
+    const std::size_t left = room - head.size();
+    const std::string of = left > 1 ? name_of(graph, node.operands.back(), left - 1) : "";
+    return of.empty() ? head : head + '_' + of;
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,261 @@
+#include "emit/text/layout.hpp"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+
+namespace etlc::emit {
+
+namespace {
+
+using Lines = std::vector<std::string>;
+using Text = std::string_view;
+
+constexpr std::size_t kContinued = 4;  ///< columns that the lines after the first are indented
+constexpr std::size_t kLongestQuote = 84;
+
+bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// How many brackets are open around each character; a bracket itself stands outside. `<` is one
+/// where it stands right behind a name.
+std::vector<std::size_t> depths(Text text) {
+    std::vector<std::size_t> result;
+    std::string open;
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        const char c = text[i];
+        const bool angle = c == '<' && i > 0 && is_word(text[i - 1]);
+        const bool closes = c == ')' || c == ']' || c == '}' || (c == '>' && open.ends_with('<'));
+        if (closes && !open.empty()) open.pop_back();
+        result.push_back(open.size());
+        if (c == '(' || c == '[' || c == '{' || angle) open.push_back(c);
+    }
+    return result;
+}
+
+/// The text cut before each of these positions, blanks at the cuts left out.
+Lines pieces(Text text, const std::vector<std::size_t>& cuts) {
+    Lines result;
+    std::size_t begin = 0;
+    for (std::size_t end : cuts) {
+        std::string piece(text.substr(begin, end - begin));
+        piece.erase(piece.find_last_not_of(' ') + 1);
+        result.push_back(piece);
+        begin = text.find_first_not_of(' ', end);
+    }
+    result.emplace_back(text.substr(begin));
+    return result;
+}
+
+/// Where `what` stands within `depth` brackets; the places behind it, if asked for.
+std::vector<std::size_t> places(Text text, Text what, std::size_t depth, bool behind) {
+    const std::vector<std::size_t> depth_at = depths(text);
+    std::vector<std::size_t> result;
+    for (std::size_t i = text.find(what); i != Text::npos; i = text.find(what, i + 1))
+        if (depth_at[i] == depth) result.push_back(behind ? i + what.size() : i);
+    return result;
+}
+
+Lines broken(Text text, std::size_t width);
+
+void append_indented(Lines& lines, const Lines& more, std::size_t indent) {
+    for (const std::string& line : more) lines.push_back(std::string(indent, ' ') + line);
+}
+
+/// As many pieces on a line as fit, behind what stands on the last of `lines` only if `joins`.
+void fill(Lines& lines, const Lines& more, std::size_t width, std::size_t indent, bool joins) {
+    for (const std::string& piece : more) {
+        if (joins && lines.back().size() + 1 + piece.size() <= width) {
+            lines.back() += " " + piece;
+            continue;
+        }
+        const Lines own = broken(piece, width - indent);
+        append_indented(lines, own, indent);
+        joins = own.size() == 1;  // nothing follows on the last line of a piece of several lines
+    }
+}
+
+/// `a = c ? x : y`, each of the three on a line; `a || b`, filled; nothing where there is neither.
+Lines broken_at_operators(Text text, std::size_t width) {
+    const std::size_t depth = text.starts_with("if (") ? 1 : 0;
+    std::vector<std::size_t> cuts = places(text, " ? ", depth, false);
+    const bool choice = !cuts.empty();
+    for (Text sign : {" : ", " && ", " || "}) {
+        if (choice != (sign == " : ")) continue;
+        const std::vector<std::size_t> more = places(text, sign, depth, !choice);
+        cuts.insert(cuts.end(), more.begin(), more.end());
+    }
+    if (cuts.empty()) return {};
+    std::sort(cuts.begin(), cuts.end());
+    const Lines parts = pieces(text, cuts);
+    Lines lines = broken(parts[0], width);
+    if (!choice) {
+        fill(lines, Lines(parts.begin() + 1, parts.end()), width, kContinued, lines.size() == 1);
+        return lines;
+    }
+    for (std::size_t i = 1; i < parts.size(); ++i)
+        fill(lines, {parts[i]}, width, kContinued, false);
+    return lines;
+}
+
+/// `f(a, b)` broken behind the last bracket that is not within others, and between its items; a
+/// list `= {a, b};` with its end on a line of its own.
+Lines broken_in_brackets(Text text, std::size_t width) {
+    const std::vector<std::size_t> depth_at = depths(text);
+    std::size_t close = text.size() - 1;
+    while (close > 0 && (depth_at[close] != 0 || depth_at[close - 1] == 0)) --close;
+    if (close == 0) return {};
+    std::size_t open = close - 1;
+    while (depth_at[open] != 0) --open;
+    const Text head = text.substr(0, open + 1);
+    const Text inside = text.substr(open + 1, close - open - 1);
+    const bool list = head.ends_with("= {");
+    Lines items = pieces(inside, places(inside, ", ", 0, true));
+    if (!list) items.back() += text.substr(close);
+    Lines lines = broken(head, width);
+    fill(lines, items, width, list ? 2 : kContinued, false);
+    if (list) lines.emplace_back(text.substr(close));
+    return lines;
+}
+
+/// `a = b` with b on a line of its own; nothing where nothing is assigned.
+Lines broken_at_assignment(Text text, std::size_t width, bool only_if_it_fits) {
+    const std::vector<std::size_t> cuts = places(text, " = ", 0, true);
+    if (cuts.empty()) return {};
+    const Lines parts = pieces(text, {cuts.front()});
+    if (only_if_it_fits && (parts[1].size() + kContinued > width || parts[1].starts_with('{')))
+        return {};
+    Lines lines{parts[0]};
+    fill(lines, {parts[1]}, width, kContinued, false);
+    return lines;
+}
+
+/// `f() noexcept { return e; }` as a block; nothing where there is no such function.
+Lines broken_function(Text text, std::size_t width) {
+    const std::size_t begin = text.find(" { ", std::min(text.size(), text.find(" noexcept")));
+    if (begin == Text::npos) return {};
+    const std::size_t body = begin + 3;
+    const std::size_t end = text.rfind(" }");
+    Lines lines{std::string(text.substr(0, body - 1))};
+    append_indented(lines, broken(text.substr(body, end - body), width - 2), 2);
+    lines.emplace_back(text.substr(end + 1));
+    return lines;
+}
+
+/// The text in lines of at most `width`, if it has places to break at.
+Lines broken(Text text, std::size_t width) {
+    if (text.size() <= width) return {std::string(text)};
+    Lines lines = broken_function(text, width);
+    if (lines.empty()) lines = broken_at_operators(text, width);
+    if (lines.empty()) lines = broken_at_assignment(text, width, true);
+    if (lines.empty()) lines = broken_in_brackets(text, width);
+    if (lines.empty()) lines = broken_at_assignment(text, width, false);
+    if (lines.empty()) lines = {std::string(text)};
+    return lines;
+}
+
+}  // namespace
+
+std::string float_literal(float x) {
+    if (std::isinf(x))
+        return x < 0 ? "etlmon::float_of(etlmon::kBottom)" : "etlmon::float_of(etlmon::kTop)";
+    std::string text = fmt::format("{}", x);
+    if (text.find_first_of(".e") == std::string::npos) text += ".0";
+    return text + "f";
+}
+
+std::string quoted(std::string_view text) {
+    std::string line;
+    for (char c : text) {
+        const bool blank = c == ' ' || c == '\t' || c == '\n' || c == '\r';
+        if (!blank)
+            line += c;
+        else if (!line.empty() && line.back() != ' ')
+            line += ' ';
+    }
+    while (!line.empty() && line.back() == ' ') line.pop_back();
+    if (line.size() <= kLongestQuote) return line;
+    std::size_t cut = kLongestQuote - 4;
+    while (cut > 0 && (static_cast<unsigned char>(line[cut]) & 0xC0U) == 0x80U)
+        --cut;  // not inside a code point
+    return line.substr(0, cut) + " ...";
+}
+
+void print_wrapped(Printer& out, const std::string& text) {
+    if (text.starts_with("if (") && !text.ends_with('{')) {
+        const std::vector<std::size_t> depth_at = depths(text);
+        std::size_t close = 4;
+        while (depth_at[close] != 0) ++close;
+        print_wrapped(out, text.substr(0, close + 1) + " {");
+        out.indent();
+        print_wrapped(out, text.substr(close + 2));
+        return out.close();
+    }
+    for (const std::string& line : broken(text, kLineWidth - out.column())) out.line(line);
+}
+
+void print_with_comment(Printer& out, const std::string& text, const std::string& comment) {
+    const bool one_line = out.column() + text.size() + 5 + comment.size() <= kLineWidth;
+    if (!comment.empty() && one_line && !text.starts_with("if ("))
+        return out.line("{}  // {}", text, comment);
+    if (!comment.empty()) print_comment(out, "//", comment, 4);
+    print_wrapped(out, text);
+}
+
+void print_comment(Printer& out, std::string_view mark, std::string_view text, std::size_t hang) {
+    std::string line(mark);
+    const std::size_t width = kLineWidth - out.column();
+    bool first_word = true;
+    while (!text.empty()) {
+        const std::string_view word = text.substr(0, text.find(' '));
+        // Before two blanks is the best place to break, if the line has to be broken at all.
+        const bool parts = word.empty() && line.size() + 1 + text.size() > width;
+        if (!first_word && (parts || line.size() + 1 + word.size() > width)) {
+            out.line(line);
+            line = std::string(mark) + std::string(hang, ' ');
+        }
+        text.remove_prefix(std::min(text.size(), word.size() + 1));
+        if (!parts) line.append(1, ' ').append(word);
+        first_word = false;
+    }
+    out.line(line);
+}
+
+void print_doc(Printer& out, std::string_view text) {
+    print_comment(out, "///", text);
+}
+
+void print_aligned(Printer& out,
+                   const std::vector<std::pair<std::string, std::string>>& declarations,
+                   std::string_view mark) {
+    constexpr std::size_t kWidest = 56;  // longer ones push their own comment out
+    const std::size_t room = kLineWidth - out.column();
+    const auto fits = [&](const std::string& declaration, const std::string& comment,
+                          std::size_t width) {
+        return std::max(declaration.size(), width) + mark.size() + 3 + comment.size() <= room;
+    };
+    std::size_t width = 0;
+    for (const std::size_t widest : {kWidest, room}) {
+        if (width > 0) break;
+        for (const auto& [declaration, comment] : declarations)
+            if (!comment.empty() && declaration.size() <= widest && fits(declaration, comment, 0))
+                width = std::max(width, declaration.size());
+    }
+    for (const auto& [declaration, comment] : declarations) {
+        if (comment.empty()) {
+            print_wrapped(out, declaration);
+        } else if (fits(declaration, comment, width)) {
+            out.line("{:<{}}  {} {}", declaration, width, mark, comment);
+        } else {
+            print_comment(out, mark.substr(0, mark.find('<')), comment, 4);
+            print_wrapped(out, declaration);
+        }
+    }
+}
+
+std::string counted(std::string_view counter) {
+    return fmt::format("if ({0} != UINT32_MAX) ++{0};", counter);
+}
+
+}  // namespace etlc::emit
