@@ -278,7 +278,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for positions that are evaluated anew",
+        out.line("stack of a step: {} bytes, for positions that are evaluated again",
                  plan.cost.stack_bytes);
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
@@ -290,7 +290,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
             as = reading.max ? "max of parts" : "min of parts";
         if (reading.kind == plan::Reading::Kind::response) as = "response";
         if (reading.kind == plan::Reading::Kind::pending)
-            as = fmt::format("{}, anew at {} positions",
+            as = fmt::format("{}, again at {} positions",
                              reading.pending.is_fold ? "fold" : "state machine",
                              reading.pending.horizon + 1);
         if (reading.kind == plan::Reading::Kind::machine)

@@ -106,7 +106,7 @@ struct Response {
 };
 
 /// F, G, U or R, or a state machine, over formulas with a bounded future. These are settled
-/// `horizon` steps late; at the positions since, they are evaluated anew at every step on the
+/// `horizon` steps late; at the positions since, they are evaluated again at every step on the
 /// prefix as it ends now (etlmon/temporal/pending.hpp), and the registers, which stand where
 /// everything is settled, are carried over them.
 struct Pending {
@@ -160,8 +160,8 @@ struct Monitor {
 /// counted in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
-    std::uint64_t stack_bytes = 0;          ///< arrays of a step: positions that are evaluated anew
-    std::uint64_t target_bytes = 0;         ///< and weights, on a machine with vectors of floats
+    std::uint64_t stack_bytes = 0;   ///< arrays of a step: positions that are evaluated again
+    std::uint64_t target_bytes = 0;  ///< and weights, on a machine with vectors of floats
     std::uint64_t scalar_target_bytes = 0;  ///< the same on one without
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part

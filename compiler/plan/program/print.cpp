@@ -95,7 +95,7 @@ std::string machine_text(const Machine& machine, const ir::Graph& graph) {
 }
 
 std::string pending_text(const Pending& pending, const ir::Graph& graph) {
-    std::string text = fmt::format("{}, over the last {} positions anew at every step\n",
+    std::string text = fmt::format("{}, over the last {} positions again at every step\n",
                                    pending.is_fold ? "fold" : "state machine", pending.horizon + 1);
     for (std::size_t i = 0; i < pending.parts.size(); ++i) {
         const Pending::Part& part = pending.parts[i];
