@@ -85,8 +85,7 @@ private:
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, input, target, predicate, truth, "
-                "let, monitor or "
-                "sliding monitor");
+                "let, monitor or sliding monitor");
         return result;
     }
 

@@ -90,8 +90,8 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
     const ast::Rate& rate = *c.step.rate;
     const Quantity step = quantity(rate);
     const auto name = [&](std::uint64_t steps) {
-        return fmt::format("{} ({} step{})", duration_text(steps, step, bound.unit), steps,
-                           steps == 1 ? "" : "s");
+        return fmt::format("{} ({})", duration_text(steps, step, bound.unit),
+                           diag::counted(steps, "step"));
     };
     c.report(Code::duration_not_whole, bound.span,
              fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",

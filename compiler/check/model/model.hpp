@@ -27,6 +27,8 @@ enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
 struct Range {
     float low = -std::numeric_limits<float>::infinity();
     float high = std::numeric_limits<float>::infinity();
+
+    bool contains(float x) const { return low <= x && x <= high; }
 };
 
 struct Input {
@@ -138,8 +140,7 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
 }
 
 /// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
-/// formula's value is true
-/// (+inf) or false (-inf).
+/// formula's value is true (+inf) or false (-inf).
 enum class Values : std::uint8_t { robustness, boolean };
 
 enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
