@@ -60,6 +60,13 @@ RISE : 'rise' ;
 FALL : 'fall' ;
 HELD : 'held' ;
 
+// ---- contextual: how durations are rounded
+
+DURATIONS : 'durations' ;
+UP        : 'up' ;
+DOWN      : 'down' ;
+NEAREST   : 'nearest' ;
+
 // ---- contextual: units
 
 HERTZ        : 'Hz' ;

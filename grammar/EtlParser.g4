@@ -15,14 +15,18 @@ spec
 
 declaration
     : SPEC name SEMICOLON                                                 # SpecDeclaration
-    | RATE NUMBER HERTZ SEMICOLON                                         # RateDeclaration
-    | PERIOD NUMBER timeUnit SEMICOLON                                    # PeriodDeclaration
+    | RATE NUMBER HERTZ rounding? SEMICOLON                               # RateDeclaration
+    | PERIOD NUMBER timeUnit rounding? SEMICOLON                          # PeriodDeclaration
     | INPUT name (COMMA name)* COLON type range? hold? SEMICOLON          # InputDeclaration
     | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
     | PREDICATE name ASSIGN sum comparisonOperator threshold SEMICOLON    # PredicateDeclaration
     | TRUTH name ASSIGN formula SEMICOLON                                 # TruthDeclaration
     | LET name ASSIGN formula SEMICOLON                                   # LetDeclaration
     | SLIDING? MONITOR name ASSIGN formula calibrated? SEMICOLON          # MonitorDeclaration
+    ;
+
+rounding
+    : COMMA DURATIONS op=(UP | DOWN | NEAREST)
     ;
 
 // ---- formulas and expressions, from the loosest operator to the tightest
@@ -198,6 +202,7 @@ name
     | IN | HOLD | SCALE
     | F32 | F16 | I8 | BOOL
     | RISE | FALL | HELD
+    | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
     | L2 | L2SQ | L1 | LINF | COSINE | ANGULAR | MAHALANOBIS
     | MIN | MAX | MEAN | KTH | ABS | SQRT

@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -158,12 +159,18 @@ struct Formula {
 
 // ---- declarations -------------------------------------------------------------------------------
 
+/// What becomes of a duration that is not a whole number of steps; exact: it is an error.
+enum class Rounding : std::uint8_t { exact, up, down, nearest };
+
 struct Rate {
     Number number;
     bool is_period = false;  ///< period N ms; else rate N Hz
     std::string unit;        ///< "Hz", or "us", "ms", "s", "min"
+    Rounding durations = Rounding::exact;
     Span span;
 };
+
+std::string_view word(Rounding rounding);  ///< "up"
 
 struct Type {
     enum class Kind : std::uint8_t { f32, f16, i8, boolean };

@@ -278,7 +278,11 @@ std::string text_of(const Type& type) {
 }
 
 std::string text_of(const Rate& rate) {
-    return fmt::format("{} {} {}", rate.is_period ? "period" : "rate", rate.number.text, rate.unit);
+    const std::string rounding = rate.durations == Rounding::exact
+                                     ? ""
+                                     : fmt::format(", durations {}", word(rate.durations));
+    return fmt::format("{} {} {}{}", rate.is_period ? "period" : "rate", rate.number.text,
+                       rate.unit, rounding);
 }
 
 std::string text_of(const Input& input) {
@@ -316,6 +320,11 @@ std::string text_of(const Monitor& monitor) {
 }
 
 }  // namespace
+
+std::string_view word(Rounding rounding) {
+    constexpr std::array<std::string_view, 4> kWords{"exact", "up", "down", "nearest"};
+    return kWords[static_cast<std::size_t>(rounding)];
+}
 
 std::string print(const Spec& spec) {
     std::string text;

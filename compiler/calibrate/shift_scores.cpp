@@ -38,12 +38,12 @@ MonitorScorer::MonitorScorer(const check::Model& model, const MonitorPlans& plan
       wanted_(episodes::wanted(model, {&plans.monitors, &plans.truths},
                                episodes::labelled_predicates(plans.ground_truth), leaks)) {
     plan::Evaluator& lowest = lowest_.evaluator();
-    lowest.replace_literals([&](Index p) { return spread(model_, p, lowest); });
+    lowest.replace_predicate_values([&](Index p) { return spread(model_, p, lowest); });
     // A verdict reads the low end: of a literal that is the first end, of a negated one the second.
     // With the ends exchanged it is the highest that a build may have, while the range of a missing
     // sample stays as it is.
     plan::Evaluator& highest = highest_.evaluator();
-    highest.replace_literals([&](Index p) {
+    highest.replace_predicate_values([&](Index p) {
         const plan::Value value = spread(model_, p, highest);
         return plan::Value{value.high, value.low};
     });

@@ -3,7 +3,7 @@
 
 #include "check/model/fingerprint.hpp"
 #include "emit/context.hpp"
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -50,9 +50,9 @@ std::vector<Member> own_members(const Context& context) {
     const std::vector<Member> thresholds = threshold_members(context);
     result.insert(result.end(), thresholds.begin(), thresholds.end());
     for (const auto& [m, name] : context.names.verdict_member)
-        result.push_back({"etlmon::Verdict", name, "the last one, for finish()",
-                          name + " = etlmon::Verdict();", ""});
-    if (context.boolean())
+        result.push_back({context.spelling.verdict, name, "the last one, for finish()",
+                          fmt::format("{} = {}();", name, context.spelling.verdict), ""});
+    if (context.on_demand)
         result.push_back(
             {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
     if (plan.counts_steps)
@@ -104,24 +104,20 @@ void print_exists(Printer& out, const Context& context) {
 // ---- types and constants
 
 void print_types(Printer& out, const Context& context) {
-    const bool boolean = context.boolean();
+    const Spelling& words = context.spelling;
     const std::vector<Names::OfReading>& readings = context.names.readings;
     const bool has_tables = std::any_of(readings.begin(), readings.end(),
                                         [](const auto& names) { return !names.weak.empty(); });
     std::vector<std::pair<std::string, std::string>> types;
-    types.emplace_back(fmt::format("using Value = etlmon::{};", boolean ? "Truth" : "Value"),
-                       boolean ? "surely true, and perhaps true"
-                               : "a robustness; its ends differ where a sample is missing");
+    types.emplace_back(fmt::format("using Value = {};", words.value), words.value_meaning);
     if (!readings.empty())
-        types.emplace_back(
-            fmt::format("using Reading = etlmon::{};", boolean ? "BasicReading<Value>" : "Reading"),
-            "a value, and bounds that no continuation leaves");
+        types.emplace_back(fmt::format("using Reading = {};", words.reading),
+                           "a value, and bounds that no continuation leaves");
     if (has_tables)
-        types.emplace_back(fmt::format("using Key = {};", boolean ? "bool" : "etlmon::Key"),
-                           "one end of a value");
+        types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
     out.line();
-    if (boolean) return;
+    if (context.on_demand) return;
     print_doc(out, "What a step says about each predicate.");
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
@@ -164,7 +160,7 @@ void print_class_constants(Printer& out, const Context& context) {
 
 // ---- interface
 
-void print_boolean_step(Printer& out, const Context& context) {
+void print_step_on_demand(Printer& out, const Context& context) {
     out.open(
         fmt::format("{}Verdicts step(const Inputs& in) noexcept {{", context.step_qualifier()));
     for (const Member& member : telemetry_members(context)) out.line(member.reset);
@@ -204,7 +200,7 @@ void print_finish(Printer& out, const Context& context) {
               "then on. Prefix monitors repeat their verdict.");
     out.open("Verdicts finish() noexcept {");
     print_wrapped(out, counted("finishes"));
-    out.line(context.boolean() ? "return advance(Inputs());" : "return judge(Atoms());");
+    out.line(context.on_demand ? "return advance(Inputs());" : "return judge(Atoms());");
     out.close();
     out.line();
 }
@@ -236,26 +232,26 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
     out.close();
     out.line();
     print_doc(out, "One call, one time step.");
-    if (context.boolean())
-        print_boolean_step(out, context);
+    if (context.on_demand)
+        print_step_on_demand(out, context);
     else
         out.line("{}Verdicts step(const Inputs& in) noexcept {{ return judge(measure(in)); }}",
                  context.step_qualifier());
     out.line();
     if (context.plan.has_sliding) print_finish(out, context);
-    if (!context.boolean()) declare_halves(out);
+    if (!context.on_demand) declare_halves(out);
     if (!context.names.predicate_member.empty()) {
         print_doc(out, fmt::format("Telemetry of the last step: a predicate's distance or "
                                    "expression, NaN where it was unknown{}, next to its threshold, "
                                    "and the row of the nearest target.",
-                                   context.boolean() ? " or not asked for" : ""));
+                                   context.on_demand ? " or not asked for" : ""));
         print_telemetry(out, context);
         out.line();
     }
     print_adaptive_interface(out, context);
     print_doc(out,
               fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
-                          context.boolean() ? "that was asked for " : ""));
+                          context.on_demand ? "that was asked for " : ""));
     out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
     out.line();
 }
@@ -291,7 +287,7 @@ void print_state(Printer& out, const std::vector<Member>& all) {
     print_aligned(out, lines);
 }
 
-/// Members of a Boolean class that are made of bytes.
+/// Members that are made of bytes, where values are.
 bool is_bytes(const Member& member) {
     return member.type == "Value" || member.type == "Verdicts" ||
            member.type.find("PendingMachine") != std::string::npos;
@@ -305,7 +301,7 @@ std::vector<Member> members(const Context& context) {
     all.insert(all.end(), own.begin(), own.end());
     // Words before bytes: no padding but at the end.
     std::stable_partition(all.begin(), all.end(), [&](const Member& member) {
-        return !context.boolean() || !is_bytes(member);
+        return !context.spelling.bytes || !is_bytes(member);
     });
     if (context.stores_targets())
         all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
@@ -332,14 +328,14 @@ void print_class(Printer& out, const Context& context) {
     out.label("private:");
     print_unseen(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
-    if (context.boolean()) declare_advance(out);
+    if (context.on_demand) declare_advance(out);
     print_adaptation_constants(out, context);
     print_state(out, all);
     out.close("};");
     out.line(
         "static_assert(sizeof(Monitor) == Monitor::kStateBytes, \"no padding, no surprises\");");
     out.line();
-    if (context.boolean()) {
+    if (context.on_demand) {
         print_advance(out, context);
     } else {
         print_measure(out, context);

@@ -58,7 +58,7 @@ std::string_view Context::step_qualifier() const {
 std::string Context::literal(plan::Value value) const {
     if (value.low == value.high && value.low == etlmon::kTop) return spelling.yes;
     if (value.low == value.high && value.low == etlmon::kBottom) return spelling.no;
-    if (boolean()) return "etlmon::kPerhaps";
+    if (!spelling.neither.empty()) return spelling.neither;
     return fmt::format("Value{{{}, {}}}", literal(value.low), literal(value.high));
 }
 
@@ -70,7 +70,7 @@ std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {
 
 std::string Context::value(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    const std::string now = boolean() ? "" : "now.";
+    const std::string now = on_demand ? "" : "now.";
     if (stream.op == StreamOp::constant) return literal(stream.value);
     if (stream.op == StreamOp::predicate) return now + names.predicate_atom.at(stream.index);
     if (stream.op == StreamOp::flag) return now + names.flag_atom.at(stream.index);
@@ -89,7 +89,7 @@ std::string Context::high(plan::Slot slot) const {
 }
 
 std::string reading_declaration(const Context& context, std::uint32_t reading) {
-    const bool declared = context.boolean() && context.plan.readings[reading].operands.empty();
+    const bool declared = context.on_demand && context.plan.readings[reading].operands.empty();
     return (declared ? "" : "const Reading ") + context.names.readings[reading].local;
 }
 

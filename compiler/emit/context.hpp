@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "emit/names.hpp"
+#include "emit/spelling.hpp"
 #include "emit/text/layout.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
@@ -15,18 +16,6 @@
 #include "plan/program/dependents.hpp"
 
 namespace etlc::emit {
-
-/// How constants are spelt: of robustness, or of truth.
-struct Spelling {
-    std::string yes = "etlmon::kTrue";
-    std::string no = "etlmon::kFalse";
-    std::string top = "etlmon::kTop";  ///< one end of them
-    std::string bottom = "etlmon::kBottom";
-    std::string kept = "etlmon::Register";  ///< the type of a value that is kept from step to step
-};
-inline Spelling truth_spelling() {
-    return {"etlmon::kYes", "etlmon::kNo", "true", "false", "Value"};
-}
 
 struct Context {
     const plan::Plan& plan;
@@ -36,11 +25,12 @@ struct Context {
     std::string spec_file;  ///< file name without folders
     std::string name_space;
     std::string targets_file;  ///< file name of the stored target sets, without folders
-    Spelling spelling;
+    const Spelling& spelling;
+    /// Predicates are measured when a verdict first depends on them: one function does a step.
+    bool on_demand;
     plan::Dependents dependents;
     std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
 
-    bool boolean() const { return plan.values == check::Values::boolean; }
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
     /// How the functions of a step are declared: where a call would cost as much as they do, part

@@ -6,6 +6,7 @@
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -36,10 +37,10 @@ const char* header_of(const Context& context, Index d) {
 
 std::set<std::string> runtime_headers(const Context& context) {
     const plan::Plan& plan = context.plan;
-    const bool boolean = context.boolean();
+    const Spelling& words = context.spelling;
     std::set<std::string> headers{"scalars", "temporal/reading", "version"};
-    headers.insert(boolean ? "temporal/demand" : "temporal/predicate");
-    headers.insert(boolean ? "temporal/boolean_verdict" : "temporal/verdict");
+    headers.insert(words.predicates);
+    headers.insert(words.verdicts);
     for (Index d : plan.distances) {
         headers.insert(header_of(context, d));
         if (context.enclosed(d)) headers.insert("distance/enclosed");
@@ -53,13 +54,12 @@ std::set<std::string> runtime_headers(const Context& context) {
             headers.insert("distance/widen");
         if (input.hold > 0) headers.insert("temporal/hold");
     }
-    if (any_stream(plan, {StreamOp::delay, StreamOp::shift}))
-        headers.insert(boolean ? "temporal/boolean_window" : "temporal/delay");
+    if (any_stream(plan, {StreamOp::delay, StreamOp::shift})) headers.insert(words.delays);
     if (std::any_of(plan.monitors.begin(), plan.monitors.end(),
                     [](const plan::Monitor& m) { return m.shifted; }))
         headers.insert("temporal/shift");
     if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
-        headers.insert(boolean ? "temporal/boolean_window" : "temporal/window");
+        headers.insert(words.windows);
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
         if (!reading.count.empty()) headers.insert("temporal/pending");
@@ -99,7 +99,6 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
 
 std::string header(const plan::Plan& plan, const Options& options) {
     const check::Model& model = *plan.model;
-    const bool boolean = plan.values == check::Values::boolean;
     const Context context{plan,
                           *plan.formulas,
                           model,
@@ -107,7 +106,8 @@ std::string header(const plan::Plan& plan, const Options& options) {
                           file_name(model.file.path()),
                           options.name_space.empty() ? model.name : options.name_space,
                           options.targets_file,
-                          boolean ? truth_spelling() : Spelling(),
+                          spelling(plan.values),
+                          plan::value_type(plan.values).on_demand,
                           plan::dependents(plan)};
     Printer out;
     print_comment(out, "//",

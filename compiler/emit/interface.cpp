@@ -103,6 +103,21 @@ void print_narrow_rows(Printer& out, const Context& context, const plan::NarrowS
                     [](std::int8_t x) { return fmt::format("{}", x); });
 }
 
+/// For loops that log all of them.
+void print_named(Printer& out, const Context& context) {
+    const std::vector<plan::Monitor>& monitors = context.plan.monitors;
+    print_doc(out, "The verdicts by name: for (const auto& [name, verdict] : named(verdicts)) ...");
+    out.open(fmt::format("inline etlmon::Named<{}, {}> named(const Verdicts& verdicts) noexcept {{",
+                         context.spelling.verdict, monitors.size()));
+    std::string list;
+    for (const plan::Monitor& monitor : monitors)
+        list += fmt::format("{}{{\"{}\", verdicts.{}}}", list.empty() ? "" : ", ", monitor.name,
+                            monitor.name);
+    print_wrapped(out, fmt::format("return {{{{{}}}}};", list));
+    out.close();
+    out.line();
+}
+
 }  // namespace
 
 void print_inputs_and_verdicts(Printer& out, const Context& context) {
@@ -125,13 +140,12 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)
-        verdicts.emplace_back(
-            fmt::format("etlmon::{} {};", context.boolean() ? "BooleanVerdict" : "Verdict",
-                        monitor.name),
-            context.place(context.model.monitors[monitor.index].span));
+        verdicts.emplace_back(fmt::format("{} {};", context.spelling.verdict, monitor.name),
+                              context.place(context.model.monitors[monitor.index].span));
     print_aligned(out, verdicts);
     out.close("};");
     out.line();
+    print_named(out, context);
 }
 
 void print_constants(Printer& out, const Context& context) {

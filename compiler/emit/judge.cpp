@@ -17,11 +17,15 @@ std::string prefix_verdict(const Context& context, const plan::Monitor& monitor)
                        shifted(monitor, context.names.readings[monitor.reading].local));
 }
 
+/// About the position that its horizon is behind, where there is one.
+std::string sliding_verdict(const Context& context, const plan::Monitor& monitor) {
+    return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : {}()", monitor.horizon,
+                       shifted(monitor, context.value(monitor.stream)), context.spelling.verdict);
+}
+
 std::string verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
-    if (monitor.sliding)
-        return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : etlmon::Verdict()",
-                           monitor.horizon, shifted(monitor, context.value(monitor.stream)));
+    if (monitor.sliding) return sliding_verdict(context, monitor);
     if (context.plan.has_sliding) return context.names.verdict_member.at(m);
     return prefix_verdict(context, monitor);
 }
@@ -44,7 +48,7 @@ void print_readings(Printer& out, const Context& context) {
     if (plan.readings.empty()) return;
     const bool ends =
         plan.has_sliding &&
-        !context.boolean();  // prefixes do not grow while finish() reports the last positions
+        !context.on_demand;  // prefixes do not grow while finish() reports the last positions
     if (ends) {
         out.gap();
         out.open("if (finishes == 0) {");
@@ -52,7 +56,7 @@ void print_readings(Printer& out, const Context& context) {
     for (std::uint32_t r = 0; r < plan.readings.size(); ++r) {
         out.gap();
         print_comment(out, "//", context.place(plan.readings[r].node), 4);
-        context.boolean() ? print_reading_while_open(out, context, r)
+        context.on_demand ? print_reading_while_open(out, context, r)
                           : print_reading(out, context, r);
     }
     if (!ends) return;
@@ -67,10 +71,8 @@ void print_open_verdicts(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
-            print_wrapped(
-                out, fmt::format("answers.{} = exists({}) ? etlmon::sliding_verdict({}) : "
-                                 "etlmon::BooleanVerdict();",
-                                 monitor.name, monitor.horizon, context.value(monitor.stream)));
+            print_wrapped(out, fmt::format("answers.{} = {};", monitor.name,
+                                           sliding_verdict(context, monitor)));
         else
             print_wrapped(out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});",
                                            context.names.open_local.at(m), monitor.name,

@@ -5,9 +5,10 @@
 #include <algorithm>
 
 #include "emit/text/identifiers.hpp"
-#include "plan/decide/points.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -67,10 +68,10 @@ public:
         : plan_(plan),
           model_(*plan.model),
           graph_(*plan.formulas),
-          boolean_(plan.values == check::Values::boolean),
+          on_demand_(plan::value_type(plan.values).on_demand),
           judge_(functions(model_, plan)),
           measure_scope_(functions(model_, plan)),
-          measure_(boolean_ ? judge_ : measure_scope_) {}
+          measure_(on_demand_ ? judge_ : measure_scope_) {}
 
     Names name_all() {
         name_atoms();
@@ -84,7 +85,7 @@ public:
 private:
     /// In Atoms they are called as they are; a Boolean class has locals for them.
     std::string atom(const std::string& name) {
-        return boolean_ ? local(judge_, name + "_now") : atoms_.claim(name);
+        return on_demand_ ? local(judge_, name + "_now") : atoms_.claim(name);
     }
 
     void name_atoms() {
@@ -97,12 +98,12 @@ private:
         for (check::Index p : plan_.predicates)
             if (model_.predicates[p].name.empty())
                 names_.predicate_atom[p] =
-                    local(boolean_ ? judge_ : atoms_, predicate_name(model_.predicates[p]));
+                    local(on_demand_ ? judge_ : atoms_, predicate_name(model_.predicates[p]));
         for (check::Index p : plan_.predicates) {
             const check::Predicate& predicate = model_.predicates[p];
-            if (!boolean_) names_.predicate_unseen[p] = "unseen_" + names_.predicate_atom[p];
+            if (!on_demand_) names_.predicate_unseen[p] = "unseen_" + names_.predicate_atom[p];
             if (!predicate.name.empty()) continue;
-            if (!boolean_)
+            if (!on_demand_)
                 for (Scope* scope : {&judge_, &measure_}) scope->claim(names_.predicate_unseen[p]);
             names_.predicate_local[p] = local(measure_, predicate_name(predicate) + "_delta");
         }
@@ -188,7 +189,7 @@ private:
         for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
             const plan::Monitor& monitor = plan_.monitors[m];
             if (!monitor.sliding) wanted.emplace(monitor.reading, monitor.name);
-            if (plan_.values == check::Values::boolean) {
+            if (on_demand_) {
                 if (!monitor.sliding) names_.open_local[m] = local(judge_, monitor.name + "_open");
             } else if (plan_.has_sliding && !monitor.sliding) {
                 names_.verdict_member[m] = member(members_, monitor.name + "_verdict");
@@ -289,7 +290,7 @@ private:
     const ir::Graph& graph_;
     std::vector<const plan::Monitor*> monitor_of_ = first_monitors();  ///< per reading
     Names names_;
-    bool boolean_;
+    bool on_demand_;
     Scope judge_;
     Scope measure_scope_;
     Scope& measure_;  ///< a Boolean monitor is one function: all its locals differ

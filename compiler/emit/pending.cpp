@@ -67,10 +67,11 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
         std::vector<std::string> literals;
         for (std::uint32_t part : pending.table.guards[g])
             literals.push_back(names.parts[part] + "[i]");
-        print_wrapped(out, fmt::format("{}[i][{}] = {};", names.guards, g,
-                                       literals.empty() ? fmt::format("etlmon::settled({})",
-                                                                      context.spelling.yes)
-                                                        : call("min_of", literals)));
+        print_wrapped(out,
+                      fmt::format("{}[i][{}] = {};", names.guards, g,
+                                  literals.empty() ? fmt::format("etlmon::settled({})",
+                                                                 context.literal(etlmon::kTrue))
+                                                   : call("min_of", literals)));
     }
     out.close();
     print_machine_keys(out, context, r);

@@ -34,8 +34,8 @@ std::string combination(const Context& context, bool max, const std::vector<Slot
 /// v = max(g, min(v, f)) or the dual; in a Boolean monitor the cheaper side is asked first.
 std::string since(const Context& context, const Stream& stream, const std::string& kept) {
     const bool max = stream.max;
-    const std::string none = max ? context.spelling.no : context.spelling.yes;
-    const std::string other = max ? context.spelling.yes : context.spelling.no;
+    const std::string none = context.literal(plan::neutral(max));
+    const std::string other = context.literal(plan::neutral(!max));
     const char* outer = max ? "max_of" : "min_of";
     const std::string right = guarded(context, stream, 1, none);
     const std::string left = fmt::format("{}({}, {})", max ? "min_of" : "max_of", kept,
@@ -67,8 +67,8 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
     const auto at = [&](std::size_t i) { return context.value(stream.operands[i]); };
     const auto kept = [&] { return context.names.streams[slot].member; };
     const bool max = stream.max;
-    const std::string none = max ? context.spelling.no : context.spelling.yes;
-    const std::string other = max ? context.spelling.yes : context.spelling.no;
+    const std::string none = context.literal(plan::neutral(max));
+    const std::string other = context.literal(plan::neutral(!max));
     switch (stream.op) {
         case StreamOp::constant:
         case StreamOp::predicate:

@@ -306,6 +306,18 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_table(out, prefix, rows, 1);
 }
 
+/// What became of durations that are not whole numbers of steps.
+void print_rounded(Printer& out, const std::string& prefix, const check::Model& model) {
+    if (model.rounded.empty()) return;
+    std::string list;
+    for (const auto& [duration, steps] : model.rounded)
+        list += fmt::format("{}{} is {} step{}", list.empty() ? "" : ", ", duration, steps,
+                            steps == 1 ? "" : "s");
+    out.line(prefix);
+    print_sentences(out, prefix,
+                    fmt::format("Durations are rounded {}: {}.", model.rounding, list));
+}
+
 }  // namespace
 
 void print_summary(Printer& out, const Context& context) {
@@ -313,6 +325,7 @@ void print_summary(Printer& out, const Context& context) {
     print_made_from(out, "//   ", context);
     print_tables(out, "//   ", context.plan);
     print_stored(out, "//   ", context.plan, context.targets_file);
+    print_rounded(out, "//", context.model);
     out.line("//");
     print_sentences(out, "//",
                     "state B: of a monitor alone, what it shares with others counted in each. "
@@ -329,6 +342,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     print_tables(out, "  ", plan);
     print_stored(out, "  ", plan,
                  options.targets_file.empty() ? "the file of targets" : options.targets_file);
+    print_rounded(out, "", *plan.model);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)

@@ -35,6 +35,7 @@ private:
     using Formula = Tree<ast::FormulaPtr>;
 
     // declarations.cpp
+    static ast::Rounding rounding(Grammar::RoundingContext* context);  ///< null: none is written
     ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
     ast::Type type(Grammar::TypeContext& context) const;
     ast::Range range(Grammar::RangeContext& context) const;

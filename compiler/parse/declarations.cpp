@@ -28,9 +28,11 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
     if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context))
         return name(*d->name());
     if (auto* const d = dynamic_cast<Grammar::RateDeclarationContext*>(&context))
-        return ast::Rate{number(*d->NUMBER()->getSymbol()), false, "Hz", span};
+        return ast::Rate{number(*d->NUMBER()->getSymbol()), false, "Hz", rounding(d->rounding()),
+                         span};
     if (auto* const d = dynamic_cast<Grammar::PeriodDeclarationContext*>(&context))
-        return ast::Rate{number(*d->NUMBER()->getSymbol()), true, text(*d->timeUnit()), span};
+        return ast::Rate{number(*d->NUMBER()->getSymbol()), true, text(*d->timeUnit()),
+                         rounding(d->rounding()), span};
     if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context))
         return input(*d, span);
     if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context))
@@ -42,6 +44,15 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
     if (auto* const d = dynamic_cast<Grammar::LetDeclarationContext*>(&context))
         return ast::Let{name(*d->name()), formula(*d->formula()).root, span};
     return monitor(dynamic_cast<Grammar::MonitorDeclarationContext&>(context), span);
+}
+
+ast::Rounding Builder::rounding(Grammar::RoundingContext* context) {
+    if (context == nullptr) return ast::Rounding::exact;
+    switch (context->op->getType()) {
+        case Grammar::UP: return ast::Rounding::up;
+        case Grammar::DOWN: return ast::Rounding::down;
+        default: return ast::Rounding::nearest;
+    }
 }
 
 ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Span span) const {

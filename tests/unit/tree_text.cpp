@@ -127,7 +127,9 @@ std::string head(Formula::Kind kind) {
 }
 
 std::string word(const Rate& d) {
-    return list(d.is_period ? "period" : "rate", {d.number.text, d.unit});
+    std::vector<std::string> items{d.number.text, d.unit};
+    if (d.durations != Rounding::exact) items.emplace_back(word(d.durations));
+    return list(d.is_period ? "period" : "rate", items);
 }
 
 std::string word(const Input& d) {

@@ -49,6 +49,10 @@ bool is_usable(Context& c, const ast::Rate& rate) {
     return has_usable_length(c, rate);
 }
 
+std::string in_words(ast::Rounding rounding) {
+    return rounding == ast::Rounding::nearest ? "to the nearest" : std::string(word(rounding));
+}
+
 // ---- bounds -------------------------------------------------------------------------------------
 
 bool is_infinite(const ast::Bound& bound) {
@@ -97,7 +101,28 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
              fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",
                          bound_text(bound), name(below), name(below + 1)))
         .note(rate.span,
-              fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit));
+              fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit))
+        .note(fmt::format("'{} {} {}, durations up;' rounds all of them, or 'down', or 'nearest'",
+                          rate_word(rate), rate.number.text, rate.unit));
+}
+
+/// The whole number of steps that a duration between two of them stands for.
+std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
+                                           const StepCount& count) {
+    const ast::Rate& rate = *c.step.rate;
+    const bool up = rate.durations == ast::Rounding::up ||
+                    (rate.durations == ast::Rounding::nearest && count.upper_half);
+    const auto steps = static_cast<std::uint32_t>(count.floor + (up ? 1 : 0));
+    if (steps == 0) {
+        c.report(Code::duration_vanishes, bound.span,
+                 fmt::format("{} is less than a step and rounds to nothing", bound_text(bound)))
+            .note(rate.span,
+                  fmt::format("the {} is {} {}, and durations are rounded {}", rate_word(rate),
+                              rate.number.text, rate.unit, in_words(rate.durations)));
+        return std::nullopt;
+    }
+    c.model.rounded.emplace(bound_text(bound), steps);
+    return steps;
 }
 
 std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound) {
@@ -119,8 +144,11 @@ std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound)
     }
     const StepCount count = count_steps({value, bound.unit}, quantity(*c.step.rate));
     if (count.too_many) report_too_large(c, bound);
-    if (!count.too_many && !count.whole) report_not_whole(c, bound, count.floor);
-    return count.whole ? std::optional(static_cast<std::uint32_t>(count.floor)) : std::nullopt;
+    if (count.too_many) return std::nullopt;
+    if (count.whole) return static_cast<std::uint32_t>(count.floor);
+    if (c.step.rate->durations != ast::Rounding::exact) return rounded_steps(c, bound, count);
+    report_not_whole(c, bound, count.floor);
+    return std::nullopt;
 }
 
 std::optional<std::uint32_t> bound_steps(Context& c, const ast::Bound& bound) {
@@ -148,6 +176,7 @@ void check_rate(Context& c) {
     }
     c.step.rate = first;
     c.model.step_seconds = seconds(quantity(*first));
+    if (first->durations != ast::Rounding::exact) c.model.rounding = in_words(first->durations);
 }
 
 bool is_finite_duration(Context& c, const ast::Bound& bound) {

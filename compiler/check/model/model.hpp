@@ -7,6 +7,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -283,6 +284,9 @@ struct Model {
     std::string name;         ///< of the spec
     source::File file;        ///< for the lines that comments quote
     double step_seconds = 0;  ///< 0: no rate was given
+    /// Durations that are not whole numbers of steps, as written, and what they were rounded to.
+    std::map<std::string, std::uint32_t> rounded;
+    std::string rounding;  ///< "up", "down" or "to the nearest"; empty: none is
     std::vector<Input> inputs;
     std::vector<Target> targets;
     std::vector<Distance> distances;    ///< equal ones stand once

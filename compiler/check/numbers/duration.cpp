@@ -103,22 +103,24 @@ std::string fraction_text(Fraction x) {
 
 StepCount count_steps(const Quantity& duration, const Quantity& step) {
     Fraction x = quotient(duration, step);
-    if (x.numerator == 0) return {0, true, false};
+    if (x.numerator == 0) return {.whole = true};
     for (; x.exponent > 0; --x.exponent) {
-        if (x.numerator / x.denominator > kMaxBound) return {0, false, true};
+        if (x.numerator / x.denominator > kMaxBound) return {.too_many = true};
         x.numerator *= 10;  // below 2^32 x denominator x 10
     }
     for (; x.exponent < 0; ++x.exponent) {
         if (x.numerator % 10 == 0)
             x.numerator /= 10;
         else if (!multiply(x.denominator, 10))
-            return {0, false, false};  // a denominator that does not fit exceeds the numerator
+            return {};  // a denominator that does not fit exceeds the numerator
     }
     const Wide floor = x.numerator / x.denominator;
-    if (floor > kMaxBound) return {0, false, true};
-    const bool whole = x.numerator % x.denominator == 0;
-    if (!whole && floor == kMaxBound) return {0, false, true};
-    return {static_cast<std::uint64_t>(floor), whole, false};
+    if (floor > kMaxBound) return {.too_many = true};
+    const Wide rest = x.numerator % x.denominator;
+    if (rest != 0 && floor == kMaxBound) return {.too_many = true};
+    return {.floor = static_cast<std::uint64_t>(floor),
+            .whole = rest == 0,
+            .upper_half = rest >= x.denominator - rest};
 }
 
 std::string duration_text(std::uint64_t steps, const Quantity& step, std::string_view unit) {

@@ -1,6 +1,6 @@
 // Adaptive thresholds in the class: the one number that each keeps, and the calls that move it.
 #include "emit/context.hpp"
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
 

@@ -1,6 +1,6 @@
 // The kernels' calls in measure().
 #include "emit/measure/measurements.hpp"
-#include "plan/decide/points.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"

@@ -2,7 +2,7 @@
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
 #include "emit/measure/measurements.hpp"
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
 
@@ -24,7 +24,7 @@ std::string expression(const Context& context, const Expr& e) {
         case Expr::Kind::number: return float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance:
-            return context.names.distance_local.at(e.index) + (context.boolean() ? "()" : "") +
+            return context.names.distance_local.at(e.index) + (context.on_demand ? "()" : "") +
                    ".delta";
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
@@ -72,7 +72,7 @@ private:
         const std::string& local = context_.names.distance_local.at(d);
         out_.gap();
         print_comment(out_, "//", context_.model.distances[d].text, 4);
-        if (!context_.boolean()) {
+        if (!context_.on_demand) {
             if (const auto call = measured_at_once(context_, d))
                 return print_wrapped(out_,
                                      fmt::format("const etlmon::Measured {} = {};", local, *call));
@@ -107,11 +107,11 @@ private:
                                            : float_literal(predicate.threshold.value);
         out_.gap();
         print_comment(out_, "//", context_.place(predicate.span), 4);
-        if (context_.boolean())
+        if (context_.on_demand)
             out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
         const std::string delta = predicate.plain_distance() ? plain(predicate, variable, kept)
                                                              : general(predicate, variable, kept);
-        if (context_.boolean()) {
+        if (context_.on_demand) {
             const std::string range =
                 context_.literal(plan::unseen_range(predicate, context_.plan.values));
             out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
@@ -137,7 +137,7 @@ private:
         const Index d = predicate.expression.index;
         if (has_local(d)) {
             std::string shared = context_.names.distance_local.at(d);
-            if (context_.boolean())
+            if (context_.on_demand)
                 shared += "()";
             else if (context_.enclosed(d))
                 shared += ".measured";
@@ -150,7 +150,7 @@ private:
             return variable + ".delta";
         }
         // What step() of a Boolean class keeps, it has called unmeasured.
-        if (!kept || !context_.boolean())
+        if (!kept || !context_.on_demand)
             out_.line("{}{} = etlmon::kUnmeasured;", kept ? "" : "etlmon::Measured ", variable);
         print_distance(out_, context_, d, variable);
         return variable + ".delta";

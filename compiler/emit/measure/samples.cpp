@@ -1,6 +1,6 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
 #include "emit/measure/measurements.hpp"
-#include "plan/decide/points.hpp"
+#include "plan/decide/point_checks.hpp"
 
 namespace etlc::emit {
 
@@ -11,7 +11,7 @@ namespace {
 
 /// An input that is looked at on demand; one that is held is looked at on every step.
 bool on_demand(const Context& context, Index i) {
-    return context.boolean() && context.model.inputs[i].hold == 0;
+    return context.on_demand && context.model.inputs[i].hold == 0;
 }
 
 std::string accepted(const check::Input& input) {
@@ -79,7 +79,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     print_wrapped(out, fmt::format("const uint32_t* const {} = {}.take(in.{}.present() ? &{} : "
                                    "nullptr);",
                                    local, context.names.hold_member.at(i), input.name, word));
-    if (context.boolean()) {
+    if (context.on_demand) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(local + " == nullptr"));

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cassert>
 
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 #include "plan/program/value_type.hpp"
 
 namespace etlc::plan {

@@ -9,7 +9,7 @@
 #include "etlmon/temporal/shift.hpp"
 #include "etlmon/temporal/window.hpp"
 #include "etlmon/views.hpp"
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 
 namespace etlc::plan {
 
@@ -37,7 +37,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     measured_.resize(model_.predicates.size());
     for (const check::Predicate& predicate : model_.predicates)
         thresholds_.push_back(predicate.threshold.value);
-    literals_.resize(model_.predicates.size(), kAnything);
+    predicate_values_.resize(model_.predicates.size(), kAnything);
     flags_.resize(model_.inputs.size(), kAnything);
     streams_.resize(plan.streams.size());
     stream_states_.resize(plan.streams.size());
@@ -131,11 +131,11 @@ void Evaluator::measure_predicates() {
         if (present && !predicate.plain_distance())
             measured.delta = expression(predicate.expression);
         measured_[p] = measured;
-        literals_[p] = literal(predicate, measured.delta, thresholds_[p], plan_.values);
+        predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);
         if (predicate.plain_distance() && plan_.values == check::Values::robustness)
-            literals_[p] =
-                literal(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
-        if (literal_ && !std::isnan(measured.delta)) literals_[p] = literal_(p);
+            predicate_values_[p] =
+                value_of(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
+        if (replacement_ && !std::isnan(measured.delta)) predicate_values_[p] = replacement_(p);
         missing |= std::isnan(measured.delta);
     }
     if (missing) missing_steps_ = saturating_increment(missing_steps_);
@@ -194,7 +194,7 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
     };
     switch (stream.op) {
         case StreamOp::constant: return stream.value;
-        case StreamOp::predicate: return literals_[stream.index];
+        case StreamOp::predicate: return predicate_values_[stream.index];
         case StreamOp::flag: return flags_[stream.index];
         case StreamOp::negation: return negate(at(0));
         case StreamOp::combination: {

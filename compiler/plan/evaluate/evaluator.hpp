@@ -51,8 +51,8 @@ public:
     /// From now on formulas see, of predicates that are measured, this instead of their robustness:
     /// calibration reckons with what other builds measure. Both ends go through formulas
     /// independently; a negation exchanges them.
-    using Literal = std::function<Value(Index predicate)>;
-    void replace_literals(Literal literal) { literal_ = std::move(literal); }
+    using PredicateValue = std::function<Value(Index predicate)>;
+    void replace_predicate_values(PredicateValue value) { replacement_ = std::move(value); }
 
 private:
     struct Held {
@@ -109,9 +109,9 @@ private:
     std::vector<etlmon::Enclosed> enclosed_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
-    std::vector<float> thresholds_;  ///< per predicate
-    std::vector<Value> literals_;    ///< per predicate
-    Literal literal_;
+    std::vector<float> thresholds_;        ///< per predicate
+    std::vector<Value> predicate_values_;  ///< per predicate
+    PredicateValue replacement_;
     std::vector<Value> flags_;  ///< per input
     std::vector<Value> streams_;
     std::vector<StreamState> stream_states_;

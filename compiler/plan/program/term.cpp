@@ -46,6 +46,8 @@ Term Term::extreme(bool max, std::vector<Term> operands) {
         else
             kept.push_back(std::move(operand));
     }
+    const auto varies = [](const Term& term) { return term.kind != Kind::constant; };
+    std::stable_partition(kept.begin(), kept.end(), varies);  // as one writes it: max(v, 0.2)
     if (kept.empty()) return constant(neutral(max));
     if (kept.size() == 1) return kept.front();
     return {.kind = Kind::extreme, .max = max, .operands = std::move(kept)};

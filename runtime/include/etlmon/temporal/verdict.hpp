@@ -47,6 +47,19 @@ struct Answers {
   }
 };
 
+/// The answers of all monitors with their names, in the order of the spec, for loops over them.
+template <class V, uint32_t count>
+struct Named {
+  struct Entry {
+    const char* name;
+    V verdict;
+  };
+  Entry entries[count];
+
+  constexpr const Entry* begin() const noexcept { return entries; }
+  constexpr const Entry* end() const noexcept { return entries + count; }
+};
+
 /// The answer about one monitor after one step. Undecided: the numbers are NaN.
 struct Verdict : Answers<Verdict> {
   float robustness = kMissing;  ///< rho; pessimistic where a sample is missing

@@ -1,4 +1,4 @@
-#include "plan/program/literals.hpp"
+#include "plan/program/predicate_values.hpp"
 
 #include "etlmon/temporal/predicate.hpp"
 #include "etlmon/temporal/truth.hpp"
@@ -47,7 +47,7 @@ Value unseen_range(const check::Predicate& predicate, Values values) {
     return value_of(truth_range(predicate));
 }
 
-Value literal(const check::Predicate& predicate, float delta, float epsilon, Values values) {
+Value value_of(const check::Predicate& predicate, float delta, float epsilon, Values values) {
     if (values == Values::boolean)
         return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
     const Value range = unseen_range(predicate, values);
@@ -67,7 +67,7 @@ etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool 
             -sign * adaptation.tighten, adaptation.grid};
 }
 
-Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
+Value value_of(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
     const Value range = unseen_range(predicate, Values::robustness);
     return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
                                    : etlmon::at_least(delta, epsilon, range);

@@ -16,11 +16,11 @@ etlmon::Value unseen_range(const check::Predicate& predicate, check::Values valu
 
 /// The value of a predicate whose distance or expression came to delta, with the threshold that it
 /// has at this step.
-etlmon::Value literal(const check::Predicate& predicate, float delta, float epsilon,
-                      check::Values values);
+etlmon::Value value_of(const check::Predicate& predicate, float delta, float epsilon,
+                       check::Values values);
 /// Its robustness, where the distance is known within bounds.
-etlmon::Value literal(const check::Predicate& predicate, const etlmon::Enclosed& delta,
-                      float epsilon);
+etlmon::Value value_of(const check::Predicate& predicate, const etlmon::Enclosed& delta,
+                       float epsilon);
 
 /// The threshold of an adaptive predicate after a positive frame of that distance.
 float observed(const check::Predicate& predicate, float epsilon, float distance);

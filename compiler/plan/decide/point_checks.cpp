@@ -1,4 +1,4 @@
-#include "plan/decide/points.hpp"
+#include "plan/decide/point_checks.hpp"
 
 #include <algorithm>
 

@@ -1,0 +1,45 @@
+#include "emit/spelling.hpp"
+
+namespace etlc::emit {
+
+const Spelling& spelling(check::Values values) {
+    static const Spelling kRobustness{
+        .value = "etlmon::Value",
+        .value_meaning = "a robustness; its ends differ where a sample is missing",
+        .key = "etlmon::Key",
+        .reading = "etlmon::Reading",
+        .verdict = "etlmon::Verdict",
+        .kept = "etlmon::Register",
+        .bytes = false,
+        .yes = "etlmon::kTrue",
+        .no = "etlmon::kFalse",
+        .top = "etlmon::kTop",
+        .bottom = "etlmon::kBottom",
+        .neither = "",
+        .predicates = "temporal/predicate",
+        .verdicts = "temporal/verdict",
+        .delays = "temporal/delay",
+        .windows = "temporal/window",
+    };
+    static const Spelling kTruth{
+        .value = "etlmon::Truth",
+        .value_meaning = "surely true, and perhaps true",
+        .key = "bool",
+        .reading = "etlmon::BasicReading<Value>",
+        .verdict = "etlmon::BooleanVerdict",
+        .kept = "Value",
+        .bytes = true,
+        .yes = "etlmon::kYes",
+        .no = "etlmon::kNo",
+        .top = "true",
+        .bottom = "false",
+        .neither = "etlmon::kPerhaps",
+        .predicates = "temporal/demand",
+        .verdicts = "temporal/boolean_verdict",
+        .delays = "temporal/boolean_window",
+        .windows = "temporal/boolean_window",
+    };
+    return values == check::Values::boolean ? kTruth : kRobustness;
+}
+
+}  // namespace etlc::emit
