@@ -36,6 +36,12 @@ inline bool is_heavy(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t 
     return metric == etlmon::MetricId::mahalanobis && dimension * rows > 1000;
 }
 
+/// Sets on which most time would go into input that looks at single elements. What size has to do
+/// with is as visible with less of it.
+inline bool is_large(std::uint32_t rows, std::uint32_t dimension) {
+    return rows * dimension > 4000;
+}
+
 /// Every aggregation; where it costs little, the first and the last too.
 inline std::vector<exact::Aggregate> aggregates(std::uint32_t rows, bool heavy = false) {
     using Id = etlmon::AggregationId;
