@@ -3,11 +3,10 @@
 #include <algorithm>
 #include <set>
 
+#include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/boolean_verdict.hpp"
-#include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
-#include "etlmon/temporal/window.hpp"
 #include "plan/program/members.hpp"
 #include "plan/program/target_bytes.hpp"
 #include "plan/stored.hpp"

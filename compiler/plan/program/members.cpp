@@ -2,9 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/delay.hpp"
-#include "etlmon/temporal/window.hpp"
+#include "etlmon/hosted/footprint.hpp"
 
 namespace etlc::plan {
 
