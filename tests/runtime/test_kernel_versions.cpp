@@ -57,7 +57,7 @@ class KernelVersions : public testing::TestWithParam<MetricId> {};
 
 TEST_P(KernelVersions, EveryAggregationAndSize) {
     for (const std::uint32_t dimension : kDimensions) {
-        for (const std::uint32_t rows : kRows) {
+        for (const std::uint32_t rows : rows_of(GetParam(), dimension)) {
             for (const Kind kind : kinds_of(GetParam(), rows, dimension)) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 21);
                 const exact::Judge judge(c, kFlushesDenormals);
