@@ -60,6 +60,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert("temporal/shift");
     if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
         headers.insert(words.windows);
+    if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
         if (!reading.count.empty()) headers.insert("temporal/pending");

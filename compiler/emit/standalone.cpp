@@ -11,7 +11,10 @@ namespace etlc::emit {
 namespace {
 
 constexpr std::string_view kInclude = "#include \"";
+constexpr std::string_view kLicense = "// SPDX-License-Identifier: MIT";
 constexpr std::string_view kOnce = "#pragma once";
+constexpr std::string_view kOpen = "namespace etlmon {\ninline namespace ETLMON_BUILD {\n";
+constexpr std::string_view kClose = "}  // namespace ETLMON_BUILD\n}  // namespace etlmon\n";
 
 /// "etlmon/temporal/window.hpp" of `#include "etlmon/temporal/window.hpp"`; empty for any other
 /// line.
@@ -19,6 +22,31 @@ std::string_view included(std::string_view line) {
     if (!line.starts_with(kInclude)) return {};
     line.remove_prefix(kInclude.size());
     return line.substr(0, line.find('"'));
+}
+
+/// The next line of a text, which is taken from it.
+std::string_view take_line(std::string_view& text) {
+    const std::size_t end = std::min(text.find('\n'), text.size());
+    const std::string_view line = text.substr(0, end);
+    text.remove_prefix(std::min(end + 1, text.size()));
+    return line;
+}
+
+/// Without blank lines at its ends, and without two in a row.
+std::string tidy(std::string_view text) {
+    std::string result;
+    bool apart = false;
+    while (!text.empty()) {
+        const std::string_view line = take_line(text);
+        if (line.empty()) {
+            apart = !result.empty();
+            continue;
+        }
+        if (apart) result += '\n';
+        apart = false;
+        result.append(line).push_back('\n');
+    }
+    return result;
 }
 
 /// ETLMON_PASTED_WINDOW_HPP
@@ -74,47 +102,114 @@ private:
     std::vector<bool> taken_;                ///< and whether its lines are pasted
 };
 
+/// A file whose first comment ends before what the file takes, gives and keeps true: that is for
+/// who changes it.
+std::string with_short_comment(std::string_view text) {
+    std::string result;
+    while (text.starts_with("//")) {
+        const std::string_view line = take_line(text);
+        const std::size_t contract =
+            std::min({line.find("Takes"), line.find("Gives"), line.find("Keeps true")});
+        if (contract > 3)
+            result.append(line.substr(0, line.find_last_not_of(' ', contract - 1) + 1));
+        if (contract > 3) result += '\n';
+        if (contract == line.npos) continue;
+        while (text.starts_with("//")) take_line(text);
+    }
+    return result + std::string(text);
+}
+
+/// What of a file stands in the namespace of the runtime, and the comment before it; nothing where
+/// something else stands outside.
+std::optional<std::string> only_in_namespace(const std::string& text) {
+    const std::size_t open = text.find(kOpen);
+    if (open == text.npos || !text.ends_with(kClose)) return std::nullopt;
+    for (std::size_t at = 0; at < open; at = text.find('\n', at) + 1)
+        if (text[at] != '/' && text[at] != '\n') return std::nullopt;
+    const std::size_t from = open + kOpen.size();
+    const std::string inner = text.substr(from, text.size() - kClose.size() - from);
+    if (inner.find(kOpen) != inner.npos) return std::nullopt;
+    return text.substr(0, open) + inner;
+}
+
+/// Between guards, since a program may include several such headers.
+std::string guarded(std::string_view name, const std::string& text) {
+    const std::string guard = guard_of(name);
+    return "\n// ---- " + std::string(name) + "\n#ifndef " + guard + "\n#define " + guard + "\n" +
+           text + "#endif  // " + guard + "\n";
+}
+
+std::string_view runtime_text(std::string_view name) {
+    const auto& files = runtime_files();
+    const auto found = std::find_if(files.begin(), files.end(),
+                                    [&](const RuntimeFile& f) { return f.name == name; });
+    assert(found != files.end());
+    return found->text;
+}
+
 class Pasting {
 public:
     explicit Pasting(bool portable) : portable_(portable) {}
 
-    std::string paste(std::string_view text) {
+    std::string paste(std::string_view header) {
+        const std::size_t begin = header.find(kOnce) + kOnce.size();
+        const std::string rest = tidy(text_of(header.substr(begin), true));
+        leave_namespace();
+        std::string result(header.substr(0, begin));
+        result += "\n\n";
+        for (const std::string& line : of_c_) result += line + "\n";
+        result.append("\n// The runtime of etlc, as far as it is needed here.\n").append(kLicense);
+        return result + "\n" + pasted_ + "\n" + rest;
+    }
+
+private:
+    /// A text without what it includes, which is pasted before it; but for files that are included
+    /// several times (.inc), or under a condition. `hoist`: C's headers too.
+    std::string text_of(std::string_view text, bool hoist) {
         std::string result;
         Conditions conditions;
+        int depth = 0;
         while (!text.empty()) {
-            const std::size_t end = std::min(text.find('\n'), text.size() - 1);
-            const std::string_view line = text.substr(0, end);
-            text.remove_prefix(end + 1);
+            const std::string_view line = take_line(text);
             if (portable_ && !conditions.keeps(line)) continue;
-            if (const std::string_view name = included(line); !name.empty())
-                result += file(name);
-            else
+            depth += line.starts_with("#if") ? 1 : line.starts_with("#endif") ? -1 : 0;
+            const std::string_view name = included(line);
+            if (name.ends_with(".inc"))
+                result += text_of(runtime_text(name), false);
+            else if (!name.empty() && depth == 0)
+                paste_file(name);
+            else if (!name.empty() && done_.insert(std::string(name)).second)
+                result += guarded(name, tidy(text_of(runtime_text(name), false)));
+            else if (hoist && depth == 0 && line.starts_with("#include <"))
+                of_c_.insert(std::string(line));
+            else if (name.empty() && line != kOnce && line != kLicense)
                 result.append(line).push_back('\n');
         }
         return result;
     }
 
-private:
-    /// A runtime file between guards, and before it those that it includes; nothing where it stands
-    /// already. What is included several times (.inc) is pasted each time.
-    std::string file(std::string_view name) {
-        const bool repeated = name.ends_with(".inc");
-        if (!repeated && !done_.insert(std::string(name)).second) return "";
-        const auto& files = runtime_files();
-        const auto found = std::find_if(files.begin(), files.end(),
-                                        [&](const RuntimeFile& f) { return f.name == name; });
-        assert(found != files.end());
-        std::string body = paste(found->text);
-        if (repeated) return body;
-        if (const std::size_t once = body.rfind(kOnce); once != std::string::npos)
-            body.erase(once, kOnce.size() + 1);
-        const std::string guard = guard_of(name);
-        return "\n// ---- " + std::string(name) + "\n#ifndef " + guard + "\n#define " + guard +
-               "\n" + body + "#endif  // " + guard + "\n";
+    /// A runtime file after those that it includes; nothing where it stands already. All that lies
+    /// in the namespace of the runtime shares one.
+    void paste_file(std::string_view name) {
+        if (!done_.insert(std::string(name)).second) return;
+        const std::string text = with_short_comment(tidy(text_of(runtime_text(name), true)));
+        const std::optional<std::string> inner = only_in_namespace(text);
+        if (!inner) leave_namespace();
+        if (inner && !in_namespace_) pasted_.append("\n").append(kOpen);
+        in_namespace_ = inner.has_value();
+        pasted_ += guarded(name, inner ? tidy(*inner) : text);
+    }
+
+    void leave_namespace() {
+        if (in_namespace_) pasted_.append("\n").append(kClose);
+        in_namespace_ = false;
     }
 
     bool portable_;
-    std::set<std::string> done_;
+    std::set<std::string> done_;  ///< files
+    std::set<std::string> of_c_;  ///< lines that include C's headers
+    std::string pasted_;
+    bool in_namespace_ = false;  ///< at the end of what was pasted
 };
 
 }  // namespace

@@ -4,6 +4,7 @@
 // them can stand, inside any can, and ANTLR caches its transitions for ASCII alone.
 #pragma once
 
+#include <string>
 #include <string_view>
 
 #include "antlr4-runtime.h"

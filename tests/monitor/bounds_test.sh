@@ -224,6 +224,5 @@ while read -r storage flags; do
 done <<'END'
 f32 -O1 -ffast-math
 f16 -O1
-i8 -O1
 i8 -O1 -ffast-math
 END

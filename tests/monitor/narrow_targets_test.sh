@@ -1,10 +1,12 @@
 #!/usr/bin/env bash
-# narrow_targets_test.sh ETLC CXX...: with --targets-as the verdicts are those of float32 targets in
-# the same build, on inputs that lie as close to the thresholds as float32 can say; lower and upper
-# enclose them; the generated class, of float32 targets too, and `etlc run` agree to the bit.
+# narrow_targets_test.sh ETLC CXX FLAGS...: with --targets-as the verdicts are those of float32
+# targets in the same build, on inputs that lie as close to the thresholds as float32 can say; lower
+# and upper enclose them; the generated class, of float32 targets too, and `etlc run` agree to the
+# bit. FLAGS: other builds, each an argument, in which the class is compared with the one of float32
+# targets.
 set -euo pipefail
-etlc=$1
-shift
+etlc=$1 compiler=$2
+shift 2
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
 box=$(mktemp -d)
@@ -190,11 +192,14 @@ for status in satisfied violated unknown; do
 done
 "$etlc" run narrow.etl --trace narrow.csv --values boolean -o boolean.csv
 grep -q 'z_direction = etlmon::direction_of' wide/narrow.hpp
-for compiler in "$@"; do
-  "$compiler" -std=c++17 -O2 -I "$runtime" -I wide source/main.cpp -o compiled
-  ./compiled <narrow.csv >compiled.csv
-  cmp f32.csv compiled.csv
-done
+"$compiler" -std=c++17 -O1 -I "$runtime" -I wide source/main.cpp -o compiled
+./compiled <narrow.csv >compiled.csv
+cmp f32.csv compiled.csv
+built() {  # FLAGS FOLDER: what the class in the folder answers in that build
+  "$compiler" -std=c++17 $1 -I "$runtime" -I "$2" source/main.cpp -o compiled
+  ./compiled <narrow.csv
+}
+for flags in "$@"; do built "$flags" wide >"wide/$flags.csv"; done
 for storage in f16 i8; do
   "$etlc" run narrow.etl --trace narrow.csv --targets-as $storage -o $storage.csv
   encloses f32.csv $storage.csv
@@ -203,19 +208,14 @@ for storage in f16 i8; do
   cmp boolean.csv $storage.boolean.csv
   "$etlc" narrow.etl --targets-as $storage -o narrow.hpp
   [[ $storage != i8 ]] || grep -q 'measure_scaled<etlmon::Angular' narrow.hpp
-  for compiler in "$@"; do
-    "$compiler" -std=c++17 -O2 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic \
-      -Werror -I "$runtime" -I . source/main.cpp -o compiled \
-      2>errors || { cat errors >&2; exit 1; }
-    ./compiled <narrow.csv >compiled.csv
-    cmp $storage.csv compiled.csv
-    for flags in "-O2 -ffast-math -DETLMON_NO_DISPATCH" "-Os -DETLMON_PORTABLE"; do
-      rounded=$([[ $flags != *-ffast-math* ]] || echo rounded)
-      for which in . wide; do
-        "$compiler" -std=c++17 $flags -I "$runtime" -I $which source/main.cpp -o compiled
-        ./compiled <narrow.csv >$which/compiled.csv
-      done
-      encloses wide/compiled.csv compiled.csv "$rounded"
-    done
+  "$compiler" -std=c++17 -O1 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic \
+    -Werror -I "$runtime" -I . source/main.cpp -o compiled \
+    2>errors || { cat errors >&2; exit 1; }
+  ./compiled <narrow.csv >compiled.csv
+  cmp $storage.csv compiled.csv
+  for flags in "$@"; do
+    rounded=$([[ $flags != *-ffast-math* ]] || echo rounded)
+    built "$flags" . >compiled.csv
+    encloses "wide/$flags.csv" compiled.csv "$rounded"
   done
 done

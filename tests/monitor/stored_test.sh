@@ -1,17 +1,18 @@
 #!/usr/bin/env bash
-# stored_test.sh ETLC CXX...: a monitor whose target sets lie in a file gives the
-# verdicts and telemetry of the same monitor with its sets spelled out, bit for bit:
-# every distance and aggregation, sets in every layout, robustness and truth values, the
-# runtime included and pasted in, under sanitizers.
+# stored_test.sh ETLC VALUES CXX FLAG...: a monitor whose target sets lie in a file gives the
+# verdicts and telemetry of the same monitor with its sets spelled out, bit for bit: every distance
+# and aggregation, sets in every layout, the runtime included and pasted in. VALUES: robustness, or
+# boolean, where a distance is measured on demand.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 runtime=$here/../../runtime/include
-etlc=$1; shift
+etlc=$1 values=$2 cxx=$3
+shift 3
 box=$(mktemp -d)
 trap 'rm -rf "$box"' EXIT
 cd "$box"
 
-"$1" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
+"$cxx" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
 ./arrays wide.npy 1400 384   # more than 64 KiB: read in one stream
 ./arrays middle.npy 300 33
 ./arrays narrow.npy 400 7
@@ -49,7 +50,7 @@ echo "sliding monitor none = F[0,2] !($(sed 's/^ //; s/ / \&\& /g' <<<"$predicat
 printf 'MONITOR(touched) MONITOR(every) MONITOR(none)\n#undef PREDICATE\n#undef MONITOR\n' \
   >>names.inc
 
-options=(--max-code 10000000 --inline-targets)
+options=(--values "$values" --max-code 10000000 --inline-targets)
 "$etlc" stored.etl -o inlined.hpp --namespace inlined "${options[@]}" 100000000
 "$etlc" stored.etl -o stored.hpp "${options[@]}" 0
 grep -q 'inline constexpr float' inlined.hpp
@@ -67,19 +68,8 @@ int main() {
 END
 flags=(-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror \
   -I. "-I$here/stored" "-I$runtime")
-for cxx in "$@"; do
-    "$cxx" "${flags[@]}" -O1 -c "$here/stored/inlined.cpp" -o inlined.o
-    "$cxx" "${flags[@]}" -O2 -DSEEDS=12 "$here/stored/main.cpp" inlined.o -o plain
-    ./plain stored.targets.bin
-    "$cxx" "${flags[@]}" -O1 -fsanitize=address,undefined -fno-sanitize-recover=all -DSEEDS=3 \
-      "$here/stored/main.cpp" inlined.o -o sanitized
-    ./sanitized stored.targets.bin
-    "$cxx" "${flags[@]}" -O1 -DETLMON_MAPPED_TARGETS pasted.cpp -o pasted
-    ./pasted
-done
-
-# Truth values, where a distance is measured on demand.
-"$etlc" stored.etl -o inlined.hpp --namespace inlined --values boolean "${options[@]}" 100000000
-"$etlc" stored.etl -o stored.hpp --values boolean "${options[@]}" 0
-"$1" "${flags[@]}" -O1 -DSEEDS=6 "$here/stored/main.cpp" "$here/stored/inlined.cpp" -o boolean
-./boolean stored.targets.bin
+"$cxx" "${flags[@]}" -O1 -c "$here/stored/inlined.cpp" -o inlined.o
+"$cxx" "${flags[@]}" "$@" "$here/stored/main.cpp" inlined.o -o compared
+./compared stored.targets.bin
+"$cxx" "${flags[@]}" -O1 -DETLMON_MAPPED_TARGETS pasted.cpp -o pasted
+./pasted

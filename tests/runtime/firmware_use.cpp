@@ -1,5 +1,5 @@
-// Everything of the distance side that generated code may call, instantiated once: what does its
-// object refer to?
+// Every distance, every aggregation and all else of the distance side that generated code may call:
+// what does its object refer to?
 #include "etlmon/distance/enclosed.hpp"
 #include "etlmon/distance/kernel.hpp"
 #include "etlmon/distance/widen.hpp"
@@ -22,12 +22,15 @@ const float kDiagonal[kD] = {1.0f};
 const float kFull[kD * kD] = {1.0f};
 
 template <class Metric>
-etlmon::Measured all(const float* z) {
+etlmon::Measured nearest(const float* z) {
+    return etlmon::measure<Metric, etlmon::Min, kK, kD>(z, kTargets);
+}
+
+etlmon::Measured aggregated(const float* z) {
     using namespace etlmon;
-    const Measured a = measure<Metric, Min, kK, kD>(z, kTargets),
-                   b = measure<Metric, Max, kK, kD>(z, kTargets);
-    const Measured c = measure<Metric, Mean, kK, kD>(z, kTargets),
-                   d = measure<Metric, Kth<3>, kK, kD>(z, kTargets);
+    const Measured a = nearest<L2>(z), b = measure<L2, Max, kK, kD>(z, kTargets);
+    const Measured c = measure<L2, Mean, kK, kD>(z, kTargets),
+                   d = measure<L2, Kth<3>, kK, kD>(z, kTargets);
     return {smaller(add(a.delta, b.delta), greater(c.delta, root(absolute(d.delta)))), a.nearest};
 }
 
@@ -50,15 +53,15 @@ void observe(float& threshold, const float& distance, bool truth, const etlmon::
 etlmon::Measured distances(const float* z, int which) {
     using namespace etlmon;
     switch (which) {
-        case 0: return all<L2>(z);
-        case 1: return all<L2Sq>(z);
-        case 2: return all<L1>(z);
-        case 3: return all<Linf>(z);
-        case 4: return all<Cosine>(z);
+        case 0: return aggregated(z);
+        case 1: return nearest<L2Sq>(z);
+        case 2: return nearest<L1>(z);
+        case 3: return nearest<Linf>(z);
+        case 4: return nearest<Cosine>(z);
         case 5: return measure<Mahalanobis, Min, kK, kD>(z, kTargets, kFull);
         case 6: return measure<MahalanobisDiagonal, Mean, kK, kD>(z, kTargets, kDiagonal);
 #if defined(WITH_ANGULAR)
-        case 7: return all<Angular>(z);
+        case 7: return nearest<Angular>(z);
 #endif
         default: return {negate(divide(multiply(z[0], z[1]), subtract(z[0], z[1]))), 0};
     }

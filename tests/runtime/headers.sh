@@ -18,21 +18,30 @@ gates=$(cd "$include" && grep -l 'include "etlmon/\(vectors/\|gnu\)' etlmon/*.hp
 [ "$gates" = 'etlmon/bits.hpp etlmon/views.hpp etlmon/distance/best.hpp ' ] ||
   fail "vectors/ or gnu.hpp is included by $gates"
 
-for compiler in "$@"; do
-  for header in $(cd "$include" && find etlmon -name '*.hpp'); do
-    printf '#include "%s"\n#include "%s"\n' "$header" "$header" > "$work/alone.cpp"
-    "$compiler" $harsh -O1 -I "$include" -c "$work/alone.cpp" -o "$work/alone.o" ||
-      fail "$compiler: $header does not stand alone"
-    case $header in etlmon/hosted/*) continue ;; esac
-    "$compiler" $harsh -O1 -ffreestanding -I "$include" -c "$work/alone.cpp" -o "$work/alone.o" ||
-      fail "$compiler: $header does not stand alone where there is no library"
-    own='"etlmon/[a-z_/]+\.(hpp|inc)"|<(stdint|stddef|float|string|math)\.h>|needs C\+\+17'
-    foreign=$(grep '^ *# *include' "$include/$header" | grep -v -E "$own") || true
-    [ -z "$foreign" ] || fail "$header includes $foreign"
-  done
+headers=$(cd "$include" && find etlmon -name '*.hpp' | sort)
+own='"etlmon/[a-z_/]+\.(hpp|inc)"|<(stdint|stddef|float|string|math)\.h>|needs C\+\+17'
+mkdir "$work/hosted" "$work/freestanding"
+for header in $headers; do
+  alone=$(echo "$header" | tr / _)
+  alone=hosted/${alone%.hpp}.cpp
+  printf '#include "%s"\n#include "%s"\n' "$header" "$header" > "$work/$alone"
+  case $header in etlmon/hosted/*) continue ;; esac
+  cp "$work/$alone" "$work/freestanding"
+  foreign=$(grep '^ *# *include' "$include/$header" | grep -v -E "$own") || true
+  [ -z "$foreign" ] || fail "$header includes $foreign"
+done
 
-  for flags in '-O0' '-Os' '-O2' '-O2 -ffreestanding' '-O3 -ffast-math' '-O2 -DETLMON_PORTABLE' \
-    '-O2 -DETLMON_NO_DISPATCH' '-O2 -DWITH_ANGULAR'; do
+for compiler in "$@"; do
+  # Nothing calls what they define, so there is no code that would have to be made.
+  "$compiler" $harsh -O1 -I "$include" -fsyntax-only "$work"/hosted/*.cpp ||
+    fail "$compiler: a header does not stand alone"
+  "$compiler" $harsh -O1 -ffreestanding -I "$include" -fsyntax-only "$work"/freestanding/*.cpp ||
+    fail "$compiler: a header does not stand alone where there is no library"
+
+  # Without optimisation, for size and for speed, as much as may be assumed; all versions of the
+  # kernels, one, and the one of firmware.
+  for flags in '-O0' '-Os' '-O2 -DWITH_ANGULAR' '-O2 -ffreestanding' '-O2 -ffast-math' \
+    '-Os -DETLMON_PORTABLE'; do
     "$compiler" $harsh $flags -I "$include" -c "$source/tests/runtime/firmware_use.cpp" \
       -o "$work/use.o" || { fail "$compiler $flags: does not compile"; continue; }
     allowed='sqrtf|memcpy|memset|_GLOBAL_OFFSET_TABLE_'

@@ -36,6 +36,24 @@ inline bool is_heavy(etlmon::MetricId metric, std::uint32_t rows, std::uint32_t 
     return metric == etlmon::MetricId::mahalanobis && dimension * rows > 1000;
 }
 
+/// The numbers of rows of a dimension. Each row costs D x D multiplications, and as many in the
+/// judge, where that is what the weights are: then few of the longest.
+inline std::vector<std::uint32_t> rows_of(etlmon::MetricId metric, std::uint32_t dimension) {
+    std::vector<std::uint32_t> all;
+    for (const std::uint32_t rows : kRows) {
+        const bool quadratic = metric == etlmon::MetricId::mahalanobis;
+        if (!quadratic || rows <= 2 || rows * dimension * dimension < 1'000'000)
+            all.push_back(rows);
+    }
+    return all;
+}
+
+/// Sets on which most time would go into input that looks at single elements. What size has to do
+/// with is as visible with less of it.
+inline bool is_large(std::uint32_t rows, std::uint32_t dimension) {
+    return rows * dimension > 4000;
+}
+
 /// Every aggregation; where it costs little, the first and the last too.
 inline std::vector<exact::Aggregate> aggregates(std::uint32_t rows, bool heavy = false) {
     using Id = etlmon::AggregationId;

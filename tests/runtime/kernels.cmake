@@ -21,29 +21,37 @@ if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
   return()  # the variants would repeat what the release builds run
 endif()
 
-# etlc_kernel_variant(NAME option...): the tests in kernel_sources under these options, as one test.
+# etlc_kernel_variant(NAME SOURCES file... OPTIONS option...): as one test.
 function(etlc_kernel_variant name)
-  add_executable(${name} ${kernel_sources})
+  cmake_parse_arguments(PARSE_ARGV 1 VARIANT "" "" "SOURCES;OPTIONS")
+  add_executable(${name} ${VARIANT_SOURCES})
   set_target_properties(${name} PROPERTIES CXX_STANDARD 17)
-  target_compile_options(${name} PRIVATE ${kernel_warnings} ${ARGN})
-  target_link_options(${name} PRIVATE ${ARGN})
+  target_compile_options(${name} PRIVATE ${kernel_warnings} ${VARIANT_OPTIONS})
+  target_link_options(${name} PRIVATE ${VARIANT_OPTIONS})
   target_link_libraries(${name} PRIVATE exact_distances GTest::gtest_main)
   add_test(NAME ${name} COMMAND ${name} --gtest_brief=1)
 endfunction()
-etlc_kernel_variant(test_kernels_fast_math -O2 -ffast-math -DETLMON_NO_DISPATCH)
+# What may be assumed of floats, with the vectors of the compiler's own.
+etlc_kernel_variant(test_kernels_fast_math
+  SOURCES ${kernel_sources} OPTIONS -O2 -ffast-math -DETLMON_NO_DISPATCH)
 if(CMAKE_CXX_COMPILER_ID MATCHES "Clang")
   return()
 endif()
-etlc_kernel_variant(test_kernels_native -O2 -march=native)
-etlc_kernel_variant(test_kernels_portable -O2 -DETLMON_PORTABLE)
-set(only_kernel_sources ${kernel_sources})
-list(APPEND kernel_sources ${narrow_sources} test_kernel_versions.cpp)
-etlc_kernel_variant(test_kernels_small -Os -DETLMON_PORTABLE)
-list(REMOVE_ITEM kernel_sources test_kernel_twins.cpp)
+# The one version of a unit that is compiled for this CPU. That versions for it give the bits of
+# one another is known from test_kernels.
+etlc_kernel_variant(test_kernels_native
+  SOURCES row_kernels_f32.cpp test_distances.cpp test_not_finite.cpp test_views.cpp
+  OPTIONS -O2 -march=native)
+# What firmware has: no vectors, no statement of one compiler's, and code made for size.
+etlc_kernel_variant(test_kernels_small
+  SOURCES ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp
+  OPTIONS -Os -DETLMON_PORTABLE)
 # The baseline alone: in the others, loads past the end of a row meet a page without access
-# (guarded.hpp).
-etlc_kernel_variant(test_kernels_sanitized ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
-set(kernel_sources ${only_kernel_sources})
+# (guarded.hpp). Twins measure the same rows.
+set(sanitized_sources ${kernel_sources} ${narrow_sources} test_kernel_versions.cpp)
+list(REMOVE_ITEM sanitized_sources test_kernel_twins.cpp)
+etlc_kernel_variant(test_kernels_sanitized
+  SOURCES ${sanitized_sources} OPTIONS ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
 
 # The other compiler at its boldest; and every header alone under both.
 find_program(ETLC_CLANG clang++)

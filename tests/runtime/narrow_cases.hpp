@@ -143,7 +143,7 @@ void expect_aggregate(const Narrow& narrow, const exact::Judge& judge, exact::Ag
 template <class G>
 void expect_metric(Storage storage, MetricId metric) {
     for (const std::uint32_t dimension : kDimensions) {
-        for (const std::uint32_t rows : kRows) {
+        for (const std::uint32_t rows : rows_of(metric, dimension)) {
             for (const Kind kind : kinds_of(metric, rows, dimension)) {
                 const Narrow narrow = make_narrow(storage, metric, rows, dimension, kind);
                 const exact::Judge judge(narrow.wide, kFlushesDenormals);

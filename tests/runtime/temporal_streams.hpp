@@ -9,7 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/widening.hpp"
 #include "etlmon/temporal/window.hpp"
 
 namespace temporal {

@@ -11,14 +11,17 @@ using etlmon::MetricId;
 
 class Distances : public testing::TestWithParam<MetricId> {};
 
+std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
+    if (is_heavy(metric, rows, dimension)) return {Kind::ordinary, Kind::touching};
+    if (is_large(rows, dimension)) return {Kind::ordinary, Kind::equal, Kind::huge};
+    return kKinds;
+}
+
 TEST_P(Distances, WithinTheirBounds) {
     for (const std::uint32_t dimension : kDimensions) {
-        for (const std::uint32_t rows : kRows) {
-            const bool heavy =
-                is_heavy(GetParam(), rows, dimension);  // test_kernel_versions.cpp has all of them
-            if (heavy && rows > 5) continue;
-            for (const Kind kind :
-                 heavy ? std::vector<Kind>{Kind::ordinary, Kind::touching} : kKinds) {
+        for (const std::uint32_t rows : rows_of(GetParam(), dimension)) {
+            const bool heavy = is_heavy(GetParam(), rows, dimension);
+            for (const Kind kind : kinds_of(GetParam(), rows, dimension)) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 1);
                 const exact::Judge judge(c, kFlushesDenormals);
                 for (const exact::Aggregate a :

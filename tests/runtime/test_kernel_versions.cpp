@@ -49,7 +49,7 @@ void expect_row_versions(const exact::Case& c, const exact::Judge& judge, const 
 
 std::vector<Kind> kinds_of(MetricId metric, std::uint32_t rows, std::uint32_t dimension) {
     if (is_heavy(metric, rows, dimension)) return {Kind::ordinary};
-    if (rows == 64) return {Kind::ordinary, Kind::equal};
+    if (rows == 64 || is_large(rows, dimension)) return {Kind::ordinary, Kind::equal};
     return {Kind::ordinary, Kind::near_target, Kind::equal, Kind::mixed, Kind::huge};
 }
 
@@ -57,7 +57,7 @@ class KernelVersions : public testing::TestWithParam<MetricId> {};
 
 TEST_P(KernelVersions, EveryAggregationAndSize) {
     for (const std::uint32_t dimension : kDimensions) {
-        for (const std::uint32_t rows : kRows) {
+        for (const std::uint32_t rows : rows_of(GetParam(), dimension)) {
             for (const Kind kind : kinds_of(GetParam(), rows, dimension)) {
                 const exact::Case c = make(GetParam(), rows, dimension, kind, 21);
                 const exact::Judge judge(c, kFlushesDenormals);

@@ -36,7 +36,7 @@ class NotFinite : public testing::TestWithParam<MetricId> {};
 TEST_P(NotFinite, NoDistanceToRows) {
     std::mt19937 random(31);
     for (const std::uint32_t dimension : kDimensions) {
-        for (const std::uint32_t rows : kRows) {
+        for (const std::uint32_t rows : rows_of(GetParam(), dimension)) {
             const exact::Case finite = make(GetParam(), rows, dimension, Kind::ordinary, 31);
             std::vector<float> prepared = finite.targets;
             etlmon::prepare(GetParam(), prepared.data(), rows, dimension);

@@ -1,9 +1,11 @@
-// Truth values: their algebra, the comparisons that make them, the answers made of them, and lazy
-// evaluation, over all combinations.
+// Truth values: their algebra, the comparisons that make them, the answers made of them, lazy
+// evaluation, over all combinations; and windows over them, on every short stream.
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <utility>
 
 #include "etlmon/temporal/boolean_verdict.hpp"
 #include "etlmon/temporal/boolean_window.hpp"
@@ -99,6 +101,79 @@ TEST(TemporalTruth, LazyValuesAreAskedWhereTheyDecide) {
                 EXPECT_EQ(asked[0], 1);
                 EXPECT_LE(asked[1], 1);
             }
+}
+
+/// Every stream of `length` pairs of these values through a window over the last N.
+template <class Case, uint32_t N>
+void expect_every_stream(const std::vector<Truth>& values, size_t length) {
+    temporal::Streams<Truth> streams{std::vector<Truth>(length), std::vector<Truth>(length)};
+    std::vector<size_t> digits(2 * length, 0);
+    etlmon::Window<typename Case::Monoid, N> window;
+    for (bool more = true; more;) {
+        for (size_t i = 0; i < length; ++i) {
+            streams.g[i] = values[digits[i]];
+            streams.f[i] = values[digits[length + i]];
+        }
+        window.reset();
+        for (size_t i = 0; i < length; ++i) {
+            const Truth value = Case::result(window.push(Case::element(streams, i)));
+            const size_t first = i + 1 < N ? 0 : i + 1 - N;
+            ASSERT_TRUE(same(value, Case::defined(streams, first, i)))
+                << Case::kName << ", N " << N << ", step " << i;
+        }
+        more = false;
+        for (size_t& digit : digits) {
+            if (++digit < values.size()) {
+                more = true;
+                break;
+            }
+            digit = 0;
+        }
+    }
+}
+
+template <class Case, uint32_t... N>
+void expect_every_stream(std::integer_sequence<uint32_t, N...>) {
+    const std::vector<Truth> all(kAll, kAll + 3);
+    (expect_every_stream<Case, N + 1>(all, 5), ...);
+    (expect_every_stream<Case, N + 1>({kNo, kYes}, 8), ...);
+}
+
+TEST(TemporalTruth, WindowsOnEveryStream) {
+    constexpr std::make_integer_sequence<uint32_t, 7> kLengths;
+    expect_every_stream<temporal::SinceCase<Truth>>(kLengths);
+    expect_every_stream<temporal::UntilCase<Truth>>(kLengths);
+    expect_every_stream<temporal::ReleaseCase<Truth>>(kLengths);
+}
+
+/// Over words of bits, and long enough to come around several times.
+template <class Case, uint32_t N>
+void expect_long_streams(unsigned rarity) {
+    const auto window = std::make_unique<etlmon::Window<typename Case::Monoid, N>>();
+    window->reset();
+    std::mt19937 random(N + rarity);
+    temporal::Streams<Truth> streams;
+    for (size_t i = 0; i < 6 * N + 50; ++i) {
+        // Runs in which f holds and g does not, of about that length.
+        const bool decides = random() % rarity == 0;
+        streams.g.push_back(decides ? kAll[random() % 3] : kNo);
+        streams.f.push_back(decides ? kAll[random() % 3] : kYes);
+        const Truth value = Case::result(window->push(Case::element(streams, i)));
+        const size_t first = i + 1 < N ? 0 : i + 1 - N;
+        ASSERT_TRUE(same(value, Case::defined(streams, first, i)))
+            << Case::kName << ", N " << N << ", step " << i << ", one in " << rarity;
+    }
+}
+
+TEST(TemporalTruth, LongWindows) {
+    for (const unsigned rarity : {1u, 5u, 31u, 64u, 200u, 1000u}) {
+        expect_long_streams<temporal::UntilCase<Truth>, 31>(rarity);
+        expect_long_streams<temporal::UntilCase<Truth>, 32>(rarity);
+        expect_long_streams<temporal::UntilCase<Truth>, 33>(rarity);
+        expect_long_streams<temporal::UntilCase<Truth>, 64>(rarity);
+        expect_long_streams<temporal::ReleaseCase<Truth>, 200>(rarity);
+        expect_long_streams<temporal::UntilCase<Truth>, 1000>(rarity);
+    }
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "etlmon/temporal/window.hpp"
+#include "etlmon/hosted/footprint.hpp"
 #include "plan/program/target_bytes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"

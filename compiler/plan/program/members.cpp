@@ -1,6 +1,6 @@
 #include "plan/program/members.hpp"
 
-#include "etlmon/temporal/delay.hpp"
+#include "etlmon/hosted/footprint.hpp"
 #include "plan/program/value_type.hpp"
 
 namespace etlc::plan {

@@ -1,11 +1,9 @@
 #include "plan/program/value_type.hpp"
 
+#include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/boolean_verdict.hpp"
-#include "etlmon/temporal/boolean_window.hpp"
-#include "etlmon/temporal/delay.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
-#include "etlmon/temporal/window.hpp"
 
 namespace etlc::plan {
 

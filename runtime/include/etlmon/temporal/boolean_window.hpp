@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: MIT
 // Windows over truth values.
-// Takes: one truth value a step, or the two sides of a since. Gives: what Window gives for any
-// value type. Keeps true: the same results as the general window (tested against it), in two
-// counters whatever N: of a yes and no only the age of the last one that matters is remembered.
+// Takes: one truth value a step, or the two sides of a since or an until. Gives: what Window gives
+// for any value type. Keeps true: the same results as the general window, in constant time a step.
+// Of a yes and no only the age of the last one that matters is remembered, in two counters whatever
+// N; of an until, which is asked at its oldest position, a byte a position.
 #pragma once
 
 #include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/monoid.hpp"
 #include "etlmon/temporal/truth.hpp"
-#include "etlmon/temporal/window.hpp"
 
 namespace etlmon {
 inline namespace ETLMON_BUILD {
@@ -101,19 +102,95 @@ class Window<Trigger<Truth>, N> {
   Window<Since<Truth>, N> failed_;
 };
 
-namespace detail {
-constexpr uint32_t kAgeBytes = 2 * sizeof(uint32_t);
-}
-template <>
-struct WindowBytes<Greatest<Truth>> {
-  static constexpr uint32_t of(uint32_t) noexcept { return detail::kAgeBytes; }
+/// f U g at the oldest of the last N. The first position from there on where g holds, or where
+/// neither f nor g does, decides; before it f holds and g does not. Each decision is about a run of
+/// positions up to its own, so it is enough to keep where the answer turns. The ends of a truth are
+/// bits here, 1 the low one and 2 the high one; and nothing branches on them: signs of distances
+/// are what no processor predicts.
+template <uint32_t N>
+class Window<Until<Truth>, N> {
+  static_assert(N >= 1 && N <= 0x7fffffffu, "a window holds at least this step");
+
+ public:
+  using Element = typename Window<Since<Truth>, N>::Element;
+
+  void reset() noexcept {
+    cursor_ = 0;
+    open_ = N - 1;
+    more_open_ = 0;
+    decided_ = answer_ = 0;
+    for (uint8_t& turns : turns_) turns = 0;
+  }
+
+  ETLMON_STEP Element push(Span<Truth> now) noexcept {
+    const uint32_t slot = cursor_, g = ends(now.value);
+    const uint32_t decides = g | (ends(now.guard) ^ 3u), turns = decides & (g ^ decided_);
+    decided_ = static_cast<uint8_t>(decided_ ^ turns);
+    turns_[slot] = 0;
+    cursor_ = slot + 1 == N ? 0 : slot + 1;
+
+    uint32_t leaving = 0;  // ends that nothing has decided about the oldest position
+    if (more_open_ == 0 && (decides == 0 || decides == 3)) {
+      turns_[first_open(slot, open_ + 1)] = static_cast<uint8_t>(turns);
+      leaving = close(open_, decides) * 3;
+    } else {
+      leaving = push_apart(slot, decides, turns);
+    }
+    answer_ = static_cast<uint8_t>(answer_ ^ turns_[cursor_]);
+    const uint32_t answer = answer_ & ~leaving;
+    return {{(answer & 1u) != 0, (answer & 2u) != 0}};
+  }
+
+ private:
+  static uint32_t ends(Truth t) noexcept { return (t.low ? 1u : 0u) | (t.high ? 2u : 0u); }
+
+  /// The slot of the first of `open` positions, of which the last is in `slot`.
+  static uint32_t first_open(uint32_t slot, uint32_t open) noexcept {
+    const uint32_t first = slot + 1 - open;
+    return first + (N & (0u - (first >> 31)));
+  }
+
+  /// One more is open, or none any more; 1 where the oldest leaves the window open.
+  static uint32_t close(uint32_t& open, uint32_t decides) noexcept {
+    const uint32_t left = (open + 1) & ((decides & 1u) - 1u), leaves = left == N ? 1u : 0u;
+    open = left - leaves;
+    return leaves;
+  }
+
+  /// Where a missing sample is in the window, the ends may be decided at different positions.
+  ETLMON_COLD uint32_t push_apart(uint32_t slot, uint32_t decides, uint32_t turns) noexcept {
+    uint32_t high = open_ + more_open_;
+    uint8_t& of_low = turns_[first_open(slot, open_ + 1)];
+    of_low = static_cast<uint8_t>(of_low | (turns & 1u));
+    uint8_t& of_high = turns_[first_open(slot, high + 1)];
+    of_high = static_cast<uint8_t>(of_high | (turns & 2u));
+    const uint32_t leaving = close(open_, decides) | close(high, decides >> 1) << 1;
+    more_open_ = high - open_;
+    return leaving;
+  }
+
+  uint32_t cursor_;     ///< slot of the next position; it is the oldest one's
+  uint32_t more_open_;  ///< so many more are open for the high end, modulo 2^32
+  uint8_t turns_[N];    ///< ends whose answer is not that of the slot before
+  uint8_t decided_;     ///< the last decisions
+  uint8_t answer_;      ///< at the oldest position; while that is open, at the one before
+  uint32_t open_;       ///< positions, the newest ones, about which nothing has decided the low end
 };
-template <>
-struct WindowBytes<Least<Truth>> : WindowBytes<Greatest<Truth>> {};
-template <>
-struct WindowBytes<Since<Truth>> : WindowBytes<Greatest<Truth>> {};
-template <>
-struct WindowBytes<Trigger<Truth>> : WindowBytes<Greatest<Truth>> {};
+
+/// The dual of Until.
+template <uint32_t N>
+class Window<Release<Truth>, N> {
+ public:
+  using Element = typename Window<Since<Truth>, N>::Element;
+
+  void reset() noexcept { failed_.reset(); }
+  Element push(Span<Truth> now) noexcept {
+    return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
+  }
+
+ private:
+  Window<Until<Truth>, N> failed_;
+};
 
 /// A delay of truth values, sixteen to a word.
 template <uint32_t N>
@@ -141,11 +218,6 @@ class Delay<Truth, N> {
   uint32_t cursor_;
   uint32_t pairs_[(N + 15) / 16];  ///< low in the even bits, high in the odd ones
 };
-
-template <>
-constexpr uint32_t delay_bytes<Truth>(uint32_t n) noexcept {
-  return 4 + 4 * ((n + 15) / 16);
-}
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -46,14 +46,5 @@ class Delay {
   V values_[N];
 };
 
-/// Bytes of a cursor and the values that follow it, up to the next cursor.
-constexpr uint32_t storage_bytes(uint32_t values) noexcept { return (4 + values + 3) / 4 * 4; }
-
-/// sizeof(Delay<V, n>).
-template <class V>
-constexpr uint32_t delay_bytes(uint32_t n) noexcept {
-  return storage_bytes(n * static_cast<uint32_t>(sizeof(V)));
-}
-
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

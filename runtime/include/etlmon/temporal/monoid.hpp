@@ -19,6 +19,10 @@
 namespace etlmon {
 inline namespace ETLMON_BUILD {
 
+/// The aggregate of the last N elements: window.hpp, and boolean_window.hpp for truth values.
+template <class Monoid, uint32_t N>
+class Window;
+
 /// Greatest value of the segment: O over the last N, F over the next N.
 template <class V>
 struct Greatest {

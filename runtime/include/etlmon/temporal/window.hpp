@@ -17,7 +17,6 @@
 
 #include <stdint.h>
 
-#include "etlmon/temporal/delay.hpp"
 #include "etlmon/temporal/monoid.hpp"
 
 namespace etlmon {
@@ -25,10 +24,6 @@ inline namespace ETLMON_BUILD {
 
 /// Elements of storage that a window over the last n >= 1 needs: two totals, two blocks.
 constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{1}) + 2; }
-
-/// The most combinations that any step of a window over the last n >= 1 performs. Long runs reach
-/// it.
-constexpr uint32_t window_operations(uint32_t n) noexcept { return n == 1 ? 0 : n < 4 ? n : 4; }
 
 /// Empties a window: storage of window_elements(n).
 template <class Monoid>
@@ -200,52 +195,6 @@ class Window<Operator<Value>, N> {
   EndElement lows_[window_elements(N)];
   EndElement highs_[window_elements(N)];  ///< written before they are read
 };
-
-/// From the aggregate of the last M to that of the last N of one stream, M < N <= 2 M: one
-/// combination and a delay by N - M instead of a second window, where several windows watch one
-/// signal. Only for operators whose segments may overlap.
-template <class Monoid, uint32_t M, uint32_t N>
-class Widening {
-  static_assert(M < N && N - M <= M, "the two shorter windows must meet");
-  static_assert(Monoid::kMayOverlap, "an element that both windows hold would count twice");
-
- public:
-  using Element = typename Monoid::Element;
-
-  /// Forgets all elements; time proportional to N - M.
-  void reset() noexcept { past_.reset(Monoid::identity()); }
-
-  /// Takes this step's aggregate of the last M, gives that of the last N.
-  ETLMON_STEP Element push(Element aggregate) noexcept {
-    return Monoid::combine(past_.push(aggregate), aggregate);
-  }
-
- private:
-  Delay<Element, N - M> past_;
-};
-
-template <class Monoid>
-struct WindowBytes {
-  static constexpr uint32_t of(uint32_t n) noexcept {
-    return storage_bytes(window_elements(n) *
-                         static_cast<uint32_t>(sizeof(typename Monoid::Element)));
-  }
-};
-
-template <template <class> class Operator>
-struct WindowBytes<Operator<Value>> {
-  static constexpr uint32_t of(uint32_t n) noexcept {
-    using Element = typename Operator<Key>::Element;
-    return storage_bytes(2 * window_elements(n) * static_cast<uint32_t>(sizeof(Element))) +
-           static_cast<uint32_t>(sizeof(Parting));
-  }
-};
-
-/// sizeof(Window<Monoid, n>).
-template <class Monoid>
-constexpr uint32_t window_bytes(uint32_t n) noexcept {
-  return WindowBytes<Monoid>::of(n);
-}
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: MIT
+// What windows and delays take: bytes, and operations a step.
+// Takes: a length known at run time. Gives: sizeof(Window<Monoid, n>), sizeof(Delay<V, n>), for who
+// plans a monitor. Keeps true: the same on every target, as the classes have no padding that
+// depends on one.
+#pragma once
+
+#include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/window.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// The most combinations that any step of a window over the last n >= 1 performs. Long runs reach
+/// it.
+constexpr uint32_t window_operations(uint32_t n) noexcept { return n == 1 ? 0 : n < 4 ? n : 4; }
+
+/// Bytes of a cursor and the values that follow it, up to the next cursor.
+constexpr uint32_t storage_bytes(uint32_t values) noexcept { return (4 + values + 3) / 4 * 4; }
+
+/// sizeof(Delay<V, n>).
+template <class V>
+constexpr uint32_t delay_bytes(uint32_t n) noexcept {
+  return storage_bytes(n * static_cast<uint32_t>(sizeof(V)));
+}
+
+template <>
+constexpr uint32_t delay_bytes<Truth>(uint32_t n) noexcept {
+  return 4 + 4 * ((n + 15) / 16);
+}
+
+template <class Monoid>
+struct WindowBytes {
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    return storage_bytes(window_elements(n) *
+                         static_cast<uint32_t>(sizeof(typename Monoid::Element)));
+  }
+};
+
+template <template <class> class Operator>
+struct WindowBytes<Operator<Value>> {
+  static constexpr uint32_t of(uint32_t n) noexcept {
+    using Element = typename Operator<Key>::Element;
+    return storage_bytes(2 * window_elements(n) * static_cast<uint32_t>(sizeof(Element))) +
+           static_cast<uint32_t>(sizeof(Parting));
+  }
+};
+
+namespace detail {
+constexpr uint32_t kAgeBytes = 2 * sizeof(uint32_t);
+}
+template <>
+struct WindowBytes<Greatest<Truth>> {
+  static constexpr uint32_t of(uint32_t) noexcept { return detail::kAgeBytes; }
+};
+template <>
+struct WindowBytes<Least<Truth>> : WindowBytes<Greatest<Truth>> {};
+template <>
+struct WindowBytes<Since<Truth>> : WindowBytes<Greatest<Truth>> {};
+template <>
+struct WindowBytes<Trigger<Truth>> : WindowBytes<Greatest<Truth>> {};
+template <>
+struct WindowBytes<Until<Truth>> {
+  /// Three counts, and a byte a position and for what was decided and answered last.
+  static constexpr uint32_t of(uint32_t n) noexcept { return 12 + (n + 2 + 3) / 4 * 4; }
+};
+template <>
+struct WindowBytes<Release<Truth>> : WindowBytes<Until<Truth>> {};
+
+/// sizeof(Window<Monoid, n>).
+template <class Monoid>
+constexpr uint32_t window_bytes(uint32_t n) noexcept {
+  return WindowBytes<Monoid>::of(n);
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
