@@ -108,8 +108,8 @@ aggregation
     ;
 
 metric
-    : op=(L2 | L2SQ | L1 | LINF | COSINE | ANGULAR)     # PlainMetric
-    | MAHALANOBIS LPAREN weights RPAREN                 # WeightedMetric
+    : DISTANCE                              # PlainMetric
+    | MAHALANOBIS LPAREN weights RPAREN     # WeightedMetric
     ;
 
 weights
@@ -193,6 +193,6 @@ name
     | IN | HOLD | SCALE
     | F32 | F16 | I8 | BOOL
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
-    | L2 | L2SQ | L1 | LINF | COSINE | ANGULAR | MAHALANOBIS
+    | DISTANCE | MAHALANOBIS
     | MIN | MAX | MEAN | KTH | ABS | SQRT
     ;
