@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "parse/build.hpp"
 #include "parse/parse.hpp"
@@ -32,8 +33,11 @@ Kind kind_of(const Token& op) {
         case Grammar::PREVIOUS: return Kind::previous;
         case Grammar::ONCE: return Kind::once;
         case Grammar::HISTORICALLY: return Kind::historically;
-        default: return Kind::since;
+        case Grammar::SINCE: return Kind::since;
+        default: break;
     }
+    assert(false);  // the grammar calls no other token an operator
+    return Kind::since;
 }
 
 const Token& symbol(antlr4::tree::ParseTree* child) {
