@@ -76,12 +76,7 @@ SECONDS      : 's' ;
 
 // ---- contextual: distances, aggregations, functions; `min` is a unit as well
 
-L2          : 'l2' ;
-L2SQ        : 'l2sq' ;
-L1          : 'l1' ;
-LINF        : 'linf' ;
-COSINE      : 'cosine' ;
-ANGULAR     : 'angular' ;
+DISTANCE    : 'l2' | 'l2sq' | 'l1' | 'linf' | 'cosine' | 'angular' ;
 MAHALANOBIS : 'mahalanobis' ;
 MIN         : 'min' ;
 MAX         : 'max' ;

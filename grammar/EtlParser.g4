@@ -117,8 +117,8 @@ aggregation
     ;
 
 metric
-    : op=(L2 | L2SQ | L1 | LINF | COSINE | ANGULAR)     # PlainMetric
-    | MAHALANOBIS LPAREN weights RPAREN                 # WeightedMetric
+    : DISTANCE                              # PlainMetric
+    | MAHALANOBIS LPAREN weights RPAREN     # WeightedMetric
     ;
 
 weights
@@ -204,6 +204,6 @@ name
     | RISE | FALL | HELD
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
-    | L2 | L2SQ | L1 | LINF | COSINE | ANGULAR | MAHALANOBIS
+    | DISTANCE | MAHALANOBIS
     | MIN | MAX | MEAN | KTH | ABS | SQRT
     ;

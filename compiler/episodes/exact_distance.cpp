@@ -56,8 +56,19 @@ double quadratic_form(const check::Distance& distance, const std::vector<double>
 double to_row(const check::Distance& distance, const std::vector<double>& z, double z_length,
               const float* g) {
     double sum = 0;
+    double squares = 0;
     double greatest = 0;
+    for (std::size_t i = 0; i < z.size(); ++i) {
+        const double difference = std::abs(z[i] - g[i]);
+        sum += difference;
+        squares += difference * difference;
+        greatest = std::max(greatest, difference);
+    }
     switch (distance.metric) {
+        case Metric::l1: return sum;
+        case Metric::l2: return std::sqrt(squares);
+        case Metric::l2sq: return squares;
+        case Metric::linf: return greatest;
         case Metric::cosine:
             return std::min(2.0, directions(z, z_length, g).apart / 2);  // 1 - u.v = |u - v|^2 / 2
         case Metric::angular: {
@@ -65,16 +76,8 @@ double to_row(const check::Distance& distance, const std::vector<double>& z, dou
             return 2 * std::atan2(std::sqrt(d.apart), std::sqrt(d.along));
         }
         case Metric::mahalanobis: return std::sqrt(quadratic_form(distance, z, g));
-        default: break;
     }
-    const bool squares = distance.metric == Metric::l2 || distance.metric == Metric::l2sq;
-    for (std::size_t i = 0; i < z.size(); ++i) {
-        const double difference = std::abs(z[i] - g[i]);
-        sum += squares ? difference * difference : difference;
-        greatest = std::max(greatest, difference);
-    }
-    if (distance.metric == Metric::linf) return greatest;
-    return distance.metric == Metric::l2 ? std::sqrt(sum) : sum;
+    return std::nan("");
 }
 
 }  // namespace
@@ -95,9 +98,8 @@ double aggregate(const check::Distance& distance, std::vector<double> rows) {
 std::optional<double> exact_distance(const check::Model& model, const check::Distance& distance,
                                      const std::vector<double>& point) {
     const check::Target& target = model.targets[distance.target];
-    const bool of_directions =
-        distance.metric == Metric::cosine || distance.metric == Metric::angular;
-    const double z_length = of_directions ? length(point.data(), point.size()) : 1;
+    const double z_length =
+        check::is_of_directions(distance.metric) ? length(point.data(), point.size()) : 1;
     if (z_length == 0) return std::nullopt;
     std::vector<double> rows;
     for (std::size_t k = 0; k < target.rows; ++k)

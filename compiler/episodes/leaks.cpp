@@ -10,7 +10,6 @@ namespace {
 using check::Distance;
 using check::Input;
 using check::InputType;
-using check::Metric;
 
 /// Covers what is rounded here, and what normalising an embedding in float32 rounds.
 constexpr double kFourRoundings = 4 * 0x1p-24;
@@ -85,8 +84,7 @@ void Leaks::watch(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
     const check::Target& target = model_.targets[distance.target];
     Watched watched{predicate, index, false, {}, {}};
-    watched.by_direction = target.dimension > 1 && (distance.metric == Metric::cosine ||
-                                                    distance.metric == Metric::angular);
+    watched.by_direction = target.dimension > 1 && check::is_of_directions(distance.metric);
     const bool known = std::any_of(watched_.begin(), watched_.end(), [&](const Watched& other) {
         const Distance& of = model_.distances[other.distance];
         return of.point == distance.point && of.target == distance.target &&

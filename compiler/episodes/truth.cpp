@@ -118,8 +118,14 @@ Label TruthEvaluator::value(Index index) {
         case historically:
             return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
         case since: return in_the_past(formula, memories_[index], at(0), at(1));
-        default: return Label::unknown;  // no future operator stands in a truth
+        case next:
+        case eventually:
+        case always:
+        case until:
+        case weak_until:
+        case release: break;  // no future operator stands in a truth
     }
+    return Label::unknown;
 }
 
 /// "f S[a,b] g: max over j in [max(0, k-b), k-a] of min(rho(g, j), min of rho(f, m) over m in (j,

@@ -42,7 +42,7 @@ const std::vector<Group>& groups() {
         {{EtlParser::NUMBER, EtlParser::INF}, "a number or inf", false},
         {{EtlParser::LESS_EQUAL, EtlParser::GREATER}, "a comparison (<=, <, >= or >)", false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
-        {{EtlParser::L2, EtlParser::MAHALANOBIS},
+        {{EtlParser::DISTANCE, EtlParser::MAHALANOBIS},
          fmt::format("a distance ({})", distances_in_words(" or ")),
          true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},

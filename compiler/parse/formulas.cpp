@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "parse/build.hpp"
 #include "parse/parse.hpp"
@@ -35,8 +36,11 @@ Kind kind_of(const Token& op) {
         case Grammar::RISE: return Kind::rise;
         case Grammar::FALL: return Kind::fall;
         case Grammar::HELD: return Kind::held;
-        default: return Kind::since;
+        case Grammar::SINCE: return Kind::since;
+        default: break;
     }
+    assert(false);  // the grammar calls no other token an operator
+    return Kind::since;
 }
 
 const Token& symbol(antlr4::tree::ParseTree* child) {

@@ -40,33 +40,39 @@ bool full_weights(const check::Distance& distance) {
     return distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
 }
 
-/// Of |e_0|, |e_1|, ...: the norm in which a row's move changes its distance.
+/// Of |e_0|, |e_1|, ...: the norm in which a row's move changes its distance, as
+/// etlmon::detail::change() takes it.
 class Norm {
 public:
     explicit Norm(const check::Distance& distance) : distance_(distance) {}
 
     void add(double e, std::size_t i) {
-        using enum check::Metric;
-        if (distance_.metric == l1)
-            sum_ += std::abs(e);
-        else if (distance_.metric == linf)
-            sum_ = std::max(sum_, std::abs(e));
-        else
-            sum_ +=
-                e * e *
-                (distance_.metric == mahalanobis ? static_cast<double>(distance_.weights[i]) : 1.0);
+        sum_ += std::abs(e);
+        squares_ += e * e * (weighted() ? static_cast<double>(distance_.weights[i]) : 1.0);
+        greatest_ = std::max(greatest_, std::abs(e));
     }
     double value() const {
         constexpr double kSlack =
             1 + 1e-9;  // of the sums here, in double, over up to 2^20 elements
-        const bool plain =
-            distance_.metric == check::Metric::l1 || distance_.metric == check::Metric::linf;
-        return (plain ? sum_ : std::sqrt(sum_)) * kSlack;
+        switch (distance_.metric) {
+            case check::Metric::l1: return sum_ * kSlack;
+            case check::Metric::linf: return greatest_ * kSlack;
+            case check::Metric::l2:
+            case check::Metric::l2sq:
+            case check::Metric::cosine:
+            case check::Metric::angular:
+            case check::Metric::mahalanobis: return std::sqrt(squares_) * kSlack;
+        }
+        return std::numeric_limits<double>::infinity();
     }
 
 private:
+    bool weighted() const { return distance_.metric == check::Metric::mahalanobis; }
+
     const check::Distance& distance_;
     double sum_ = 0;
+    double squares_ = 0;
+    double greatest_ = 0;
 };
 
 /// Fills the rows of one set.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cassert>
 
 #include "check/predicates/predicates.hpp"
 #include "check/steps.hpp"
@@ -14,13 +15,16 @@ namespace {
 using diag::Code;
 using Kind = Formula::Kind;
 
-struct Correspondence {
+enum class Looks : std::uint8_t { nowhere, ahead, back };
+
+struct Operator {
     ast::Formula::Kind written;
     Kind kind;
     std::string_view word;
+    Looks looks = Looks::nowhere;
 };
 
-constexpr std::array kOperators = std::to_array<Correspondence>({
+constexpr std::array kOperators = std::to_array<Operator>({
     {ast::Formula::Kind::constant_true, Kind::constant_true, "true"},
     {ast::Formula::Kind::constant_false, Kind::constant_false, "false"},
     {ast::Formula::Kind::negation, Kind::negation, "!"},
@@ -28,25 +32,38 @@ constexpr std::array kOperators = std::to_array<Correspondence>({
     {ast::Formula::Kind::disjunction, Kind::disjunction, "||"},
     {ast::Formula::Kind::implication, Kind::implication, "->"},
     {ast::Formula::Kind::equivalence, Kind::equivalence, "<->"},
-    {ast::Formula::Kind::next, Kind::next, "X"},
-    {ast::Formula::Kind::eventually, Kind::eventually, "F"},
-    {ast::Formula::Kind::always, Kind::always, "G"},
-    {ast::Formula::Kind::until, Kind::until, "U"},
-    {ast::Formula::Kind::weak_until, Kind::weak_until, "W"},
-    {ast::Formula::Kind::release, Kind::release, "R"},
-    {ast::Formula::Kind::previous, Kind::previous, "Y"},
-    {ast::Formula::Kind::once, Kind::once, "O"},
-    {ast::Formula::Kind::historically, Kind::historically, "H"},
-    {ast::Formula::Kind::since, Kind::since, "S"},
-    {ast::Formula::Kind::rise, Kind::rise, "rise"},
-    {ast::Formula::Kind::fall, Kind::fall, "fall"},
-    {ast::Formula::Kind::held, Kind::held, "held"},
+    {ast::Formula::Kind::next, Kind::next, "X", Looks::ahead},
+    {ast::Formula::Kind::eventually, Kind::eventually, "F", Looks::ahead},
+    {ast::Formula::Kind::always, Kind::always, "G", Looks::ahead},
+    {ast::Formula::Kind::until, Kind::until, "U", Looks::ahead},
+    {ast::Formula::Kind::weak_until, Kind::weak_until, "W", Looks::ahead},
+    {ast::Formula::Kind::release, Kind::release, "R", Looks::ahead},
+    {ast::Formula::Kind::previous, Kind::previous, "Y", Looks::back},
+    {ast::Formula::Kind::once, Kind::once, "O", Looks::back},
+    {ast::Formula::Kind::historically, Kind::historically, "H", Looks::back},
+    {ast::Formula::Kind::since, Kind::since, "S", Looks::back},
+    {ast::Formula::Kind::rise, Kind::rise, "rise", Looks::back},
+    {ast::Formula::Kind::fall, Kind::fall, "fall", Looks::back},
+    {ast::Formula::Kind::held, Kind::held, "held", Looks::back},
 });
 
 Kind kind_of(ast::Formula::Kind written) {
     const auto found = std::find_if(kOperators.begin(), kOperators.end(),
                                     [&](const auto& row) { return row.written == written; });
+    assert(found != kOperators.end());
     return found->kind;
+}
+
+/// Atoms are none.
+const Operator* operator_of(Kind kind) {
+    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
+                                    [&](const auto& row) { return row.kind == kind; });
+    return found == kOperators.end() ? nullptr : &*found;
+}
+
+bool looks(Kind kind, Looks where) {
+    const Operator* const found = operator_of(kind);
+    return found != nullptr && found->looks == where;
 }
 
 class FormulaCheck {
@@ -164,19 +181,16 @@ Index check_formula(Context& context, const ast::Formula& formula) {
 }
 
 std::string_view operator_word(Kind kind) {
-    const auto found = std::find_if(kOperators.begin(), kOperators.end(),
-                                    [&](const auto& row) { return row.kind == kind; });
-    return found == kOperators.end() ? "" : found->word;
+    const Operator* const found = operator_of(kind);
+    return found == nullptr ? "" : found->word;
 }
 
 bool looks_ahead(Kind kind) {
-    return kind == Kind::next || kind == Kind::eventually || kind == Kind::always ||
-           kind == Kind::until || kind == Kind::weak_until || kind == Kind::release;
+    return looks(kind, Looks::ahead);
 }
 
 bool looks_back(Kind kind) {
-    return kind == Kind::previous || kind == Kind::once || kind == Kind::historically ||
-           kind == Kind::since || kind == Kind::rise || kind == Kind::fall || kind == Kind::held;
+    return looks(kind, Looks::back);
 }
 
 }  // namespace etlc::check

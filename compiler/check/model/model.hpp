@@ -67,6 +67,20 @@ enum class Metric : std::uint8_t {
 #include "etlmon/distance/distances.def"
 #undef DISTANCE
 };
+
+/// Between directions: the length of a vector does not count, and the zero vector has none.
+constexpr bool is_of_directions(Metric metric) {
+    switch (metric) {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case Metric::id:                                  \
+        return zero_is_unknown;
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    }
+    return false;
+}
+
 enum class Aggregation : std::uint8_t { min, max, mean, kth };
 
 /// d aggregated over a target set: AGG DIST(point, target).

@@ -126,8 +126,14 @@ Range max(const std::vector<Range>& ranges) {
 }
 
 Range range_of(Metric metric) {
-    if (metric == Metric::cosine) return {0.0F, etlmon::Cosine::kHighest};
-    if (metric == Metric::angular) return {0.0F, etlmon::Angular::kHighest};
+    switch (metric) {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case Metric::id:                                  \
+        return {0.0F, etlmon::Type::kHighest};
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    }
     return {0.0F, kInfinity};
 }
 

@@ -155,7 +155,7 @@ private:
 
     /// cosine and angular compare directions, and a zero vector has none.
     bool rows_have_directions() {
-        if (distance_.metric != Metric::cosine && distance_.metric != Metric::angular) return true;
+        if (!is_of_directions(distance_.metric)) return true;
         const std::size_t columns = target().dimension;
         for (std::size_t row = 0; row < target().rows; ++row) {
             const auto begin = target().values.begin() + static_cast<std::ptrdiff_t>(row * columns);

@@ -67,6 +67,13 @@ constexpr bool is() noexcept {
   return Same<A, B>::value;
 }
 
+/// The distances that rounding_error() and change() speak of.
+template <class Metric>
+constexpr bool is_bounded() noexcept {
+  return is<Metric, L2>() || is<Metric, L2Sq>() || is<Metric, L1>() || is<Metric, Linf>() ||
+         is<Metric, Cosine>() || is<Metric, Angular>() || is<Metric, MahalanobisDiagonal>();
+}
+
 template <class Metric>
 constexpr RoundingError rounding_error(uint32_t dimension) noexcept {
   const float d = static_cast<float>(dimension);
@@ -118,6 +125,8 @@ ETLMON_INLINE Enclosed enclose(const Measured& narrow, float moved, uint32_t dim
                                uint32_t averaged = 0) noexcept {
   static_assert(!Metric::kQuadratic,
                 "what rounding does to a full quadratic form depends on the point");
+  static_assert(detail::is_bounded<Metric>(),
+                "rounding_error() and change() have to say how far this distance may be off");
   constexpr float kSlack =
       1.0001f;  // of the arithmetic below, each operation of which is off by 4 roundings at most
   Enclosed result;
