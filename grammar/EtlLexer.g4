@@ -54,6 +54,12 @@ F16   : 'f16' ;
 I8    : 'i8' ;
 BOOL  : 'bool' ;
 
+// ---- contextual: operators of formulas
+
+RISE : 'rise' ;
+FALL : 'fall' ;
+HELD : 'held' ;
+
 // ---- contextual: units
 
 HERTZ        : 'Hz' ;

@@ -50,9 +50,10 @@ binaryTemporal
     ;
 
 prefixed
-    : op=(NOT | NEXT | PREVIOUS) prefixed                                        # PlainPrefix
+    : comparison                                                                 # Atom
+    | op=(NOT | NEXT | PREVIOUS | RISE | FALL) prefixed                          # PlainPrefix
     | op=(EVENTUALLY | ALWAYS | ONCE | HISTORICALLY) interval? prefixed          # IntervalPrefix
-    | comparison                                                                 # Atom
+    | op=HELD duration prefixed                                                  # HeldPrefix
     ;
 
 // One comparison is right; more, and thresholds, are accepted here only to be explained.
@@ -89,6 +90,10 @@ comparisonOperator
 
 interval
     : LBRACKET bound COMMA bound RBRACKET
+    ;
+
+duration
+    : LBRACKET bound RBRACKET
     ;
 
 bound
@@ -192,6 +197,7 @@ name
     : IDENTIFIER
     | IN | HOLD | SCALE
     | F32 | F16 | I8 | BOOL
+    | RISE | FALL | HELD
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
     | L2 | L2SQ | L1 | LINF | COSINE | ANGULAR | MAHALANOBIS
     | MIN | MAX | MEAN | KTH | ABS | SQRT

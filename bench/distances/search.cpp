@@ -1,8 +1,8 @@
 // Searching a large target set against measuring all of it: nanoseconds per step of both, in turns,
 // and their ratio. Usage: bench_search [--rounds N] [--largest]   (--largest: also 100 000 rows of
 // 768 elements, 307 MB) The rows are clouds of 50 around points along paths, as recorded
-// demonstrations are; the embedding is drawn afresh at every step (incoherent), or walks, its steps a
-// share of the distance between neighbouring rows.
+// demonstrations are; the embedding is drawn afresh at every step (incoherent), or walks, its steps
+// a share of the distance between neighbouring rows.
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>

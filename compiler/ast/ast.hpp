@@ -140,12 +140,15 @@ struct Formula {
         once,
         historically,
         since,
+        rise,
+        fall,
+        held,
     };
     Kind kind = Kind::constant_true;
     std::string name;  ///< kind name
     /// Conjunction and disjunction: two or more; implication etc.: left, right.
     std::vector<FormulaPtr> operands;
-    std::optional<Interval> interval;
+    std::optional<Interval> interval;  ///< of held[D]: [0, D]
     ExprPtr left;  ///< comparison: EXPR CMP NUMBER
     Comparison comparison = Comparison::less_equal;
     Number right;

@@ -186,6 +186,9 @@ Operator operator_of(Formula::Kind kind) {
         case Kind::previous: return {kPrefix, "Y"};
         case Kind::once: return {kPrefix, "O"};
         case Kind::historically: return {kPrefix, "H"};
+        case Kind::rise: return {kPrefix, "rise"};
+        case Kind::fall: return {kPrefix, "fall"};
+        case Kind::held: return {kPrefix, "held"};
     }
     return {kAtom, ""};
 }
@@ -233,7 +236,10 @@ private:
 
     void prefix(const Formula& f, const Operator& op) {
         text_ += op.symbol;
-        if (f.interval) text_ += text_of(*f.interval);
+        if (f.kind == Formula::Kind::held)
+            text_ += fmt::format("[{}]", text_of(f.interval->high));
+        else if (f.interval)
+            text_ += text_of(*f.interval);
         if (f.kind != Formula::Kind::negation) text_ += ' ';
         // `!x > 0` is !(x > 0); the brackets are there for readers who know another language.
         const bool compared = f.operands[0]->kind == Formula::Kind::comparison;

@@ -143,15 +143,15 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         return std::make_unique<Scorer>(model, leaks, predicates, request.names);
     });
     if (!demonstrations) return std::nullopt;
-    const thresholds::Allowance allowance =
-        episodes::admit(model, *demonstrations, {}, request.allow_overlap, sink);
+    const thresholds::Allowance allowance = episodes::admit(
+        model, episodes::recorded(*demonstrations), {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     check::Model calibrated = model;
-    episodes::record(*demonstrations, allowance, result.file);
+    episodes::record(episodes::recorded(*demonstrations), allowance, result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         calibrated.reservations.push_back(thresholds::text(used));
     std::vector<Fitted> all;

@@ -42,9 +42,8 @@ using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations,
         std::size_t of);
 
-/// From scores of which a smaller one always is a better one, to thresholds and scores as they are
-/// compared: those of
-/// >= and > change their sign. Scores are ascending after it.
+/// From scores of which a smaller one is always better, to thresholds and scores as they are
+/// compared: those of >= and > change their sign. Scores are ascending after it.
 void mirror(Fitted& fitted, bool upper_bound);
 
 /// The first float32 strictly beyond the k-th smallest, k the rank of alpha.

@@ -48,8 +48,7 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                 "conformal, alpha = {}: beyond score {} of {}, from the {}, one of each "
                 "demonstration\n"
                 "    a new demonstration is covered with probability >= 1 - {}; given these {}, "
-                "with {:.3f} to {:.3f} "
-                "(5 % and 95 % quantile of Beta({}, {}), without ties)",
+                "with {:.3f} to {:.3f} (5 % and 95 % quantile of Beta({}, {}), without ties)",
                 threshold.alpha, fitted.k, fitted.n, from, threshold.alpha, fitted.n,
                 check::coverage_quantile(fitted.n, fitted.k, 0.05),
                 check::coverage_quantile(fitted.n, fitted.k, 0.95), fitted.k,
@@ -59,19 +58,15 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
                 "class_conditional, alpha = {}: beyond score {} of {}, from the {}, one of each "
                 "positive frame\n"
                 "    a positive frame is covered with probability >= 1 - {} where frames are "
-                "exchangeable, which those "
-                "of one recording seldom are; no guarantee for episodes",
+                "exchangeable, which those of one recording seldom are; no guarantee for episodes",
                 threshold.alpha, fitted.k, fitted.n, from, threshold.alpha);
         case ThresholdOrigin::adaptive: {
             const check::Adaptation& moves = *threshold.adaptation;
             return fmt::format(
                 "adaptive, alpha = {}, gamma = {}, in [{}, {}]: starts beyond score {} of {}, from "
-                "the {}, one of each "
-                "demonstration\n"
+                "the {}, one of each demonstration\n"
                 "    of the first T labelled positive frames it misses at most {}, H being the "
-                "misses at which the end "
-                "of "
-                "its range held it back",
+                "misses at which the end of its range held it back",
                 threshold.alpha, moves.gamma, moves.lo, moves.hi, fitted.k, fitted.n, from,
                 check::miss_bound(predicate));
         }
@@ -128,8 +123,7 @@ std::string monitor_report(const check::Model& model) {
         text += fmt::format("    {}\n", reservation);
     return text +
            "    Probabilities are over the demonstrations and the new episode together, which have "
-           "to be exchangeable, "
-           "per episode as recorded.\n"
+           "to be exchangeable, per episode as recorded.\n"
            "    Where a sample is missing, what is said of successes does not hold.\n";
 }
 

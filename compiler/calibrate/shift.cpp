@@ -103,9 +103,7 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
     std::string text = fmt::format(
         "\n{}: rho of {} less {:.9g}\n"
         "    conformal, alpha = {}: beyond score {} of {}, from the {}, one of each episode whose "
-        "ground truth is {} "
-        "at "
-        "some step\n"
+        "ground truth is {} at some step\n"
         "    {}; given these {}, with probability >= 1 - {:.3f} to 1 - {:.3f} (5 % and 95 % "
         "quantile, without ties)\n",
         monitor.name, check::shown(model, monitor.formula), fitted.epsilon,
@@ -173,35 +171,36 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 
     const episodes::Leaks leaks(model, *labelled);
-    const auto recorded = episodes::over_episodes<MonitorEpisode>(paths, request, sink, [&] {
+    const auto scored = episodes::over_episodes<MonitorEpisode>(paths, request, sink, [&] {
         return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
     });
-    if (!recorded) return std::nullopt;
+    if (!scored) return std::nullopt;
+    const auto recorded = episodes::recorded(*scored);
     const thresholds::Allowance allowance =
-        episodes::admit(model, *recorded, before, request.allow_overlap, sink);
+        episodes::admit(model, recorded, before, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
     result.file.spec = model.name;
     result.file.etlc = request.version;
-    episodes::record(*recorded, allowance, result.file);
+    episodes::record(recorded, allowance, result.file);
     std::uint64_t frames = 0;
-    for (const MonitorEpisode& episode : *recorded) frames += episode.frames;
+    for (const MonitorEpisode& episode : *scored) frames += episode.frames;
     result.report =
-        fmt::format("{}, {}\n", counted(recorded->size(), "episode"), counted(frames, "frame"));
+        fmt::format("{}, {}\n", counted(scored->size(), "episode"), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        const Totals totals(*recorded, i);
+        const Totals totals(*scored, i);
         Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
         if (const auto* refusal = std::get_if<Refusal>(&fit)) {
-            refuse(monitor, totals, recorded->size(), *refusal, sink);
+            refuse(monitor, totals, scored->size(), *refusal, sink);
             continue;
         }
         auto& fitted = std::get<Fitted>(fit);
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
-        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *recorded);
-        result.report += monitor_report(model, monitor, totals, fitted, recorded->size());
+        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *scored);
+        result.report += monitor_report(model, monitor, totals, fitted, scored->size());
     }
     if (sink.has_errors()) return std::nullopt;
     thresholds::drop_unused_recordings(result.file);

@@ -40,13 +40,10 @@ public:
     }
 
     void add_summary(std::size_t errors, std::size_t warnings, std::size_t left_out) {
-        const auto count = [](std::size_t n, std::string_view what) {
-            return fmt::format("{} {}{}", n, what, n == 1 ? "" : "s");
-        };
         if (left_out > 0) text_ += fmt::format("({} more not shown)\n", left_out);
-        if (errors > 0) text_ += count(errors, "error");
+        if (errors > 0) text_ += counted(errors, "error");
         if (errors > 0 && warnings > 0) text_ += ", ";
-        if (warnings > 0) text_ += count(warnings, "warning");
+        if (warnings > 0) text_ += counted(warnings, "warning");
         text_ += '\n';
     }
 

@@ -31,8 +31,7 @@ std::optional<Calibration> calibrate_model(const check::Model& model,
         if (result && has_monitors)
             result->report +=
                 "\nMonitors that are calibrated as a whole come next, on other episodes: etlc "
-                "calibrate --thresholds "
-                "FILE\n";
+                "calibrate --thresholds FILE\n";
         return result;
     }
     if (!has_monitors) {

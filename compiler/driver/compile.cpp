@@ -39,8 +39,7 @@ void refuse_stored_targets(const Compiled& compiled, diag::Sink& sink) {
         if (!seen.insert(set.target).second) continue;
         sink.report(diag::Code::no_file_for_targets, target.span,
                     fmt::format("'{}' takes {} bytes, too many to be spelled out, and a header on "
-                                "standard output has "
-                                "no file beside it",
+                                "standard output has no file beside it",
                                 target.name, target.values.size() * sizeof(float)))
             .note(
                 "name the header with -o, the file with --targets-file, or raise --inline-targets");

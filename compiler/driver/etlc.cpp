@@ -12,6 +12,7 @@
 
 #include "check/names/reserved.hpp"
 #include "data/files/file.hpp"
+#include "data/traces/trace.hpp"
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
@@ -32,8 +33,7 @@ using namespace etlc;
 
 constexpr char kExitStatus[] =
     "Exit status: 0, all that was asked for is there; 1, it is not, and a message says why; 2, the "
-    "call is wrong; 3, "
-    "a\n"
+    "call is wrong; 3, a\n"
     "fault of etlc itself.";
 
 struct Call {
@@ -179,8 +179,7 @@ void add_compile_options(CLI::App& app, Call& call) {
               "beside it");
     app.add_option("--targets-file", call.output.targets,
                    "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to "
-                   "it); named, it is "
-                   "always written, perhaps empty")
+                   "it); named, it is always written, perhaps empty")
         ->type_name("FILE");
     app.add_option("--depfile", call.output.depfile,
                    "also write what the output depends on, for make and ninja")
@@ -247,14 +246,16 @@ void add_map_option(CLI::App& app, data::NamesInFile& names) {
 
 void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups,
                          std::string& allow_overlap, unsigned& jobs) {
-    app.add_option("--data", data, "episodes: .npz, .csv and .h5 files, folders, 'patterns'")
+    app.add_option("--data", data,
+                   "episodes: files (" + data::trace_endings() + "), folders, 'patterns'")
         ->type_name("FILE...")
         ->required();
     app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")
         ->type_name("PATTERN");
-    app.add_option("--allow-overlap", allow_overlap,
-                   "why episodes may share most of their content, or hold targets, and count all "
-                   "the same; it is written into the result")
+    app.add_option(
+           "--allow-overlap", allow_overlap,
+           "why episodes may share most of their content, or hold targets, and still count; "
+           "it is written into the result")
         ->type_name("REASON")
         ->check(CLI::Validator(driver::mistake_in_reason, ""));
     driver::add_number(app, "-j,--jobs", jobs, "threads (default: as many as the machine has)", 1,
@@ -337,8 +338,7 @@ int calibrate_command(int argc, char** argv) {
         ->type_name("FILE");
     app.add_option("--thresholds", call.calibrate.thresholds,
                    "the thresholds of the predicates: then the monitors that are calibrated as a "
-                   "whole are, on episodes "
-                   "that these thresholds have not seen")
+                   "whole are, on episodes that these thresholds have not seen")
         ->type_name("FILE");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped,

@@ -1,4 +1,4 @@
-// Readings over formulas whose windows still reach past the prefix: evaluated anew at the last
+// Readings over formulas whose windows still reach past the prefix: evaluated again at the last
 // positions.
 #include "emit/context.hpp"
 
@@ -87,7 +87,7 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
 void print_pending(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::OfReading& names = context.names.readings[r];
-    out.line("// evaluated anew at the last {} positions, whose windows reach past this step",
+    out.line("// evaluated again at the last {} positions, whose windows reach past this step",
              pending.horizon + 1);
     out.line("const uint32_t {0} = position < {1} ? position + 1 : {2};", names.count,
              pending.horizon, pending.horizon + 1);

@@ -332,7 +332,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for positions that are evaluated anew",
+        out.line("stack of a step: {} bytes, for positions that are evaluated again",
                  plan.cost.stack_bytes);
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};

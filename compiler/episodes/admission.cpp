@@ -14,12 +14,13 @@ namespace {
 using diag::Code;
 
 constexpr std::string_view kHowToAllow =
-    "where the recordings are other ones all the same, --allow-overlap REASON says why, in the "
-    "thresholds file and beside every guarantee";
+    "if they are different recordings after all, say why with --allow-overlap REASON: the reason "
+    "stands in the thresholds file and next to every guarantee";
 
-constexpr std::string_view kCalibrateOnOthers =
-    "calibrate monitors on other episodes: fitted on the same ones, the thresholds are better "
-    "there than they will be";
+/// "shares about 97 % of its content with"
+std::string in_common(const data::Overlap& overlap) {
+    return fmt::format("shares about {:.0f} % of its content with", 100 * overlap.share);
+}
 
 /// The episodes that are refused for one reason.
 class Refusals {
@@ -53,16 +54,83 @@ private:
     std::vector<Refusal> all_;
 };
 
+/// Episodes that thresholds of a file were calibrated on.
+class Seen {
+public:
+    /// `hashes`: of the episodes, in the file.
+    Seen(const thresholds::File& file, std::vector<std::string> hashes)
+        : hashes_(std::move(hashes)) {
+        std::sort(hashes_.begin(), hashes_.end());
+        for (const std::string& hash : hashes_)
+            if (const auto known = file.recordings.find(hash); known != file.recordings.end())
+                recordings_.add(known->second);
+    }
+
+    std::optional<data::Overlap> find(const Recorded& episode) const {
+        if (std::binary_search(hashes_.begin(), hashes_.end(), episode.hash))
+            return data::Overlap{0, 1, true};
+        return recordings_.find(episode.content);
+    }
+
+private:
+    std::vector<std::string> hashes_;  ///< sorted
+    data::Recordings recordings_;
+};
+
+/// Refuses what thresholds of a file were calibrated on.
+class Unseen {
+public:
+    /// `one`: what messages call such an episode; `advice`: the notes where it comes up again;
+    /// `allowing`: another, where it does in part.
+    Unseen(const thresholds::File& file, const std::vector<std::string>& hashes, bool allows,
+           Code code, std::string one, const std::string& advice, std::string_view allowing)
+        : seen_(file, hashes),
+          allows_(allows),
+          one_(std::move(one)),
+          equal_(code, {advice}),
+          in_part_(code, {advice, std::string(allowing)}) {}
+
+    /// Whether an overlap was passed over.
+    bool look_at(const Recorded& episode) {
+        const auto found = seen_.find(episode);
+        if (!found) return false;
+        if (allows_ && !found->equal) return true;
+        if (found->equal)
+            equal_.add(episode, "is " + one_);
+        else
+            in_part_.add(episode, in_common(*found) + " " + one_);
+        return false;
+    }
+
+    void report(diag::Sink& sink) const {
+        equal_.report(sink);
+        in_part_.report(sink);
+    }
+
+private:
+    Seen seen_;
+    bool allows_;
+    std::string one_;
+    Refusals equal_;
+    Refusals in_part_;
+};
+
 /// Looks at one episode after the other.
 class Admission {
 public:
     Admission(const check::Model& model, const thresholds::File& before, const std::string& reason)
-        : model_(model), seen_(before, before.episodes), allows_(!reason.empty()) {
+        : model_(model),
+          allows_(!reason.empty()),
+          unseen_(before, before.episodes, allows_, Code::not_disjoint,
+                  "an episode that thresholds of predicates were calibrated on",
+                  "calibrate monitors on other episodes: fitted on the same ones, the thresholds "
+                  "are better there than they will be",
+                  kHowToAllow) {
         passed_over_.reason = reason;
     }
 
     void look_at(const Recorded& episode) {
-        const bool overlaps = look_at_seen(episode);
+        const bool overlaps = unseen_.look_at(episode);
         passed_over_.overlapping += look_at_earlier(episode) || overlaps ? 1 : 0;
         if (episode.leak && allows_) ++passed_over_.leaked;
         if (episode.leak && !allows_)
@@ -71,26 +139,14 @@ public:
     }
 
     thresholds::Allowance conclude(diag::Sink& sink) && {
-        for (const Refusals* refusals :
-             {&seen_before_, &seen_in_part_, &repeated_, &overlapping_, &leaks_, &scalar_leaks_})
+        unseen_.report(sink);
+        for (const Refusals* refusals : {&repeated_, &overlapping_, &leaks_, &scalar_leaks_})
             refusals->report(sink);
         return std::move(passed_over_);
     }
 
 private:
-    /// These two say whether an overlap was passed over.
-    bool look_at_seen(const Recorded& episode) {
-        const auto found = seen_.find(episode);
-        if (!found) return false;
-        if (allows_ && !found->equal) return true;
-        const std::string one = "an episode that thresholds of predicates were calibrated on";
-        if (found->equal)
-            seen_before_.add(episode, "is " + one);
-        else
-            seen_in_part_.add(episode, text(*found) + " " + one);
-        return false;
-    }
-
+    /// Whether an overlap was passed over.
     bool look_at_earlier(const Recorded& episode) {
         const auto found = recordings_.find(episode.content);
         recordings_.add(episode.content);
@@ -100,7 +156,7 @@ private:
         if (found->equal)
             repeated_.add(episode, "is the same episode as " + other);
         else if (!allows_)
-            overlapping_.add(episode, text(*found) + " " + other);
+            overlapping_.add(episode, in_common(*found) + " " + other);
         return allows_ && !found->equal;
     }
 
@@ -109,14 +165,11 @@ private:
     }
 
     const check::Model& model_;
-    Seen seen_;
+    bool allows_;
+    Unseen unseen_;
     data::Recordings recordings_;
     std::vector<std::string> paths_;  ///< in the order of recordings_
-    bool allows_;
     thresholds::Allowance passed_over_;
-    Refusals seen_before_{Code::not_disjoint, {std::string(kCalibrateOnOthers)}};
-    Refusals seen_in_part_{Code::not_disjoint,
-                           {std::string(kCalibrateOnOthers), std::string(kHowToAllow)}};
     Refusals repeated_{
         Code::duplicate_episode,
         {"demonstrations have to be independent recordings: one that counts twice voids the "
@@ -134,8 +187,8 @@ private:
         Code::target_in_data,
         {"targets have to come from other recordings: at a distance of 0 this one voids the "
          "guarantee",
-         "where these scalars may well come to lie there, write the rows into the spec: only those "
-         "of a file are taken for recorded ones"}};
+         "if these scalars can have such values by themselves, write the rows into the spec: only "
+         "rows from a file count as recorded"}};
 };
 
 }  // namespace
@@ -146,30 +199,28 @@ std::string text(const check::Model& model, const Leak& leak) {
                        model.predicates[leak.predicate].shown());
 }
 
-std::string text(const data::Overlap& overlap) {
-    return fmt::format("shares about {:.0f} % of its content with", 100 * overlap.share);
-}
-
-Seen::Seen(const thresholds::File& file, const std::vector<std::string>& episodes)
-    : hashes_(episodes) {
-    std::sort(hashes_.begin(), hashes_.end());
-    for (const std::string& hash : hashes_)
-        if (const auto known = file.recordings.find(hash); known != file.recordings.end())
-            recordings_.add(known->second);
-}
-
-std::optional<data::Overlap> Seen::find(const Recorded& episode) const {
-    if (std::binary_search(hashes_.begin(), hashes_.end(), episode.hash))
-        return data::Overlap{0, 1, true};
-    return recordings_.find(episode.content);
-}
-
 thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
                             const thresholds::File& before, const std::string& reason,
                             diag::Sink& sink) {
     Admission admission(model, before, reason);
     for (const Recorded* episode : episodes) admission.look_at(*episode);
     return std::move(admission).conclude(sink);
+}
+
+thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
+                                   const thresholds::File& file, const std::string& reason,
+                                   diag::Sink& sink) {
+    thresholds::Allowance passed_over{reason};
+    Unseen unseen(file, thresholds::all_episodes(file), !reason.empty(),
+                  Code::episode_calibrated_on,
+                  fmt::format("an episode that the thresholds in {} were calibrated on", file.path),
+                  "keep the episodes for evaluation apart from those for calibration",
+                  "if they are different recordings after all, say why with --allow-overlap "
+                  "REASON: the reason stands next to the figures");
+    for (const Recorded* episode : episodes)
+        passed_over.overlapping += unseen.look_at(*episode) ? 1 : 0;
+    unseen.report(sink);
+    return passed_over;
 }
 
 void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,

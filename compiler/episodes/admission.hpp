@@ -11,14 +11,13 @@
 #include <string>
 #include <vector>
 
-#include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
-#include "episodes/leaks.hpp"
 #include "episodes/recording.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::episodes {
 
+/// What these functions need of episodes that were read for more.
 template <class Episode>
 std::vector<const Recorded*> recorded(const std::vector<Episode>& episodes) {
     std::vector<const Recorded*> result;
@@ -29,43 +28,21 @@ std::vector<const Recorded*> recorded(const std::vector<Episode>& episodes) {
 /// "step 4 is row 1 of target 'home', from which 'at_home' measures"
 std::string text(const check::Model& model, const Leak& leak);
 
-/// "shares about 97 % of its content with"
-std::string text(const data::Overlap& overlap);
-
-/// Episodes that thresholds of a file were calibrated on.
-class Seen {
-public:
-    /// `episodes`: hashes in the file.
-    Seen(const thresholds::File& file, const std::vector<std::string>& episodes);
-    std::optional<data::Overlap> find(const Recorded& episode) const;
-
-private:
-    std::vector<std::string> hashes_;  ///< sorted
-    data::Recordings recordings_;
-};
-
 /// `before`: where thresholds in the model come from. `reason`: of --allow-overlap; with one,
 /// overlaps short of equality and targets among the frames are counted and not refused.
 thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
                             const thresholds::File& before, const std::string& reason,
                             diag::Sink& sink);
 
-template <class Episode>
-thresholds::Allowance admit(const check::Model& model, const std::vector<Episode>& episodes,
-                            const thresholds::File& before, const std::string& reason,
-                            diag::Sink& sink) {
-    return admit(model, recorded(episodes), before, reason, sink);
-}
+/// For an evaluation: refuses what thresholds of the file were calibrated on, and counts overlaps
+/// with it where a `reason` allows them.
+thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
+                                   const thresholds::File& file, const std::string& reason,
+                                   diag::Sink& sink);
 
 /// Notes in the file what tells these episodes apart, and what was passed over, if anything was.
 void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file);
-
-template <class Episode>
-void record(const std::vector<Episode>& episodes, const thresholds::Allowance& allowance,
-            thresholds::File& file) {
-    record(recorded(episodes), allowance, file);
-}
 
 /// Where --allow-overlap was given and there was nothing to pass over.
 std::string remark_on(const thresholds::Allowance& allowance);

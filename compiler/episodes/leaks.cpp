@@ -39,19 +39,13 @@ bool may_be_recorded(const check::Model& model, const Distance& distance) {
     return !distance.point_is_vector || !model.targets[distance.target].path.empty();
 }
 
-/// A scalar that counts as missing.
-bool outside(const Input& input, const plan::Sample& sample) {
-    return input.has_range &&
-           !(input.range.low <= sample.values[0] && sample.values[0] <= input.range.high);
-}
-
 /// The numbers of a vector of scalars; empty where one is missing.
 std::vector<float> gathered(const check::Model& model, const Distance& distance,
                             const std::vector<plan::Sample>& samples) {
     std::vector<float> point;
     for (const Index input : distance.point) {
         const plan::Sample& sample = samples[input];
-        if (!sample.present || outside(model.inputs[input], sample)) return {};
+        if (!sample.present || !model.inputs[input].range.contains(sample.values[0])) return {};
         point.push_back(sample.values[0]);
     }
     return point;

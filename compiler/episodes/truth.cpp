@@ -32,8 +32,7 @@ bool usable(const Input& input, const std::vector<double>& sample) {
     if (sample.empty()) return false;
     return std::all_of(sample.begin(), sample.end(), [&](double x) {
         const auto narrowed = static_cast<float>(x);
-        return std::isfinite(narrowed) &&
-               (!input.has_range || (input.range.low <= narrowed && narrowed <= input.range.high));
+        return std::isfinite(narrowed) && input.range.contains(narrowed);
     });
 }
 

@@ -7,56 +7,12 @@
 #include <set>
 
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
 #include "episodes/admission.hpp"
 #include "episodes/parallel.hpp"
 
 namespace etlc::evaluate {
 
 namespace {
-
-constexpr std::size_t kMostNotes = 8;
-
-/// A threshold looks better on the episodes that it was taken from, and what it promises is about
-/// others. Nothing where some are refused; else how many were passed over.
-std::optional<thresholds::Allowance> admit(const std::vector<EpisodeResult>& episodes,
-                                           const Request& request, const thresholds::File& file,
-                                           diag::Sink& sink) {
-    const episodes::Seen known(file, thresholds::all_episodes(file));
-    thresholds::Allowance allowance{request.allow_overlap};
-    std::vector<std::string> refused;
-    std::vector<std::string> in_part;
-    for (const EpisodeResult& episode : episodes) {
-        const auto found = known.find(episode);
-        if (!found) continue;
-        if (!found->equal && !request.allow_overlap.empty()) {
-            ++allowance.overlapping;
-            continue;
-        }
-        refused.push_back(episode.path);
-        if (!found->equal)
-            in_part.push_back(fmt::format("{} {} one of them", data::in_quotes(episode.path),
-                                          episodes::text(*found)));
-    }
-    if (refused.empty()) return allowance;
-    auto& error = sink.report(data::in_file(
-        {diag::Code::episode_calibrated_on,
-         fmt::format(
-             "{} of the {} episodes {} among those that the thresholds in {} were calibrated on",
-             refused.size(), episodes.size(), refused.size() == 1 ? "is" : "are", file.path)},
-        refused.front()));
-    for (std::size_t i = 1; i < std::min(refused.size(), kMostNotes); ++i)
-        error.note(refused[i] + " is, too");
-    if (refused.size() > kMostNotes)
-        error.note(fmt::format("and {} more", refused.size() - kMostNotes));
-    error.note("keep the episodes for evaluation apart from those for calibration");
-    for (std::size_t i = 0; i < std::min(in_part.size(), kMostNotes); ++i) error.note(in_part[i]);
-    if (!in_part.empty())
-        error.note(
-            "where the recordings are other ones all the same, --allow-overlap REASON says why, "
-            "beside the figures");
-    return std::nullopt;
-}
 
 /// At distance 0 a frame is easier to tell than any that is not a target.
 void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& episodes,
@@ -69,9 +25,9 @@ void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& 
     auto& warning = sink.report(
         data::in_file({diag::Code::target_in_evaluation, episodes::text(model, *first->leak)},
                       request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
-    warning.note(
-        fmt::format("{} of the {} episodes {} such a frame: the figures are better than on others",
-                    leaked, episodes.size(), leaked == 1 ? "has" : "have"));
+    warning.note(fmt::format("{} of {} {} such a frame: the figures are better than on others",
+                             leaked, diag::counted(episodes.size(), "episode"),
+                             leaked == 1 ? "has" : "have"));
     warning.note("targets have to come from other recordings");
 }
 
@@ -257,13 +213,15 @@ std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request
     const auto episodes =
         episodes::over_episodes<EpisodeResult>(request.episodes, request, sink, scorer);
     if (!episodes) return std::nullopt;
-    const auto allowance =
-        seen ? admit(*episodes, request, *seen, sink) : std::optional(thresholds::Allowance{});
-    if (!allowance) return std::nullopt;
+    thresholds::Allowance allowance;
+    if (seen)
+        allowance = episodes::admit_unseen(episodes::recorded(*episodes), *seen,
+                                           request.allow_overlap, sink);
+    if (sink.has_errors()) return std::nullopt;
     warn_of_leaks(model, *episodes, request, sink);
     Evaluation result = summarise(model, subject, *episodes);
     if (seen) result.reservations = model.reservations;
-    if (allowance->overlapping > 0) result.reservations.push_back(thresholds::text(*allowance));
+    if (allowance.overlapping > 0) result.reservations.push_back(thresholds::text(allowance));
     return result;
 }
 

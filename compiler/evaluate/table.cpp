@@ -166,9 +166,10 @@ std::string left_out(const Evaluation& evaluation) {
 }  // namespace
 
 std::string table(const Evaluation& evaluation) {
-    std::string text = fmt::format(
-        "{} episode{}, {} frames; in brackets 95 % intervals from {} resamples of the episodes\n",
-        evaluation.episodes, evaluation.episodes == 1 ? "" : "s", evaluation.frames, kResamples);
+    std::string text =
+        fmt::format("{}, {}; in brackets 95 % intervals from {} resamples of the episodes\n",
+                    diag::counted(evaluation.episodes, "episode"),
+                    diag::counted(evaluation.frames, "frame"), kResamples);
     if (evaluation.repeated > 0)
         text += fmt::format(
             "{} of the episodes repeat another's content: the intervals are too narrow\n",

@@ -54,6 +54,9 @@ private:
             case Kind::release: return binary(f, Op::release, negated);
             case Kind::since: return binary(f, Op::since, negated);
             case Kind::weak_until: return weak_until(f, negated);
+            case Kind::rise: return edge(f, false, negated);
+            case Kind::fall: return edge(f, true, negated);
+            case Kind::held: return held(f, negated);
         }
         return check::kNone;
     }
@@ -87,6 +90,22 @@ private:
         const NodeId right = lower(f.operands[1], negated);
         const NodeId either = graph_.combine(turn(Op::disjunction, negated), {left, right}, f.span);
         return graph_.binary(turn(Op::release, negated), {}, right, either, f.span);
+    }
+
+    /// rise f is f && Y !f; fall f is !f && Y f.
+    NodeId edge(const check::Formula& f, bool falls, bool negated) {
+        const NodeId now = lower(f.operands[0], falls != negated);
+        const NodeId before = lower(f.operands[0], falls == negated);
+        const NodeId previous = graph_.unary(turn(Op::once, negated), {1, 1}, before, f.span);
+        return graph_.combine(turn(Op::conjunction, negated), {now, previous}, f.span);
+    }
+
+    /// held[n] f is H[0,n] f && O[n,n] true.
+    NodeId held(const check::Formula& f, bool negated) {
+        const NodeId all = unary(f, Op::historically, negated);
+        const NodeId old = graph_.unary(turn(Op::once, negated), {f.high, f.high},
+                                        graph_.constant(!negated), f.span);
+        return graph_.combine(turn(Op::conjunction, negated), {all, old}, f.span);
     }
 
     const check::Model& model_;

@@ -15,7 +15,7 @@ struct Program {
     std::vector<NodeId> monitors;  ///< per monitor of the model
     /// Of some formulas an equal one, whose windows end before an unbounded future begins: what is
     /// cheaper to monitor, the plan decides (opt/split_windows.cpp).
-    std::unordered_map<NodeId, NodeId> apart;
+    std::unordered_map<NodeId, NodeId> split_windows;
 };
 
 /// Every node that a monitor reaches, operands first: `--emit graph`.

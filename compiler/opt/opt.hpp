@@ -33,7 +33,7 @@ ir::NodeId distribute(ir::Graph& graph, ir::NodeId node);
 ir::NodeId look_back(ir::Graph& graph, ir::NodeId node);
 ir::NodeId split_until(ir::Graph& graph, ir::NodeId node);
 
-/// Fills in program.apart.
+/// Fills in program.split_windows.
 void split_windows(ir::Program& program);
 
 }  // namespace etlc::opt

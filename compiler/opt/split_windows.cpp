@@ -37,7 +37,7 @@ public:
     explicit Splitting(ir::Graph& graph) : graph_(graph) {}
 
     /// The formula itself where there is nothing to split, or where the parts would be too many.
-    NodeId apart(NodeId formula) {
+    NodeId split(NodeId formula) {
         const NodeId result = rewrite(formula);
         return too_many() ? formula : result;
     }
@@ -252,8 +252,8 @@ void split_windows(ir::Program& program) {
     const auto visit = [&](const auto& self, NodeId id) -> void {
         if (!graph[id].has_future || !seen.insert(id).second) return;
         if (ir::info(graph[id].op).arity != ir::Arity::many) {
-            const NodeId apart = Splitting(graph).apart(id);
-            if (apart != id) program.apart.emplace(id, apart);
+            const NodeId split = Splitting(graph).split(id);
+            if (split != id) program.split_windows.emplace(id, split);
             return;
         }
         const std::vector<NodeId> operands = graph[id].operands;  // the graph grows meanwhile

@@ -32,6 +32,9 @@ Kind kind_of(const Token& op) {
         case Grammar::PREVIOUS: return Kind::previous;
         case Grammar::ONCE: return Kind::once;
         case Grammar::HISTORICALLY: return Kind::historically;
+        case Grammar::RISE: return Kind::rise;
+        case Grammar::FALL: return Kind::fall;
+        case Grammar::HELD: return Kind::held;
         default: return Kind::since;
     }
 }
@@ -125,6 +128,12 @@ Builder::Formula Builder::formula(Grammar::PrefixedContext& context) const {
         return formula(*atom->comparison());
     if (auto* const plain = dynamic_cast<Grammar::PlainPrefixContext*>(&context))
         return prefix(*plain->op, *plain->prefixed(), context);
+    if (auto* const held = dynamic_cast<Grammar::HeldPrefixContext*>(&context)) {
+        Formula result = prefix(*held->op, *held->prefixed(), context);
+        const ast::Bound high = bound(*held->duration()->bound());
+        result.root->interval = {{{"0", high.span}, "", high.span}, high, high.span};
+        return result;
+    }
     auto& bounded = dynamic_cast<Grammar::IntervalPrefixContext&>(context);
     Formula result = prefix(*bounded.op, *bounded.prefixed(), context);
     if (auto* const bounds = bounded.interval()) result.root->interval = interval(*bounds);

@@ -16,7 +16,7 @@ struct Level {
     int base = 0;      ///< depth outside the bracket, and one for the bracket
     int arrows = 0;    ///< `->` in a row
     int untils = 0;    ///< U W R S in a row
-    int prefixes = 0;  ///< ! X F G Y O H in a row
+    int prefixes = 0;  ///< ! X F G Y O H rise fall held in a row
     int signs = 0;     ///< `-` before an operand, in a row
 
     int depth() const { return base + arrows + untils + prefixes + signs; }
@@ -31,6 +31,30 @@ bool ends_operand(const Token& token) {
         case EtlLexer::RBRACKET: return true;
         default: return is_name(token);
     }
+}
+
+bool begins_operand(const Token& token) {
+    switch (token.getType()) {
+        case EtlLexer::NUMBER:
+        case EtlLexer::TRUE:
+        case EtlLexer::FALSE:
+        case EtlLexer::LPAREN:
+        case EtlLexer::NOT:
+        case EtlLexer::NEXT:
+        case EtlLexer::EVENTUALLY:
+        case EtlLexer::ALWAYS:
+        case EtlLexer::PREVIOUS:
+        case EtlLexer::ONCE:
+        case EtlLexer::HISTORICALLY: return true;
+        default: return is_name(token);
+    }
+}
+
+/// `rise`, `fall` and `held` are names elsewhere.
+bool is_prefix_word(const Token& token, const Token& next) {
+    if (token.getType() == EtlLexer::HELD) return next.getType() == EtlLexer::LBRACKET;
+    const bool edge = token.getType() == EtlLexer::RISE || token.getType() == EtlLexer::FALL;
+    return edge && begins_operand(next);
 }
 
 void operator_seen(Level& level, std::size_t type, bool after_operand) {
@@ -75,6 +99,8 @@ std::optional<std::size_t> too_deep_at(const Tokens& tokens, Slice slice) {
             levels.push_back({levels.back().depth() + 1, 0, 0, 0, 0});
         } else if (type == EtlLexer::RPAREN || type == EtlLexer::RBRACKET) {
             if (levels.size() > 1) levels.pop_back();
+        } else if (i + 1 < slice.end && is_prefix_word(*tokens[i], *tokens[i + 1])) {
+            ++levels.back().prefixes;
         } else {
             operator_seen(levels.back(), type, after_operand);
         }

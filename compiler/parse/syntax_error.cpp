@@ -85,8 +85,7 @@ private:
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, input, target, predicate, truth, "
-                "let, monitor or "
-                "sliding monitor");
+                "let, monitor or sliding monitor");
         return result;
     }
 
@@ -135,7 +134,8 @@ private:
     bool interval_misplaced() const {
         return found_.getType() == EtlParser::LBRACKET &&
                is(stuck_.previous,
-                  {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::WEAK_UNTIL, EtlParser::NOT,
+                  {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::RISE, EtlParser::FALL,
+                   EtlParser::WEAK_UNTIL, EtlParser::NOT,
                    EtlParser::AND, EtlParser::OR, EtlParser::IMPLIES, EtlParser::IFF});
     }
 
@@ -202,6 +202,13 @@ private:
 
     /// How the thing that is being read is written.
     void add_note_on_rule(Diagnostic& to) const {
+        const bool in_duration = stuck_.rule == EtlParser::RuleDuration ||
+                                 stuck_.parent_rule == EtlParser::RuleDuration ||
+                                 is(stuck_.previous, {EtlParser::HELD});
+        if (in_duration) {
+            to.note("'held' takes one bound, for how long: held[20] f, held[2 s] f");
+            return;
+        }
         switch (stuck_.rule) {
             case EtlParser::RuleDimension:
                 to.note(

@@ -35,8 +35,8 @@ struct Monitor {
 /// counted in each).
 struct Cost {
     std::uint64_t state_bytes = 0;
-    std::uint64_t stack_bytes = 0;          ///< arrays of a step: positions that are evaluated anew
-    std::uint64_t target_bytes = 0;         ///< and weights, on a machine with vectors of floats
+    std::uint64_t stack_bytes = 0;   ///< arrays of a step: positions that are evaluated again
+    std::uint64_t target_bytes = 0;  ///< and weights, on a machine with vectors of floats
     std::uint64_t scalar_target_bytes = 0;  ///< the same on one without
     std::uint64_t code_bytes = 0;           ///< estimated, targets aside
     std::uint64_t operations = 0;           ///< min, max and comparisons of the temporal part

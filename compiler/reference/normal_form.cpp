@@ -78,6 +78,27 @@ private:
         return connect(negated ? NodeKind::until : NodeKind::release, {right, both});
     }
 
+    /// `rise f` is `f && Y !f`, and `fall f` is `!f && Y f`; the negation of either is the dual.
+    Index edge(Index f, bool falls, bool negated) {
+        const Index now = build(f, falls != negated);
+        const Index before = build(f, falls == negated);
+        const Index previous = add({.kind = negated ? NodeKind::historically : NodeKind::once,
+                                    .operands = {before},
+                                    .low = 1,
+                                    .high = 1});
+        return connect(negated ? NodeKind::any : NodeKind::all, {now, previous});
+    }
+
+    /// `held[n] f` is `H[0,n] f && O[n,n] true`; its negation is `O[0,n] !f || H[n,n] false`.
+    Index held(const Formula& f, bool negated) {
+        const Index all = temporal(f, negated, NodeKind::historically, NodeKind::once);
+        const Index old = add({.kind = negated ? NodeKind::historically : NodeKind::once,
+                               .operands = {literal(NodeKind::constant, negated)},
+                               .low = f.high,
+                               .high = f.high});
+        return connect(negated ? NodeKind::any : NodeKind::all, {all, old});
+    }
+
     Index make(const Formula& f, bool negated) {
         switch (f.kind) {
             case FormulaKind::constant_true: return literal(NodeKind::constant, negated);
@@ -112,6 +133,9 @@ private:
                 return temporal(f, negated, NodeKind::historically, NodeKind::once);
             case FormulaKind::since:
                 return temporal(f, negated, NodeKind::since, NodeKind::trigger);
+            case FormulaKind::rise: return edge(f.operands[0], false, negated);
+            case FormulaKind::fall: return edge(f.operands[0], true, negated);
+            case FormulaKind::held: return held(f, negated);
         }
         return literal(NodeKind::constant, negated);
     }

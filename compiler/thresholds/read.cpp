@@ -308,17 +308,15 @@ void drop_unused_recordings(File& file) {
 }
 
 std::string text(const Allowance& allowance) {
-    const auto episodes = [](std::uint64_t n) {
-        return fmt::format("{} episode{}", n, n == 1 ? "" : "s");
-    };
     std::string what;
     if (allowance.overlapping > 0)
         what += fmt::format("{} that share{} most of {} content with another",
-                            episodes(allowance.overlapping), allowance.overlapping == 1 ? "s" : "",
+                            diag::counted(allowance.overlapping, "episode"),
+                            allowance.overlapping == 1 ? "s" : "",
                             allowance.overlapping == 1 ? "its" : "their");
     if (allowance.leaked > 0)
         what += fmt::format("{}{} with a target among the frames", what.empty() ? "" : " and ",
-                            episodes(allowance.leaked));
+                            diag::counted(allowance.leaked, "episode"));
     return fmt::format("--allow-overlap passed over {}: {}", what, allowance.reason);
 }
 

@@ -39,8 +39,7 @@ constexpr const char* kDeclarations =
     "predicate literal = l2(z, g) <= 0.5;\n"
     "predicate near = l2([x, y], g) <= 1;\n"
     "predicate half = x <= calibrated(conformal, alpha = 0.5); predicate rest = y <= "
-    "calibrated(conformal, alpha = "
-    "5e-1);\n"
+    "calibrated(conformal, alpha = 5e-1);\n"
     "predicate meant = s > 1; truth meant = s > 2;\n";
 
 /// All claims about one monitor, the parts in brackets.
@@ -168,8 +167,7 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     check::Model model = load_uncalibrated(
         "spec t; input x, y, s : f32;\n"
         "predicate a = x <= calibrated(conformal, alpha = 0.2); predicate b = y <= "
-        "calibrated(conformal, alpha = "
-        "0.1);\n"
+        "calibrated(conformal, alpha = 0.1);\n"
         "monitor p0 = F (a && F b); monitor p1 = G (s > 0.5 -> F[0, 3] a); monitor p2 = a U b;\n"
         "monitor n0 = G !a; monitor n1 = G (a -> s > 0.5); monitor n2 = !a U (s > 0.5 && !b);\n"
         "monitor m0 = G (s > 0.5 -> a) && G !b; monitor c0 = G (s > 0.5 -> a); monitor c1 = G !b;");

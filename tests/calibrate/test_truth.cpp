@@ -61,8 +61,7 @@ TEST(Truth, IsWhatTheReferenceSaysOfEveryFrame) {
     for (int spec = 0; spec < 400; ++spec) {
         const std::string text = fmt::format(
             "spec t; input a, b : bool; input x : f32 in [-0.75, 1]; input y : f32 hold 1; target "
-            "goal = [[0.5, "
-            "0.5]];\n"
+            "goal = [[0.5, 0.5]];\n"
             "sliding monitor m = {};",
             past_formula(random, 4));
         const auto model = load(text);

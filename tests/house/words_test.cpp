@@ -103,6 +103,21 @@ TEST(Words, LinesHaveAHundredColumns) {
     }
 }
 
+/// Turns of phrase that sound translated. What stands instead: "compared with", "lead back to",
+/// "really", "without".
+TEST(Words, EnglishIsPlain) {
+    static const std::regex kGone(
+        R"(\b(held against|finds? back to|in earnest|for want of|a share of nothing)\b)");
+    for (const auto& file : files()) {
+        if (!edited(file) || file == "tests/house/words_test.cpp") continue;
+        const std::vector<std::string> lines = lines_of(content(file));
+        for (std::size_t n = 0; n < lines.size(); ++n) {
+            EXPECT_FALSE(std::regex_search(lines[n], kGone))
+                << file.string() << ":" << n + 1 << ": " << lines[n];
+        }
+    }
+}
+
 /// What GitHub makes of a heading: "## In CMake, `x`" becomes "in-cmake-x".
 std::string anchor(const std::string& heading) {
     std::string made;

@@ -86,7 +86,7 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
     if (!shape_.nested) allowed = {false, false};
     if (!shape_.past_over_future) allowed.future = false;
     const Piece operand = grow(depth - 1, allowed);
-    switch (random_.between(0, 5)) {
+    switch (random_.between(0, 7)) {
         case 0:
         case 1: return unary(random_.word({"O", "once"}), past_interval(), operand);
         case 2: return unary(random_.word({"H", "historically"}), past_interval(), operand);
@@ -94,6 +94,8 @@ RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {
         case 4:
             return binary(operand, random_.word({"S", "since"}), past_interval(),
                           grow(depth - 1, allowed), until);
+        case 5: return unary(random_.word({"rise", "fall"}), "", operand);
+        case 6: return unary("held", fmt::format("[{}]", random_.between(0, 4)), operand);
         default: return unary(random_.word({"Y", "previous"}), "", operand);
     }
 }

@@ -116,7 +116,7 @@ struct Spec {
         formula.operands = std::move(operands);
         formula.low = low;
         formula.high = high;
-        if (kind == Kind::next || kind == Kind::previous) formula.low = formula.high = 1;
+        if (check::looks_one_step_away(kind)) formula.low = formula.high = 1;
         model.formulas.push_back(formula);
         return static_cast<Index>(model.formulas.size() - 1);
     }

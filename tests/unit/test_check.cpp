@@ -23,14 +23,12 @@ const fs::path kCases = fs::path(ETLC_SOURCE_DIR) / "tests" / "spec" / "error";
 TEST(Check, InputsOfEveryType) {
     const Checked checked(
         "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : "
-        "f16[6] hold 1; "
-        "input f : i8[7] scale 0.1;"
+        "f16[6] hold 1; input f : i8[7] scale 0.1;"
         "target t5 = load(\"none.npy\"); monitor m = G (c && a > 0 && b > 0);");
     EXPECT_EQ(checked.codes(), "E0401");
     const Checked good(
         "spec t; input a, b : f32 in [-1, inf] hold 3; input c : bool; input d : f32[5]; input e : "
-        "f16[6] hold 1; "
-        "input f : i8[7] scale 0.1;"
+        "f16[6] hold 1; input f : i8[7] scale 0.1;"
         "monitor m = G (c && a > 0 && b > 0);");
     ASSERT_TRUE(good.model) << good.diagnostics();
     const std::vector<Input>& inputs = good.model->inputs;
@@ -52,8 +50,7 @@ TEST(Check, TargetsAndDependencies) {
     const Checked checked(
         "spec t; input z : f32[2]; target row = load(\"row.npy\"); target corner = [[0.1, -2]];"
         "predicate p = mahalanobis(load(\"./row.npy\"))(z, corner) <= 1; predicate q = l2(z, row) "
-        "< 1; monitor m = F "
-        "(p && q);",
+        "< 1; monitor m = F (p && q);",
         {}, path);
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Model& model = *checked.model;
@@ -133,8 +130,7 @@ TEST(Thresholds, EpsilonComesFromTheFile) {
     const std::string file = (kCases / "E0652_threshold_stale.thresholds.json").string();
     const Checked checked(
         "spec t; input z : f32[1]; target goal = [[1]]; predicate good = l2(z, goal) <= "
-        "calibrated(conformal, alpha = "
-        "0.10); monitor m = F good;",
+        "calibrated(conformal, alpha = 0.10); monitor m = F good;",
         {file, false});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Predicate& good = checked.predicate("good");
@@ -170,8 +166,7 @@ Provenance provenance_of(const std::string& text, const std::string& predicate) 
 TEST(Thresholds, ProvenanceSaysAllThatTheThresholdDependsOn) {
     const std::string head =
         "spec t; input z : i8[1] scale 0.5; input px : f32; target goal = [[1]]; target spot = "
-        "[[0]]; predicate held = "
-        "px > 0.25;";
+        "[[0]]; predicate held = px > 0.25;";
     const Provenance found = provenance_of(
         head +
             "predicate a = mahalanobis([2])(z, goal) <= calibrated(f1); let sure = held || false;"
@@ -227,8 +222,7 @@ TEST(Names, CapitalsAreLeftToMacros) {
 TEST(Names, AreDeclaredInAnyOrder) {
     const Checked checked(
         "spec t; monitor m = F l; let l = p; predicate p = min l2(z, goal) <= 1; target goal = "
-        "[[1, 2]]; input z : "
-        "f32[2];");
+        "[[1, 2]]; input z : f32[2];");
     EXPECT_EQ(checked.codes(), "") << checked.diagnostics();
 }
 

@@ -135,12 +135,9 @@ TEST(Adaptation, WidensTheRangeOfItsPredicate) {
         std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json";
     const Checked checked(
         "spec adaptive; input x : f32 in [0, 4]; input y : f32; predicate low = x <= "
-        "calibrated(adaptive, alpha = "
-        "0.25, "
-        "gamma = 0.25, lo = 0.5, hi = 2); predicate high = x > calibrated(adaptive, alpha = 0.25, "
-        "gamma = 0.25, lo = "
-        "1, "
-        "hi = 3); truth low = y < 1; truth high = y > 2; monitor m = F low && G high;",
+        "calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = 0.5, hi = 2); predicate high = x > "
+        "calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = 1, hi = 3); truth low = y < 1; "
+        "truth high = y > 2; monitor m = F low && G high;",
         {path, false});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.predicate("low").threshold.value, 1.0F);

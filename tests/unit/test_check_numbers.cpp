@@ -211,8 +211,7 @@ TEST(Duration, IntervalsOfASpec) {
     const Checked checked(
         "spec t; rate 100 Hz; input x : f32; predicate p = x > 0;"
         "sliding monitor a = G[0, 0.29 s] p; sliding monitor b = F[10 ms, 0.1 min] p; sliding "
-        "monitor c = G[0 s, 3 s] "
-        "p;"
+        "monitor c = G[0 s, 3 s] p;"
         "monitor d = F[20 ms, inf] p;");
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.formula("a"), "G[0, 29] p");

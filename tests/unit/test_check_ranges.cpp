@@ -89,8 +89,7 @@ TEST(Ranges, RandomSamplesStayInside) {
         const std::string text = random.expression(4);
         const Checked checked(
             "spec t; input x : f32 in [-3.7, 2.3]; input y : f32 in [0.1, 5]; input v : f32 in "
-            "[1e-20, 1e20]; input w "
-            ": f32;"
+            "[1e-20, 1e20]; input w : f32;"
             "predicate p = " +
             text + " <= 0.7; monitor m = G p;");
         ASSERT_TRUE(checked.model) << checked.diagnostics();
@@ -103,9 +102,9 @@ TEST(Ranges, RandomSamplesStayInside) {
             const float delta = value_of(p.expression, inputs);
             if (std::isnan(delta)) continue;  // unknown
             ++checked_samples;
-            EXPECT_TRUE(holds(p.delta, delta))
+            EXPECT_TRUE(p.delta.contains(delta))
                 << text << ": " << delta << " in [" << p.delta.low << ", " << p.delta.high << "]";
-            EXPECT_TRUE(holds(p.robustness, p.threshold.value - delta)) << text;
+            EXPECT_TRUE(p.robustness.contains(p.threshold.value - delta)) << text;
         }
     }
     EXPECT_GT(checked_samples, 40000);

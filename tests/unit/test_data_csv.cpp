@@ -158,9 +158,7 @@ std::vector<Broken> broken() {
          "no column 'grip'; did you mean 'gripp'?"},
         {"absent, nothing near", many + "\n", Code::no_such_channel, 1, 1,
          "no column 'z[0]', needed by input 'z' of 2 elements; there are 't0', 't1', 't2', 't3', "
-         "'t4', 't5', 't6', "
-         "'t7', 't8', "
-         "'t9' and 2 more"},
+         "'t4', 't5', 't6', 't7', 't8', 't9' and 2 more"},
         {"vector too short", "z[0],grip,held\n", Code::no_such_channel, 1, 1,
          "no column 'z[1]', needed by input 'z' of 2 elements; there are 'z[0]', 'grip' and "
          "'held'"},
@@ -280,7 +278,8 @@ TEST(Csv, OpenedByItsEnding) {
     const auto unknown = open_trace(other.path(), kChannels);
     ASSERT_FALSE(unknown);
     EXPECT_EQ(unknown.failure().code, Code::unknown_trace_format);
-    EXPECT_EQ(unknown.failure().message, "unknown kind of trace, expected .csv, .npz or .h5");
+    EXPECT_EQ(unknown.failure().message,
+              "unknown kind of trace, expected .csv, .npz, .h5 or .hdf5");
     for (const char* ending : {".csv", ".npz"}) {
         const auto missing = open_trace(std::string("no_such") + ending, kChannels);
         ASSERT_FALSE(missing);

@@ -88,10 +88,10 @@ TEST_F(Episodes, AreMissedWhereAnArgumentHasNone) {
     EXPECT_EQ(messages,
               (std::set<std::string>{
                   "no_such: no such file",
-                  "empty: holds no episodes, expected files that end in .npz, .csv or .h5",
+                  "empty: holds no episodes, expected files that end in .csv, .npz, .h5 or .hdf5",
                   "*.h: no file matches this pattern",
-                  "em*: only folders match, without episodes, expected files that end in .npz, "
-                  ".csv or .h5",
+                  "em*: only folders match, without episodes, expected files that end in .csv, "
+                  ".npz, .h5 or .hdf5",
               }));
 }
 

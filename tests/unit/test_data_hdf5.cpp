@@ -97,8 +97,7 @@ TEST_F(Hdf5Trace, OfAGroup) {
     }
     EXPECT_EQ(failure(kFile + ":data/demo_3", channels).message,
               "no group 'data/demo_3'; there are 'column', 'cube', 'data', 'elsewhere', "
-              "'external', 'gripper', 'held', "
-              "'held_int' and 12 more");
+              "'external', 'gripper', 'held', 'held_int' and 12 more");
 }
 
 TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
@@ -120,8 +119,7 @@ TEST_F(Hdf5Trace, GroupsOfAFileAreEpisodes) {
 TEST_F(Hdf5Trace, NamesWhatIsNotThere) {
     EXPECT_EQ(message({{"zz", Kind::vector, 3}}),
               "no dataset 'zz'; there are 'column', 'cube', 'data', 'elsewhere', 'external', "
-              "'gripper', 'held', "
-              "'held_int' and 12 more");
+              "'gripper', 'held', 'held_int' and 12 more");
     EXPECT_EQ(failure(kFile, {{"zz", Kind::vector, 3}}).code, Code::no_such_channel);
     EXPECT_EQ(message({{"data", Kind::vector, 3}}), "'data' is no dataset");
     EXPECT_EQ(message({{"z/below", Kind::vector, 3}}).substr(0, 20), "no dataset 'z/below'");

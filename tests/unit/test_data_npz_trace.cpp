@@ -242,9 +242,7 @@ TEST(NpzTrace, WithoutATemporaryFolderFortranOrderSaysSo) {
     EXPECT_EQ(failure->code, Code::unreadable_trace);
     EXPECT_EQ(failure->message,
               "array 'z_turned': a Fortran-ordered array needs a temporary file: No such file or "
-              "directory; save it in "
-              "C order, "
-              "or set TMPDIR to a folder with room for it");
+              "directory; save it in C order, or set TMPDIR to a folder with room for it");
 }
 
 }  // namespace

@@ -108,8 +108,8 @@ const std::vector<Binary> kBinary{
 };
 
 const std::vector<std::pair<std::string, std::string>> kPrefix{
-    {"!", "not"},      {"X", "next"}, {"F", "eventually"},   {"G", "always"},
-    {"Y", "previous"}, {"O", "once"}, {"H", "historically"},
+    {"!", "not"},  {"X", "next"},         {"F", "eventually"}, {"G", "always"},  {"Y", "previous"},
+    {"O", "once"}, {"H", "historically"}, {"rise", "rise"},    {"fall", "fall"},
 };
 
 std::string tree(const std::string& op, const std::string& a, const std::string& b) {

@@ -224,10 +224,9 @@ TEST(Places, NeverAntlrsOwnWords) {
     // Every prefix of a spec that uses everything ends in an error that speaks the user's language.
     const std::string spec =
         "spec a; rate 20 Hz; input z : i8[4] scale 0.1 hold 2; input x : f32 in [-1, inf]; target "
-        "t = [[1, 2]]; "
-        "predicate p = kth(2) mahalanobis([1])([x], t) + abs(x) <= calibrated(f1, k = 2); truth p "
-        "= x > 1; "
-        "sliding monitor m = G (p -> F[0s, 2min] !p U x < 1) <-> true calibrated(f1);";
+        "t = [[1, 2]]; predicate p = kth(2) mahalanobis([1])([x], t) + abs(x) <= calibrated(f1, k "
+        "= 2); truth p = x > 1; sliding monitor m = G (p -> F[0s, 2min] !p U x < 1) <-> true "
+        "calibrated(f1);";
     for (std::size_t length = 1; length < spec.size(); ++length) {
         const Parsed parsed(spec.substr(0, length));
         const std::string said = parsed.errors();

@@ -93,7 +93,13 @@ public:
             case Kind::disjunction: operands(2 + below(3)); break;
             case Kind::negation:
             case Kind::next:
+            case Kind::rise:
+            case Kind::fall:
             case Kind::previous: operands(1); break;
+            case Kind::held:
+                operands(1);
+                f->interval = ast::Interval{{{"0", {}}, "", {}}, {{number(), {}}, "s", {}}, {}};
+                break;
             case Kind::eventually:
             case Kind::always:
             case Kind::once:
@@ -225,13 +231,10 @@ TEST(Print, NoBracketCouldBeLeftOut) {
 TEST(Print, WholeSpecsReadBackAsTheyWere) {
     const Parsed parsed(
         "spec a; rate 20 Hz; period 3 ms; input z : f16[3] hold 2; input x, y : f32 in [0, 1]; "
-        "input b : bool; "
-        "target t = load(\"t.npy\"); target u = [[1, 2]]; target v = [1]; predicate p = min l1(z, "
-        "t) <= 1; "
-        "predicate q = x > calibrated(conformal, alpha = 0.10); truth q = H (x > 1); let f = p && "
-        "q; "
-        "monitor m = F f; monitor n = G f calibrated(conformal, alpha = 0.1); sliding monitor k = "
-        "F[0, 3] f;");
+        "input b : bool; target t = load(\"t.npy\"); target u = [[1, 2]]; target v = [1]; "
+        "predicate p = min l1(z, t) <= 1; predicate q = x > calibrated(conformal, alpha = 0.10); "
+        "truth q = H (x > 1); let f = p && q; monitor m = F f; monitor n = G f "
+        "calibrated(conformal, alpha = 0.1); sliding monitor k = F[0, 3] f;");
     ASSERT_EQ(parsed.errors(), "");
     const Parsed again(ast::print(parsed.spec));
     EXPECT_EQ(again.errors(), "");

@@ -140,6 +140,12 @@ TEST(Reference, PastOperators) {
     EXPECT_EQ(at_each(Kind::once, false, 1, 2), (List{-kInf, 1, 1, 3}));
     EXPECT_EQ(at_each(Kind::historically, false, 2, 9), (List{kInf, kInf, 1, -2}));
     EXPECT_EQ(at_each(Kind::previous, false), (List{-kInf, 1, -2, 3}));
+    EXPECT_EQ(at_each(Kind::rise, false), (List{-kInf, -2, 2, -3}));  // min(x, -x before)
+    EXPECT_EQ(at_each(Kind::fall, false), (List{-kInf, 1, -3, 0}));   // min(-x, x before)
+    EXPECT_EQ(at_each(Kind::fall, false, 0, 0, true), (List{kInf, -1, 3, 0}));
+    EXPECT_EQ(at_each(Kind::held, false, 0, 2), (List{-kInf, -kInf, -2, -2}));
+    EXPECT_EQ(at_each(Kind::held, false, 0, 0), (List{1, -2, 3, 0}));
+    EXPECT_EQ(at_each(Kind::held, false, 0, 1, true), (List{kInf, 2, 2, 0}));
     // k=1: max(min(2, -2), -1); k=2: max(min(2, -2, 3), min(-1, 3), -4); k=3: max(-2, min(-1, 3,
     // 0), min(-4, 0), 1)
     EXPECT_EQ(at_each(Kind::since, true), (List{2, -1, -1, 1}));

@@ -119,6 +119,9 @@ std::string head(Formula::Kind kind) {
         case Formula::Kind::once: return "O";
         case Formula::Kind::historically: return "H";
         case Formula::Kind::since: return "S";
+        case Formula::Kind::rise: return "rise";
+        case Formula::Kind::fall: return "fall";
+        case Formula::Kind::held: return "held";
     }
     return "?";
 }

@@ -74,6 +74,9 @@ Constancy of(const Formula& formula, const Operands& operands) {
         case Kind::previous:
         case Kind::eventually:
         case Kind::once: return some(operands[0], present);
+        case Kind::rise:
+        case Kind::fall: return operands[0] == varies ? varies : never;
+        case Kind::held: return operands[0] == never || formula.high == 0 ? operands[0] : varies;
         case Kind::always:
         case Kind::historically: return every(operands[0], present);
         case Kind::until:
@@ -87,6 +90,7 @@ Constancy of(const Formula& formula, const Operands& operands) {
 
 /// Past operators at position 0 see themselves, or nothing.
 Constancy past_at_start(const Formula& formula, const Operands& operands) {
+    if (formula.kind == Kind::held) return formula.high == 0 ? operands[0] : never;
     if (formula.low == 0) return operands.back();
     return formula.kind == Kind::historically ? always : never;
 }

@@ -38,6 +38,9 @@ constexpr std::array kOperators = std::to_array<Correspondence>({
     {ast::Formula::Kind::once, Kind::once, "O"},
     {ast::Formula::Kind::historically, Kind::historically, "H"},
     {ast::Formula::Kind::since, Kind::since, "S"},
+    {ast::Formula::Kind::rise, Kind::rise, "rise"},
+    {ast::Formula::Kind::fall, Kind::fall, "fall"},
+    {ast::Formula::Kind::held, Kind::held, "held"},
 });
 
 Kind kind_of(ast::Formula::Kind written) {
@@ -97,9 +100,10 @@ private:
     }
 
     bool set_interval(Formula& formula, const ast::Formula& written) {
-        if (formula.kind == Kind::next || formula.kind == Kind::previous)
-            formula.low = formula.high = 1;
+        if (looks_one_step_away(formula.kind)) formula.low = formula.high = 1;
         if (!written.interval) return true;
+        if (formula.kind == Kind::held && !is_finite_duration(c_, written.interval->high))
+            return false;
         const auto steps = interval_steps(c_, *written.interval);
         if (!steps) return false;
         formula.low = steps->low;
@@ -172,7 +176,7 @@ bool looks_ahead(Kind kind) {
 
 bool looks_back(Kind kind) {
     return kind == Kind::previous || kind == Kind::once || kind == Kind::historically ||
-           kind == Kind::since;
+           kind == Kind::since || kind == Kind::rise || kind == Kind::fall || kind == Kind::held;
 }
 
 }  // namespace etlc::check

@@ -154,13 +154,11 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
              fmt::format("'{}' is calibrated as a whole, against the truths of its predicates; "
-                         "'{}' has no name by "
-                         "which a truth could be given",
+                         "'{}' has no name by which a truth could be given",
                          monitor.name, comparison))
         .note(c.model.formulas[at].span, "it is used here")
         .note(fmt::format("declare it, as in 'predicate near = {};', and say what is true: 'truth "
-                          "near = ...;', or an "
-                          "array truth.near in the episodes",
+                          "near = ...;', or an array truth.near in the episodes",
                           comparison));
 }
 

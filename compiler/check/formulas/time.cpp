@@ -90,8 +90,8 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
     const ast::Rate& rate = *c.step.rate;
     const Quantity step = quantity(rate);
     const auto name = [&](std::uint64_t steps) {
-        return fmt::format("{} ({} step{})", duration_text(steps, step, bound.unit), steps,
-                           steps == 1 ? "" : "s");
+        return fmt::format("{} ({})", duration_text(steps, step, bound.unit),
+                           diag::counted(steps, "step"));
     };
     c.report(Code::duration_not_whole, bound.span,
              fmt::format("{} is not a whole number of steps; the nearest that are: {} and {}",
@@ -148,6 +148,15 @@ void check_rate(Context& c) {
     }
     c.step.rate = first;
     c.model.step_seconds = seconds(quantity(*first));
+}
+
+bool is_finite_duration(Context& c, const ast::Bound& bound) {
+    if (!is_infinite(bound)) return true;
+    c.report(Code::bound_not_finite, bound.span,
+             fmt::format("{} cannot stand here; a formula is held for a finite time",
+                         bound_text(bound)))
+        .note("what has held since the first step is 'H f'");
+    return false;
 }
 
 std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {

@@ -24,6 +24,9 @@ struct Steps {
     std::uint32_t high = 0;
 };
 
+/// Not inf: the bound of `held`. An error, which is reported, otherwise.
+bool is_finite_duration(Context& context, const ast::Bound& bound);
+
 /// The interval in steps; nothing where it had an error, which is reported.
 std::optional<Steps> interval_steps(Context& context, const ast::Interval& interval);
 

@@ -125,7 +125,7 @@ std::optional<Adaptation> check_adaptation(Context& c, const ast::Calibrated& wr
 }
 
 std::optional<float> start(const Adaptation& adaptation, float epsilon, bool upper_bound) {
-    if (!(adaptation.range.low <= epsilon && epsilon <= adaptation.range.high)) return std::nullopt;
+    if (!adaptation.range.contains(epsilon)) return std::nullopt;
     const auto grid = static_cast<double>(adaptation.grid);
     const double steps = static_cast<double>(epsilon) / grid;
     return static_cast<float>((upper_bound ? std::ceil(steps) : std::floor(steps)) * grid + 0.0);

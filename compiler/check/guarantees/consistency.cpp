@@ -21,10 +21,6 @@ bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }
 
-std::string plural(std::uint64_t n, std::string_view noun) {
-    return fmt::format("{} {}{}", n, noun, n == 1 ? "" : "s");
-}
-
 /// As a number, and no longer than a line bears.
 std::string shown(const std::string& alpha) {
     constexpr std::size_t kLongest = 40;
@@ -39,7 +35,7 @@ Found counts(const Entry& entry, const std::string& place) {
             fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
     if (entry.scores.size() != kept)
         return Contradiction{fmt::format(
-            "'{}.scores' has {}, expected {}", place, plural(entry.scores.size(), "element"),
+            "'{}.scores' has {}, expected {}", place, diag::counted(entry.scores.size(), "element"),
             keeps_all(entry) ? fmt::format("n of them, which is {}", kept)
                              : "1, the score that was taken")};
     for (std::size_t i = 1; i < entry.scores.size(); ++i)
@@ -56,7 +52,7 @@ Found counts(const Entry& entry, const std::string& place) {
     if (k != entry.k)
         return Contradiction{
             fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
-                        entry.k, k, shown(entry.alpha), plural(entry.n, "score"))};
+                        entry.k, k, shown(entry.alpha), diag::counted(entry.n, "score"))};
     return std::nullopt;
 }
 
@@ -66,8 +62,8 @@ Found episodes_of(const Entry& entry, const std::string& place,
     const std::uint64_t least = keeps_all(entry) ? entry.n : 1;
     if (episodes.size() < least)
         return Contradiction{fmt::format(
-            "'{}' has {}, expected at least {}{}", list, plural(episodes.size(), "element"), least,
-            keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
+            "'{}' has {}, expected at least {}{}", list, diag::counted(episodes.size(), "element"),
+            least, keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
     std::set<std::string> seen;
     for (std::size_t i = 0; i < episodes.size(); ++i)
         if (!seen.insert(episodes[i]).second)

@@ -242,8 +242,7 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
             .note(shift.span, "it is for this")
             .note(
                 "calibrate monitors on other episodes: fitted on the same ones, the thresholds are "
-                "better there "
-                "than they will be");
+                "better there than they will be");
         return;
     }
     take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path,

@@ -27,6 +27,8 @@ enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
 struct Range {
     float low = -std::numeric_limits<float>::infinity();
     float high = std::numeric_limits<float>::infinity();
+
+    bool contains(float x) const { return low <= x && x <= high; }
 };
 
 struct Input {
@@ -138,8 +140,7 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
 }
 
 /// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
-/// formula's value is true
-/// (+inf) or false (-inf).
+/// formula's value is true (+inf) or false (-inf).
 enum class Values : std::uint8_t { robustness, boolean };
 
 enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
@@ -207,7 +208,8 @@ inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::
 inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
 
 struct Formula {
-    /// The operators of the language after desugaring words; `next` and `previous` stay as written.
+    /// The operators of the language after desugaring words; `next`, `previous`,
+    /// `rise`, `fall` and `held` stay as written.
     enum class Kind : std::uint8_t {
         constant_true,
         constant_false,
@@ -228,14 +230,23 @@ struct Formula {
         once,
         historically,
         since,
+        rise,  ///< f && Y !f
+        fall,  ///< !f && Y f
+        held,  ///< [0, n]: H[0,n] f && O[n,n] true
     };
     Kind kind = Kind::constant_true;
     Index index = 0;              ///< predicate or boolean_input
     std::vector<Index> operands;  ///< formulas; conjunction and disjunction have two or more
-    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next and previous
+    std::uint32_t low = 0;        ///< interval, in steps; [1, 1] for next, previous, rise, fall
     std::uint32_t high = kUnbounded;
     Span span;
 };
+
+/// X, Y, rise and fall, whose interval [1, 1] is not written.
+constexpr bool looks_one_step_away(Formula::Kind kind) {
+    using Kind = Formula::Kind;
+    return kind == Kind::next || kind == Kind::previous || kind == Kind::rise || kind == Kind::fall;
+}
 
 /// Which error a calibrated monitor is guaranteed against.
 enum class Against : std::uint8_t { missed_alarm, missed_success };

@@ -38,6 +38,9 @@ Operator operator_of(Kind kind) {
         case Kind::previous: return {"Y", kPrefix};
         case Kind::once: return {"O", kPrefix};
         case Kind::historically: return {"H", kPrefix};
+        case Kind::rise: return {"rise", kPrefix};
+        case Kind::fall: return {"fall", kPrefix};
+        case Kind::held: return {"held", kPrefix};
         case Kind::constant_true: return {"true", kAtom};
         case Kind::constant_false: return {"false", kAtom};
         case Kind::predicate:
@@ -94,7 +97,8 @@ private:
     }
 
     static std::string interval(const Formula& formula) {
-        if (formula.kind == Kind::next || formula.kind == Kind::previous) return "";
+        if (looks_one_step_away(formula.kind)) return "";
+        if (formula.kind == Kind::held) return '[' + std::to_string(formula.high) + ']';
         if (formula.low == 0 && formula.high == kUnbounded) return "";
         const std::string high = formula.high == kUnbounded ? "inf" : std::to_string(formula.high);
         return '[' + std::to_string(formula.low) + ", " + high + ']';

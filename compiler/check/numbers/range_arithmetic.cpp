@@ -79,10 +79,6 @@ float sqrt_up(float x) {
 
 }  // namespace
 
-bool holds(const Range& range, float value) {
-    return range.low <= value && value <= range.high;
-}
-
 Range negate(const Range& a) {
     return {0.0F - a.high, 0.0F - a.low};  // 0 rather than -0
 }
@@ -100,7 +96,7 @@ Range multiply(const Range& a, const Range& b) {
 }
 
 Range divide(const Range& a, const Range& b) {
-    if (holds(b, 0.0F)) return kEverything;
+    if (b.contains(0.0F)) return kEverything;
     return hull_of_corners(a, b, quotient);
 }
 

@@ -13,8 +13,6 @@ namespace etlc::check {
 
 inline constexpr Range kEverything{};
 
-bool holds(const Range& range, float value);
-
 Range negate(const Range& a);
 Range add(const Range& a, const Range& b);
 Range subtract(const Range& a, const Range& b);

@@ -114,8 +114,8 @@ private:
             error.note(c_.model.inputs[distance_.point[0]].span,
                        fmt::format("{} is declared here", point));
         error.note(target().span,
-                   fmt::format("'{}' has {} row{} of {}", target().name, target().rows,
-                               target().rows == 1 ? "" : "s", target().dimension));
+                   fmt::format("'{}' has {} of {}", target().name,
+                               diag::counted(target().rows, "row"), target().dimension));
         return false;
     }
 
@@ -147,10 +147,9 @@ private:
             distance_.kth = static_cast<std::uint32_t>(*n);
             return true;
         }
-        c_.report(
-            Code::kth_out_of_range, written_.aggregation->span,
-            fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {} row{}",
-                        text, target().name, target().rows, target().rows == 1 ? "" : "s"));
+        c_.report(Code::kth_out_of_range, written_.aggregation->span,
+                  fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {}",
+                              text, target().name, diag::counted(target().rows, "row")));
         return false;
     }
 

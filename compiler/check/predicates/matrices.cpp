@@ -128,10 +128,11 @@ std::optional<Matrix> read_matrix(Context& c, const ast::MatrixLiteral& literal)
         if (row.size() == columns) continue;
         const Span span =
             row.empty() ? literal.span : source::join(row.front().span, row.back().span);
-        c.report(Code::ragged_matrix, span,
-                 fmt::format("row {} (from 0) has {} value{}, row 0 has {}; the rows of a matrix "
-                             "are equally long",
-                             i, row.size(), row.size() == 1 ? "" : "s", columns));
+        c.report(
+            Code::ragged_matrix, span,
+            fmt::format("row {} (from 0) has {}, row 0 has {}; the rows of a matrix are equally "
+                        "long",
+                        i, diag::counted(row.size(), "value"), columns));
         return std::nullopt;
     }
     return literal_matrix(c, literal.rows);

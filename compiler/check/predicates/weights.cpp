@@ -87,8 +87,7 @@ bool make_symmetric(Context& c, Matrix& w, Span span) {
             if (std::abs(a - b) > kSymmetryTolerance * size) {
                 c.report(Code::weights_not_symmetric, span,
                          fmt::format("the weights are not symmetric: {:g} at row {}, column {} and "
-                                     "{:g} at row {}, "
-                                     "column {} (from 0)",
+                                     "{:g} at row {}, column {} (from 0)",
                                      a, i, j, b, j, i));
                 return false;
             }
@@ -151,8 +150,7 @@ std::optional<Weights> check_weights(Context& c, const ast::Weights& weights,
                                                     : fmt::format("({}, {})", w.rows, w.columns);
         c.report(Code::weights_shape, span,
                  fmt::format("the weights have shape {}; for points of dimension {} expected ({}, "
-                             "{}), or the {} "
-                             "elements of a diagonal",
+                             "{}), or the {} elements of a diagonal",
                              shape, dimension, dimension, dimension, dimension));
         return std::nullopt;
     }

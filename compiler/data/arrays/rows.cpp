@@ -100,8 +100,7 @@ Descriptor nameless_file() {
 Failure temporary_failed(int error) {
     return {Code::unreadable_data_file,
             fmt::format("a Fortran-ordered array needs a temporary file: {}; save it in C order, "
-                        "or set TMPDIR to a folder "
-                        "with room for it",
+                        "or set TMPDIR to a folder with room for it",
                         std::strerror(error))};
 }
 

@@ -128,8 +128,8 @@ public:
         if (!*more) return false;
         if (rows_->cells() != columns_)
             return Failure{Code::malformed_csv,
-                           fmt::format("row has {} cell{}, the header has {}", rows_->cells(),
-                                       rows_->cells() == 1 ? "" : "s", columns_),
+                           fmt::format("row has {}, the header has {}",
+                                       diag::counted(rows_->cells(), "cell"), columns_),
                            rows_->row_line(), 1};
         sample.values.resize(channels_.size());
         sample.present = has_;

@@ -21,7 +21,10 @@ namespace fs = std::filesystem;
 using diag::Code;
 
 constexpr std::string_view kPatternCharacters = "*?[";
-constexpr std::string_view kExpected = "expected files that end in .npz, .csv or .h5";
+
+std::string expected() {
+    return "expected files that end in " + trace_endings();
+}
 
 bool is_directory(const std::string& path) {
     std::error_code error;
@@ -41,7 +44,7 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
                              fmt::format("cannot be read: {}", error.message())};
     if (files.empty())
         return diag::Failure{Code::unreadable_trace,
-                             fmt::format("holds no episodes, {}", kExpected)};
+                             fmt::format("holds no episodes, {}", expected())};
     return files;
 }
 
@@ -66,7 +69,7 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
     }
     if (files.empty())
         return diag::Failure{Code::unreadable_trace,
-                             fmt::format("only folders match, without episodes, {}", kExpected)};
+                             fmt::format("only folders match, without episodes, {}", expected())};
     return files;
 }
 

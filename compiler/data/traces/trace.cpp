@@ -19,6 +19,40 @@ std::size_t group_mark(const std::string& path) {
     return std::string::npos;
 }
 
+using Opened = diag::Result<std::unique_ptr<Trace>>;
+
+Opened open_csv(const std::string& path, const std::vector<Channel>& channels) {
+    auto source = open_file(path);
+    if (!source) return of_trace(source.failure());
+    return open_csv_trace(std::move(*source), channels);
+}
+
+Opened open_npz(const std::string& path, const std::vector<Channel>& channels) {
+    return open_npz_trace({path, {}, false}, channels);
+}
+
+Opened open_hdf5(const std::string& path, const std::vector<Channel>& channels) {
+    const std::size_t mark = group_mark(path);
+    const std::string group = mark == std::string::npos ? "" : path.substr(mark + 1);
+    return open_hdf5_trace(path.substr(0, mark), group, channels);
+}
+
+/// What the ending of a file says of its format.
+struct Format {
+    const char* ending;
+    Opened (*open)(const std::string& path, const std::vector<Channel>& channels);
+};
+
+constexpr Format kFormats[] = {
+    {".csv", open_csv}, {".npz", open_npz}, {".h5", open_hdf5}, {".hdf5", open_hdf5}};
+
+/// Null where the ending is that of no format.
+const Format* format_of(const std::string& file) {
+    for (const Format& format : kFormats)
+        if (file.ends_with(format.ending)) return &format;
+    return nullptr;
+}
+
 }  // namespace
 
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
@@ -29,7 +63,13 @@ std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& n
 }
 
 bool is_trace(const std::string& path) {
-    return path.ends_with(".npz") || path.ends_with(".csv") || is_hdf5(path);
+    return format_of(path) != nullptr;
+}
+
+std::string trace_endings() {
+    std::vector<std::string> endings;
+    for (const Format& format : kFormats) endings.emplace_back(format.ending);
+    return diag::alternatives(endings);
 }
 
 std::string trace_file(const std::string& path) {
@@ -53,17 +93,9 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
                                                 const std::vector<Channel>& channels) {
-    if (path.ends_with(".npz")) return open_npz_trace({path, {}, false}, channels);
-    const std::size_t mark = group_mark(path);
-    if (mark != std::string::npos)
-        return open_hdf5_trace(path.substr(0, mark), path.substr(mark + 1), channels);
-    if (is_hdf5(path)) return open_hdf5_trace(path, "", channels);
-    if (!path.ends_with(".csv"))
-        return diag::Failure{diag::Code::unknown_trace_format,
-                             "unknown kind of trace, expected .csv, .npz or .h5"};
-    auto source = open_file(path);
-    if (!source) return of_trace(source.failure());
-    return open_csv_trace(std::move(*source), channels);
+    if (const Format* format = format_of(trace_file(path))) return format->open(path, channels);
+    return diag::Failure{diag::Code::unknown_trace_format,
+                         "unknown kind of trace, expected " + trace_endings()};
 }
 
 }  // namespace etlc::data

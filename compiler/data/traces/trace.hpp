@@ -52,6 +52,8 @@ std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& n
 
 /// Whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);
+/// The endings of traces: ".csv, .npz, .h5 or .hdf5".
+std::string trace_endings();
 
 /// Of FILE.h5:GROUP the file, of any other path the path itself.
 std::string trace_file(const std::string& path);

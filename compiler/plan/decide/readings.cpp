@@ -233,8 +233,8 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
 /// The formula with its windows taken apart, where that can be read with fewer operations; else
 /// nothing is added.
 std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, std::uint64_t operations) {
-    const auto found = program_.apart.find(id);
-    if (found == program_.apart.end()) return std::nullopt;
+    const auto found = program_.split_windows.find(id);
+    if (found == program_.split_windows.end()) return std::nullopt;
     const std::size_t before = readings_.size();
     const std::size_t failures = oversize_.size();
     is_apart_ = true;  // a part that is too large is not taken apart again

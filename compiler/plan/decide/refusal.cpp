@@ -111,7 +111,8 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
             error.note(node.span, fmt::format("the {} steps of '{}' are counted one by one",
                                               counted(node), text));
         else
-            error.note(node.span, fmt::format("'{}' is followed from each position anew", text));
+            error.note(node.span,
+                       fmt::format("'{}' is followed from each position separately", text));
     }
     error.note(
         "shorter windows or fewer nested operators make it smaller; --max-state and --max-code "

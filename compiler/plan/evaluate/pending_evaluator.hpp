@@ -1,4 +1,4 @@
-// A pending reading, executed: the last positions of the prefix anew at every step.
+// A pending reading, executed: the last positions of the prefix again at every step.
 // Takes: this step's streams. Gives: the reading. Keeps true: constant memory; the same runtime
 // loops as generated code.
 #pragma once

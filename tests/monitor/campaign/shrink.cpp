@@ -55,6 +55,9 @@ const char* symbol(Kind kind) {
         case Kind::once: return "O";
         case Kind::historically: return "H";
         case Kind::since: return "S";
+        case Kind::rise: return "rise";
+        case Kind::fall: return "fall";
+        case Kind::held: return "held";
         default: return "";
     }
 }
@@ -67,12 +70,14 @@ bool has_interval(Kind kind) {
         case Kind::release:
         case Kind::once:
         case Kind::historically:
-        case Kind::since: return true;
+        case Kind::since:
+        case Kind::held: return true;
         default: return false;
     }
 }
 
 std::string interval_text(const Tree& tree) {
+    if (tree.kind == Kind::held) return fmt::format("[{}]", tree.high);
     if (!has_interval(tree.kind) || (tree.low == 0 && tree.high == kUnbounded)) return "";
     return tree.high == kUnbounded ? fmt::format("[{}, inf]", tree.low)
                                    : fmt::format("[{}, {}]", tree.low, tree.high);

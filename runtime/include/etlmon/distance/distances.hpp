@@ -4,10 +4,11 @@
 // struct that the kernels run over rows. Keeps true: the difference z - g comes first, always, so
 // a small distance is as exact as the difference is; |z|^2 + |g|^2 - 2 z.g decides nothing. Error
 // bounds: error_bounds.hpp. Each struct has
-//   Partial<V>  running sums, V a float or a vector    row(sums)      a row's value >= 0, ordered
-//   as the distance is Point       what is computed once from z           finish(value)  the
-//   distance k...        what it reads, where it is sound, how great it can be: its range is [0,
-//   kHighest]
+//   Partial<V>     the running sums, V a float or a vector of them
+//   Point          what is computed once from z
+//   row(sums)      a row's value, >= 0, ordered as the distance is
+//   finish(value)  the distance
+//   k...           what it reads, where it is sound, and kHighest: its range is [0, kHighest]
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -21,8 +22,8 @@ namespace detail {
 /// -ffast-math); they are computed again in scaled form. 2^-80: what a term of D <= 2^20 can lose
 /// is below one rounding of the sum.
 constexpr uint32_t kLeastSquare = 0x17800000u;
-constexpr uint32_t kGreatestSquare =
-    0x71800000u;  ///< 2^100: the reciprocal of the root is a normal float
+/// 2^100: the reciprocal of the root is a normal float.
+constexpr uint32_t kGreatestSquare = 0x71800000u;
 constexpr uint32_t kGreatest = 0x7f7fffffu;  ///< FLT_MAX
 
 struct NoPoint {};
@@ -42,14 +43,18 @@ struct Additive {
   template <class V>
   using Partial = Sum<V>;
   using Point = NoPoint;
-  static constexpr bool kWeighted = false;   ///< reads one weight per element
-  static constexpr bool kQuadratic = false;  ///< reads D x D weights
-  static constexpr bool kDirection =
-      false;                            ///< of z only the direction counts: z is scaled to length 1
-  static constexpr bool kTold = false;  ///< of the length of z, in the place of weights
-  static constexpr bool kRescales =
-      false;  ///< a square: outside [kLeastSquare, FLT_MAX] the scaled form decides
-  static constexpr bool kSum = true;  ///< a row's value is its sum
+  /// Reads one weight per element.
+  static constexpr bool kWeighted = false;
+  /// Reads D x D weights.
+  static constexpr bool kQuadratic = false;
+  /// Only the direction of z counts: z is scaled to length 1.
+  static constexpr bool kDirection = false;
+  /// 1 / |z| stands in the place of weights.
+  static constexpr bool kLengthGiven = false;
+  /// A square: outside [kLeastSquare, FLT_MAX] the scaled form decides.
+  static constexpr bool kRescales = false;
+  /// A row's value is its sum.
+  static constexpr bool kSum = true;
   static constexpr float kHighest = kInfinite;
   ETLMON_INLINE static float row(const Sum<float>& s) noexcept { return s.sum; }
   ETLMON_INLINE static float finish(float value) noexcept { return value; }
@@ -151,8 +156,8 @@ ETLMON_INLINE float capped(float distance) noexcept {
 
 /// The same distance where 1 / |z| has been found already.
 template <class Metric>
-struct Told : Metric {
-  static constexpr bool kTold = true;
+struct LengthGiven : Metric {
+  static constexpr bool kLengthGiven = true;
 };
 }  // namespace detail
 

@@ -105,7 +105,8 @@ template <class Metric, class Aggregation, uint32_t K, uint32_t D, const auto& T
 ETLMON_INLINE Measured measure(const Direction<D>& z) noexcept {
   static_assert(Metric::kDirection, "this distance does not need the length of z");
   if (z.elements == nullptr) return kUnmeasured;
-  return measure<detail::Told<Metric>, Aggregation, K, D, Targets>(z.elements, &z.inverse_length);
+  return measure<detail::LengthGiven<Metric>, Aggregation, K, D, Targets>(z.elements,
+                                                                          &z.inverse_length);
 }
 
 /// The same for targets of int8, each worth `scale` times itself, rounded once.

@@ -22,6 +22,16 @@ struct Answers {
   static constexpr uint8_t kDecided = 4;
   static constexpr uint8_t kFinal = 8;
 
+  // What a program acts on.
+  /// Violated for good: nothing that may come repairs it.
+  constexpr bool alarm() const noexcept { return violated() && final(); }
+  /// Satisfied for good: on to the next task.
+  constexpr bool fulfilled() const noexcept { return satisfied() && final(); }
+  /// What comes may still change the answer.
+  constexpr bool open() const noexcept { return decided() && !final(); }
+
+  // What the prefix says, were it to end now. Until it is final that is mostly "not yet": G F[0,6] p
+  // is violated at any step of a good run at which p is not there.
   constexpr bool satisfied() const noexcept { return has(kSatisfied); }
   constexpr bool violated() const noexcept { return has(kViolated); }
   /// A missing sample leaves it open.
