@@ -223,11 +223,11 @@ class Monitor {
     etlmon::Value near_c;
   };
 
-  /// What the class was made from, as XXH64: to be kept with its verdicts.
+  /// What the class was made from, as XXH64: log it with the verdicts.
   static constexpr uint64_t kSpecHash = 0x36ff2197c664b658u;        ///< dubins.etl
   static constexpr uint64_t kDataHash = 0x5e0b6aabc069c56eu;        ///< target sets and weights
   static constexpr uint64_t kThresholdsHash = 0x0b71a727755def02u;  ///< thresholds, as they begin
-  /// What it takes.
+  /// What it costs.
   static constexpr size_t kStateBytes = 60;           ///< sizeof(Monitor)
   static constexpr uint32_t kOperations = 17;         ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 768;  ///< target elements measured in a step
@@ -274,7 +274,7 @@ class Monitor {
   uint32_t missing_steps() const noexcept { return incomplete; }
 
  private:
-  /// What stands for a predicate that is not seen: all that its robustness can be.
+  /// All that the robustness of a predicate can be: what stands for it where it is not seen.
   static Value unseen_at_a() noexcept {
     return Value{etlmon::key_of(-1.7570001f), etlmon::key_of(0.243f)};
   }
@@ -332,11 +332,11 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
 
   // dubins.etl:25: F at_a
   reach_ = max_of(reach_, now.at_a);
-  const Reading reach_reading = {reach_, reach_.low, max_of(reach_.high, etlmon::key_of(0.243f))};
+  const Reading reach_reading = {reach_, reach_.low, max_of(reach_.high, unseen_at_a().high)};
 
   // dubins.etl:26: G !near_c
   avoid_ = min_of(avoid_, not_near_c);
-  const Reading avoid_reading = {avoid_, min_of(avoid_.low, etlmon::key_of(-0.732f)), avoid_.high};
+  const Reading avoid_reading = {avoid_, min_of(avoid_.low, -unseen_near_c().high), avoid_.high};
 
   // dubins.etl:27: F at_a && G !near_c
   const Reading reach_avoid_reading = min_of(reach_reading, avoid_reading);
@@ -348,7 +348,7 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   const Reading sequential_reading = {
     sequential_met_,
     sequential_met_.low,
-    max_of(etlmon::key_of(0.223f), sequential_met_.high)
+    max_of(unseen_at_b().high, sequential_met_.high)
   };
 
   Verdicts verdicts;

@@ -65,11 +65,11 @@ class Monitor {
     etlmon::Value near_goal;
   };
 
-  /// What the class was made from, as XXH64: to be kept with its verdicts.
+  /// What the class was made from, as XXH64: log it with the verdicts.
   static constexpr uint64_t kSpecHash = 0xb969834d30a9eb86u;        ///< example.etl
   static constexpr uint64_t kDataHash = 0x541b091ac8a2d1e1u;        ///< target sets and weights
   static constexpr uint64_t kThresholdsHash = 0x5fd205765801e84cu;  ///< thresholds, as they begin
-  /// What it takes.
+  /// What it costs.
   static constexpr size_t kStateBytes = 20;         ///< sizeof(Monitor)
   static constexpr uint32_t kOperations = 2;        ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
@@ -105,7 +105,7 @@ class Monitor {
   uint32_t missing_steps() const noexcept { return incomplete; }
 
  private:
-  /// What stands for a predicate that is not seen: all that its robustness can be.
+  /// All that the robustness of a predicate can be: what stands for it where it is not seen.
   static Value unseen_near_goal() noexcept {
     return Value{etlmon::kBottom, etlmon::key_of(0.409f)};
   }

@@ -129,16 +129,19 @@ void print_types(Printer& out, const Context& context) {
 void print_class_constants(Printer& out, const Context& context) {
     const check::Fingerprint made_from = check::fingerprint(context.model);
     const plan::Cost& cost = context.plan.cost;
-    print_doc(out, "What the class was made from, as XXH64: to be kept with its verdicts.");
+    print_doc(out, "What the class was made from, as XXH64: log it with the verdicts.");
     const auto hash = [](const char* name, std::uint64_t value) {
         return fmt::format("static constexpr uint64_t {} = 0x{:016x}u;", name, value);
     };
-    print_aligned(out,
-                  {{hash("kSpecHash", made_from.spec), context.spec_file},
-                   {hash("kDataHash", made_from.data), "target sets and weights"},
-                   {hash("kThresholdsHash", made_from.thresholds), "thresholds, as they begin"}},
-                  "///<");
-    print_doc(out, "What it takes.");
+    print_aligned(
+        out,
+        {{hash("kSpecHash", made_from.spec), context.spec_file},
+         {hash("kDataHash", made_from.data),
+          made_from.data == 0 ? "no target sets, no weights" : "target sets and weights"},
+         {hash("kThresholdsHash", made_from.thresholds),
+          made_from.thresholds == 0 ? "no named thresholds" : "thresholds, as they begin"}},
+        "///<");
+    print_doc(out, "What it costs.");
     std::vector<std::pair<std::string, std::string>> sizes;
     sizes.emplace_back(fmt::format("static constexpr size_t kStateBytes = {};",
                                    context.stores_targets()
@@ -270,7 +273,9 @@ void declare_advance(Printer& out) {
 /// What stands for a predicate that is not seen: at a step that lacks its sample.
 void print_unseen(Printer& out, const Context& context) {
     if (context.names.predicate_unseen.empty()) return;
-    print_doc(out, "What stands for a predicate that is not seen: all that its robustness can be.");
+    print_doc(
+        out,
+        "All that the robustness of a predicate can be: what stands for it where it is not seen.");
     for (const auto& [p, name] : context.names.predicate_unseen)
         print_wrapped(out, fmt::format("static Value {}() noexcept {{ return {}; }}", name,
                                        context.literal(plan::unseen_range(

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "plan/narrow_targets.hpp"
+#include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
 
@@ -49,6 +50,30 @@ std::string Context::literal(plan::Key key) const {
     return fmt::format("etlmon::key_of({})", float_literal(etlmon::float_of(key)));
 }
 
+std::string Context::bound(plan::Key key) const {
+    const auto end = ends.find(key);
+    return end == ends.end() || end->second.empty() ? literal(key) : end->second;
+}
+
+std::map<plan::Key, std::string> unseen_ends(const plan::Plan& plan, const Names& names) {
+    std::map<plan::Key, std::string> ends;
+    const auto add = [&](plan::Key key, const std::string& text) {
+        if (key == etlmon::kTop || key == etlmon::kBottom) return;
+        const auto [entry, added] = ends.try_emplace(key, text);
+        if (!added) entry->second.clear();
+    };
+    for (const auto& [p, name] : names.predicate_unseen) {
+        const auto [low, high] = plan::unseen_range(plan.model->predicates[p], plan.values);
+        add(low, name + "().low");
+        if (high != low) add(high, name + "().high");
+        if (high != -low) {  // negated
+            add(-high, fmt::format("-{}().high", name));
+            if (high != low) add(-low, fmt::format("-{}().low", name));
+        }
+    }
+    return ends;
+}
+
 std::string_view Context::step_qualifier() const {
     constexpr std::uint64_t kFewOperations = 256;
     const bool small = plan.cost.distance_operations == 0 && plan.cost.operations <= kFewOperations;
@@ -80,12 +105,12 @@ std::string Context::value(plan::Slot slot) const {
 
 std::string Context::low(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    return stream.op == StreamOp::constant ? literal(stream.value.low) : value(slot) + ".low";
+    return stream.op == StreamOp::constant ? bound(stream.value.low) : value(slot) + ".low";
 }
 
 std::string Context::high(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
-    return stream.op == StreamOp::constant ? literal(stream.value.high) : value(slot) + ".high";
+    return stream.op == StreamOp::constant ? bound(stream.value.high) : value(slot) + ".high";
 }
 
 std::string reading_declaration(const Context& context, std::uint32_t reading) {

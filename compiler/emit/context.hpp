@@ -17,6 +17,10 @@
 
 namespace etlc::emit {
 
+/// The ends of what predicates can be, as code says them: "unseen_at_a().high". An end of more than
+/// one of them is none's.
+std::map<plan::Key, std::string> unseen_ends(const plan::Plan& plan, const Names& names);
+
 struct Context {
     const plan::Plan& plan;
     const ir::Graph& graph;
@@ -30,6 +34,7 @@ struct Context {
     bool on_demand;
     plan::Dependents dependents;
     std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
+    std::map<plan::Key, std::string> ends = unseen_ends(plan, names);
 
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
@@ -42,6 +47,8 @@ struct Context {
     bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
+    /// The same of a bound: what predicates can be that are not seen yet.
+    std::string bound(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
     bool lazy(plan::Slot slot) const { return demand[slot].lazy; }
     /// A lazy combination that is found out once a step.

@@ -76,7 +76,7 @@ void print_rows(Printer& out, const Context& context, Index d) {
     const check::Target& target = context.model.targets[distance.target];
     print_doc(out, rows_of(target, distance));
     if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
-        print_doc(out, fmt::format("begin so many floats into {}", context.targets_file));
+        print_doc(out, fmt::format("where they begin in {}, in floats", context.targets_file));
         return out.line("inline constexpr size_t {} = {};", context.names.target_array.at(d),
                         set->offset / sizeof(float));
     }

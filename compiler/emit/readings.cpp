@@ -34,7 +34,7 @@ std::string text_of(const Context& context, std::uint32_t r, const Term& term, E
     switch (term.kind) {
         case Term::Kind::constant:
             if (end == End::both) return context.literal(term.value);
-            return context.literal(end == End::low ? term.value.low : term.value.high);
+            return context.bound(end == End::low ? term.value.low : term.value.high);
         case Term::Kind::stream: return context.value(term.index) + part;
         case Term::Kind::reg: return names.members[term.index] + part;
         case Term::Kind::local: return names.locals[term.index] + part;
@@ -134,8 +134,8 @@ void print_table(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Table& table = *plan::table_of(reading);
     const std::string& name = context.names.readings[r].local;
     print_comment(out, "//",
-                  fmt::format("{}: {} states, {} transitions", context.graph.text(reading.node),
-                              table.ends.size(), table.transitions.size()),
+                  fmt::format("{} states, {} transitions: {}", table.ends.size(),
+                              table.transitions.size(), context.graph.text(reading.node)),
                   4);
     print_array(out, "etlmon::Transition", name + "_transitions", table.transitions,
                 [](etlmon::Transition t) { return fmt::format("{{{}, {}}}", t.source, t.guard); });

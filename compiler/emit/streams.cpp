@@ -144,7 +144,11 @@ void print_streams(Printer& out, const Context& context) {
             print_comment(out, "//", context.place(node), 4);
         }
         if (!statement.declaration.empty()) out.line(statement.declaration);
-        print_wrapped(out, statement.text);
+        // What no formula is called by says what it holds.
+        const bool in_between = node == plan::kNone && !context.lazy(slot);
+        print_with_comment(
+            out, statement.text,
+            in_between ? plan::text_of(context.plan.streams[slot], context.graph) : "");
     }
 }
 

@@ -118,6 +118,14 @@ Label TruthEvaluator::value(Index index) {
         case historically:
             return negate(in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
         case since: return in_the_past(formula, memories_[index], at(0), at(1));
+        case rise:
+            return both(at(0), in_the_past(formula, memories_[index], Label::yes, negate(at(0))));
+        case fall:
+            return both(negate(at(0)), in_the_past(formula, memories_[index], Label::yes, at(0)));
+        case held: {
+            const Label broken = in_the_past(formula, memories_[index], Label::yes, negate(at(0)));
+            return both(negate(broken), label_of(frame_ > formula.high));
+        }
         case next:
         case eventually:
         case always:

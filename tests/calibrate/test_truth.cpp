@@ -27,7 +27,7 @@ std::string past_formula(Random& random, int depth) {
         return random.word({"", fmt::format("[{}, {}]", low, low + random.between(0, 3)),
                             fmt::format("[{}, inf]", low)});
     };
-    switch (random.between(0, 8)) {
+    switch (random.between(0, 10)) {
         case 0: return operand() + " && " + operand();
         case 1: return operand() + " || " + operand();
         case 2: return operand() + " -> " + operand();
@@ -36,6 +36,8 @@ std::string past_formula(Random& random, int depth) {
         case 5: return "O" + interval() + " " + operand();
         case 6: return "H" + interval() + " " + operand();
         case 7: return "Y " + operand();
+        case 8: return random.word({"rise ", "fall "}) + operand();
+        case 9: return fmt::format("held[{}] ", random.between(0, 3)) + operand();
         default: return operand() + " S" + interval() + " " + operand();
     }
 }

@@ -18,7 +18,7 @@ const std::string kSpec =
     "target far = [[-1, 0.25]];\n"
     "predicate near = min l2(z, goal) <= 0.75;\n"
     "predicate away = mahalanobis([1, 4])(z, far) > 1e3;\n"
-    "monitor m = G (near || l2(z, goal) > 3) || F away;\n";
+    "monitor m = G (near || min l2(z, goal) > 3) || F away;\n";
 
 Fingerprint of(const std::string& text) {
     const Checked checked(text);

@@ -12,7 +12,7 @@ using Lines = std::vector<std::string>;
 using Text = std::string_view;
 
 constexpr std::size_t kContinued = 4;  ///< columns that the lines after the first are indented
-constexpr std::size_t kLongestQuote = 84;
+constexpr std::size_t kLongestQuote = 160;
 
 bool is_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
@@ -206,11 +206,12 @@ void print_with_comment(Printer& out, const std::string& text, const std::string
 void print_comment(Printer& out, std::string_view mark, std::string_view text, std::size_t hang) {
     std::string line(mark);
     const std::size_t width = kLineWidth - out.column();
+    const bool breaks = line.size() + 1 + text.size() > width;
     bool first_word = true;
     while (!text.empty()) {
         const std::string_view word = text.substr(0, text.find(' '));
         // Before two blanks is the best place to break, if the line has to be broken at all.
-        const bool parts = word.empty() && line.size() + 1 + text.size() > width;
+        const bool parts = word.empty() && breaks;
         if (!first_word && (parts || line.size() + 1 + word.size() > width)) {
             out.line(line);
             line = std::string(mark) + std::string(hang, ' ');
