@@ -313,7 +313,7 @@ void print_rounded(Printer& out, const std::string& prefix, const check::Model& 
     for (const auto& [duration, steps] : model.rounded)
         list += fmt::format("{}{} is {} step{}", list.empty() ? "" : ", ", duration, steps,
                             steps == 1 ? "" : "s");
-    out.line(prefix);
+    out.line(blank(prefix));
     print_sentences(out, prefix,
                     fmt::format("Durations are rounded {}: {}.", model.rounding, list));
 }
@@ -342,7 +342,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     print_tables(out, "  ", plan);
     print_stored(out, "  ", plan,
                  options.targets_file.empty() ? "the file of targets" : options.targets_file);
-    print_rounded(out, "", *plan.model);
+    print_rounded(out, "  ", *plan.model);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)

@@ -47,6 +47,8 @@ const std::vector<Group>& groups() {
          true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},
         {{EtlParser::HERTZ}, "'Hz'", true},
+        {{EtlParser::DURATIONS}, "'durations'", true},
+        {{EtlParser::UP, EtlParser::NEAREST}, "a way to round (up, down or nearest)", true},
         {{EtlParser::LOAD, EtlParser::LBRACKET}, "load(\"FILE\") or a matrix [[...], ...]", false},
         {{EtlParser::STRING}, "a file name between double quotes", false},
         {{EtlParser::NUMBER}, "a number", false},

@@ -67,6 +67,8 @@ TEST(Claims, AreReadOffTheNegationNormalForm) {
     EXPECT_EQ(claims_of("G (a -> s >= 0.5)"), alarm + "0.1");
     EXPECT_EQ(claims_of("G (s > 0.5 -> F[0, 3] a)"), success + "0.1");
     EXPECT_EQ(claims_of("flag U a"), success + "0.1");
+    EXPECT_EQ(claims_of("F held[3] a"), success + "0.1");
+    EXPECT_EQ(claims_of("G !held[3] a"), alarm + "0.1");
     EXPECT_EQ(claims_of("G (near -> F a)"), success + "0.1");  // on scalars alone: its own truth
     EXPECT_EQ(claims_of("F (s > 0.5 && flag)"),
               "exact, robustness 0 aside: nothing in it is calibrated, and its predicates are "
@@ -82,6 +84,8 @@ TEST(Claims, NothingWhereNothingIsKnown) {
               "nothing: 'meant' has a literal threshold and is not its own truth");
     EXPECT_EQ(claims_of("F (a && !b)"), "nothing: 'a' stands in it plain, 'b' negated");
     EXPECT_EQ(claims_of("F (a <-> flag)"), "nothing: 'a' stands in it both plain and negated");
+    EXPECT_EQ(claims_of("G !rise a"), "nothing: 'a' stands in it both plain and negated");
+    EXPECT_EQ(claims_of("F fall a"), "nothing: 'a' stands in it both plain and negated");
     EXPECT_EQ(claims_of("F (half && rest)"), "nothing: the alphas of its predicates add up to 1");
 }
 

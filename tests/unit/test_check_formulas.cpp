@@ -82,8 +82,8 @@ public:
     std::string formula(int depth) {
         static const std::vector<std::string> atoms{"p", "q", "on", "x > 0.5", "true", "false"};
         static const std::vector<std::string> prefixes{
-            "!",          "X ", "F ", "G ", "F[1, 3] ", "G[0, 2] ",
-            "F[1, inf] ", "Y ", "O ", "H ", "O[1, 2] ", "H[1, inf] "};
+            "!",  "X ", "F ",       "G ",         "F[1, 3] ", "G[0, 2] ", "F[1, inf] ", "Y ",
+            "O ", "H ", "O[1, 2] ", "H[1, inf] ", "rise ",    "fall ",    "held[2] "};
         static const std::vector<std::string> infixes{" && ",      " || ", " -> ",     " <-> ",
                                                       " U ",       " W ",  " R ",      " U[1, 2] ",
                                                       " R[0, 3] ", " S ",  " S[1, 2] "};
@@ -239,10 +239,10 @@ TEST(Constancy, FindsConstantsThatNoInputEnters) {
     for (const char* formula :
          {"true", "p || F true", "G true", "false U p && false", "Y p", "H[1, 3] p", "p R true",
           "p W true", "true W p", "!(O[1, 1] p)", "p S[1, 2] q", "(false S[1, 2] p) && q",
-          "true <-> G true", "p -> true"})
+          "true <-> G true", "p -> true", "rise p", "F fall true", "held[1] p"})
         EXPECT_NE(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
-    for (const char* formula :
-         {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p", "p <-> q"})
+    for (const char* formula : {"F[1, inf] true", "X true", "p", "G (O[1, 1] true)", "F p",
+                                "p <-> q", "F held[1] true", "held[0] p", "F rise p"})
         EXPECT_EQ(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
 }
 

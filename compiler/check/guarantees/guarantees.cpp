@@ -24,6 +24,11 @@ struct Polarity {
     bool negative = false;
 };
 
+/// p <-> q, and an edge of p, hold !p beside p.
+bool has_both_polarities(Kind kind) {
+    return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall;
+}
+
 /// Operands with the polarity that they have in the negation normal form; both where an operand has
 /// both.
 std::vector<Literal> operands_of(const Model& model, Literal literal) {
@@ -33,7 +38,7 @@ std::vector<Literal> operands_of(const Model& model, Literal literal) {
         const bool flips =
             formula.kind == Kind::negation || (formula.kind == Kind::implication && i == 0);
         result.push_back({formula.operands[i], literal.negated != flips});
-        if (formula.kind == Kind::equivalence)
+        if (has_both_polarities(formula.kind))
             result.push_back({formula.operands[i], literal.negated == flips});
     }
     return result;
