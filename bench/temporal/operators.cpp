@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 
+#include "etlmon/temporal/widening.hpp"
 #include "etlmon/temporal/window.hpp"
 #include "signals.hpp"
 

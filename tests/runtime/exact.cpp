@@ -24,10 +24,10 @@ Vector vector(const float* x, std::uint32_t n) {
     return Eigen::Map<const Eigen::VectorXf>(x, n).cast<Real>();
 }
 
+/// D x D, or of a diagonal one column.
 Matrix weights_of(const Case& c) {
     const auto d = static_cast<Eigen::Index>(c.dimension);
-    if (c.metric == MetricId::mahalanobis_diagonal)
-        return vector(c.weights.data(), c.dimension).asDiagonal();
+    if (c.metric == MetricId::mahalanobis_diagonal) return vector(c.weights.data(), c.dimension);
     if (c.metric != MetricId::mahalanobis) return {};
     using Given = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
     return Eigen::Map<const Given>(c.weights.data(), d, d).cast<Real>();
@@ -44,8 +44,8 @@ Real distance(MetricId metric, const Vector& z, const Vector& g, const Matrix& w
         case MetricId::angular:
             return 2 * std::atan2((z.normalized() - g.normalized()).norm(),
                                   (z.normalized() + g.normalized()).norm());
-        case MetricId::mahalanobis:
-        case MetricId::mahalanobis_diagonal: return std::sqrt(std::max<Real>(0, d.dot(w * d)));
+        case MetricId::mahalanobis: return std::sqrt(std::max<Real>(0, d.dot(w * d)));
+        case MetricId::mahalanobis_diagonal: return std::sqrt(d.cwiseAbs2().dot(w.col(0)));
     }
     return 0;
 }

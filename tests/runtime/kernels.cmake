@@ -52,6 +52,8 @@ set(sanitized_sources ${kernel_sources} ${narrow_sources} test_kernel_versions.c
 list(REMOVE_ITEM sanitized_sources test_kernel_twins.cpp)
 etlc_kernel_variant(test_kernels_sanitized
   SOURCES ${sanitized_sources} OPTIONS ${quick_sanitizers_gcc} -DETLMON_NO_DISPATCH)
+set_tests_properties(test_kernels_sanitized PROPERTIES COST 80)
+set_tests_properties(test_kernels_small PROPERTIES COST 35)
 
 # The other compiler at its boldest; and every header alone under both.
 find_program(ETLC_CLANG clang++)
