@@ -146,6 +146,9 @@ Slot StreamBuilder::running(bool max, Slot slot, NodeId node) {
 Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before,
                           NodeId node) {
     if (steps == 0) return slot;
+    // What is constant was so at every position: whether there is one is all that counts.
+    if (lag == 0 && streams_[slot].op == StreamOp::constant)
+        return within(slot, {steps, kUnbounded}, before);
     return intern({.op = StreamOp::shift,
                    .operands = {slot},
                    .length = steps,
