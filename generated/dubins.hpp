@@ -52,6 +52,16 @@ struct Verdicts {
   etlmon::Verdict sequential;   // dubins.etl:28: monitor sequential = F (at_a && F at_b)
 };
 
+/// The verdicts by name: for (const auto& [name, verdict] : named(verdicts)) ...
+inline etlmon::Named<etlmon::Verdict, 4> named(const Verdicts& verdicts) noexcept {
+  return {{
+    {"reach", verdicts.reach},
+    {"avoid", verdicts.avoid},
+    {"reach_avoid", verdicts.reach_avoid},
+    {"sequential", verdicts.sequential}
+  }};
+}
+
 /// Target sets, a row after the other.
 namespace targets {
 /// targets/goal_a.npy: 8 rows of 32 elements, scaled to length 1
@@ -348,7 +358,7 @@ inline Verdicts Monitor::judge(const Atoms& now) noexcept {
   const Reading sequential_reading = {
     sequential_met_,
     sequential_met_.low,
-    max_of(unseen_at_b().high, sequential_met_.high)
+    max_of(sequential_met_.high, unseen_at_b().high)
   };
 
   Verdicts verdicts;

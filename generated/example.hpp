@@ -44,6 +44,13 @@ struct Verdicts {
   etlmon::Verdict stays;  // example.etl:10: monitor stays = G near_goal
 };
 
+/// The verdicts by name: for (const auto& [name, verdict] : named(verdicts)) ...
+inline etlmon::Named<etlmon::Verdict, 1> named(const Verdicts& verdicts) noexcept {
+  return {{
+    {"stays", verdicts.stays}
+  }};
+}
+
 /// Target sets, a row after the other.
 namespace targets {
 /// literal: 2 rows of 2 elements

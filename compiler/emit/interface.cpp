@@ -109,11 +109,11 @@ void print_named(Printer& out, const Context& context) {
     print_doc(out, "The verdicts by name: for (const auto& [name, verdict] : named(verdicts)) ...");
     out.open(fmt::format("inline etlmon::Named<{}, {}> named(const Verdicts& verdicts) noexcept {{",
                          context.spelling.verdict, monitors.size()));
-    std::string list;
-    for (const plan::Monitor& monitor : monitors)
-        list += fmt::format("{}{{\"{}\", verdicts.{}}}", list.empty() ? "" : ", ", monitor.name,
-                            monitor.name);
-    print_wrapped(out, fmt::format("return {{{{{}}}}};", list));
+    out.open("return {{");
+    for (std::size_t m = 0; m < monitors.size(); ++m)
+        out.line("{{\"{0}\", verdicts.{0}}}{1}", monitors[m].name,
+                 m + 1 < monitors.size() ? "," : "");
+    out.close("}};");
     out.close();
     out.line();
 }
