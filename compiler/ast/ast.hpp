@@ -150,7 +150,7 @@ struct Formula {
     /// Conjunction and disjunction: two or more; implication etc.: left, right.
     std::vector<FormulaPtr> operands;
     std::optional<Interval> interval;  ///< of held[D]: [0, D]
-    ExprPtr left;  ///< comparison: EXPR CMP NUMBER
+    ExprPtr left;                      ///< comparison: EXPR CMP NUMBER
     Comparison comparison = Comparison::less_equal;
     Number right;
     Span operator_span;  ///< of the operator's own word or symbol

@@ -155,6 +155,9 @@ private:
             return predicate_name(model_.predicates[stream.index]);
         if (stream.op == plan::StreamOp::flag) return model_.inputs[stream.index].name;
         if (stream.operands.empty()) return "value";
+        const bool of_constant = plan_.streams[stream.operands[0]].op == plan::StreamOp::constant;
+        if (stream.op == plan::StreamOp::within && of_constant)
+            return fmt::format("from_step_{}", stream.interval.low);
         const std::string signal = stream_name(signal_of(stream));
         if (signal.size() > kLongestName) return "value";
         return stream.op == plan::StreamOp::combination ? with_more(signal, stream.max)

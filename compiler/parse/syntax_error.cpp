@@ -135,8 +135,8 @@ private:
         return found_.getType() == EtlParser::LBRACKET &&
                is(stuck_.previous,
                   {EtlParser::NEXT, EtlParser::PREVIOUS, EtlParser::RISE, EtlParser::FALL,
-                   EtlParser::WEAK_UNTIL, EtlParser::NOT,
-                   EtlParser::AND, EtlParser::OR, EtlParser::IMPLIES, EtlParser::IFF});
+                   EtlParser::WEAK_UNTIL, EtlParser::NOT, EtlParser::AND, EtlParser::OR,
+                   EtlParser::IMPLIES, EtlParser::IFF});
     }
 
     Diagnostic no_interval() const {

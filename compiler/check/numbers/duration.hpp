@@ -24,7 +24,7 @@ struct StepCount {
     std::uint64_t floor = 0;  ///< of the exact quotient
     bool whole = false;
     bool upper_half = false;  ///< the quotient is floor + 1/2 or more
-    bool too_many = false;  ///< more than kMaxBound; `floor` is then unset
+    bool too_many = false;    ///< more than kMaxBound; `floor` is then unset
 };
 
 StepCount count_steps(const Quantity& duration, const Quantity& step);
