@@ -95,4 +95,4 @@ read -r step reset rare <<<"$(arm-none-eabi-nm -S -C --radix=d "$box/grasp.o" | 
     { s += $2 }
     END { print s, r, c }')"
 echo "grasp on a Cortex-M4F: step $step bytes, reset $reset, rare cases $rare"
-[ "$step" -le 420 ] && [ "$reset" -le 48 ] && [ "$rare" -le 360 ] || fail "more code than its limit"
+[ "$step" -le 424 ] && [ "$reset" -le 48 ] && [ "$rare" -le 360 ] || fail "more code than its limit"
