@@ -261,11 +261,11 @@ private:
     /// The max of min(register, key), registers with the same key together.
     static Term best(const std::vector<std::pair<Term, Term>>& registers_and_keys) {
         std::vector<std::pair<Term, std::vector<Term>>> by_key;
-        for (const auto& [kept, key] : registers_and_keys) {
+        for (const auto& one : registers_and_keys) {
             auto found = std::find_if(by_key.begin(), by_key.end(),
-                                      [&](const auto& entry) { return entry.first == key; });
-            if (found == by_key.end()) found = by_key.insert(found, {key, {}});
-            found->second.push_back(kept);
+                                      [&](const auto& entry) { return entry.first == one.second; });
+            if (found == by_key.end()) found = by_key.insert(found, {one.second, {}});
+            found->second.push_back(one.first);
         }
         std::vector<Term> terms;
         for (auto& [key, registers] : by_key)
