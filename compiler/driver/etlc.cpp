@@ -314,7 +314,14 @@ int run_command(int argc, char** argv) {
         ->capture_default_str();
     app.add_flag("--finish", call.run.finish,
                  "after the trace, also report the last positions of sliding monitors");
+    app.add_flag("--distances", call.run.distances,
+                 "a column for each predicate: the distance or expression that it compares");
+    app.add_flag(
+        "--summary", call.run.summary,
+        "a line for each monitor, and for inputs with missing samples, on standard output; "
+        "the rows are written only where -o says");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (call.run.summary && app.count("--output") == 0) call.run.output.clear();
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);

@@ -2,11 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
+
 #include "data/traces/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"
+#include "driver/run_summary.hpp"
 #include "episodes/replay.hpp"
 
 namespace etlc::driver {
@@ -18,9 +21,12 @@ using etlmon::Verdict;
 constexpr std::size_t kBufferBytes = 1U << 16U;
 constexpr std::uint64_t kStepsPerReport = 4096;
 
-const char* status(const Verdict& verdict) {
-    if (!verdict.decided()) return "undecided";
-    return verdict.satisfied() ? "satisfied" : verdict.violated() ? "violated" : "unknown";
+/// A cell of a CSV row: in quotes where it has to be.
+std::string cell(const std::string& text) {
+    if (text.find_first_of(",\"\n") == std::string::npos) return text;
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
 }
 
 class Run {
@@ -32,22 +38,42 @@ public:
           request_(request),
           sink_(sink),
           monitors_(compiled.plan),
+          summary_(compiled.plan),
           output_(sink) {}
 
     bool execute() {
         if (!check_names(*plan_.model, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
         inputs.insert(inputs.end(), {spec_, data::trace_file(request_.trace)});
-        if (!check_outputs({request_.output}, inputs, sink_) || !output_.begin(request_.output))
+        if (!check_outputs({request_.output}, inputs, sink_)) return false;
+        if (writes_rows() && !output_.begin(request_.output)) return false;
+        print_head();
+        if (!step_through_trace() || !flush()) return false;
+        if (request_.summary && !print(summary_.text(steps_, monitors_.evaluator()), sink_))
             return false;
-        text_ = "step,monitor,lower,robustness,upper,status,final\n";
-        return step_through_trace() && flush() && output_.commit();
+        return output_.commit();
     }
 
 private:
     bool fail(const diag::Failure& failure) {
         sink_.report(data::in_trace(failure, request_.trace));
         return false;
+    }
+
+    bool writes_rows() const { return !request_.output.empty(); }
+
+    void print_head() {
+        text_ = "step,monitor,lower,robustness,upper,status,final,position";
+        if (plan_.model->step_seconds > 0) text_ += ",time";
+        if (request_.distances)
+            for (const check::Index p : plan_.predicates) {
+                const check::Predicate& predicate = plan_.model->predicates[p];
+                text_ +=
+                    "," + cell("distance_" + (predicate.name.empty()
+                                                  ? check::print(*plan_.model, predicate.expression)
+                                                  : predicate.name));
+            }
+        text_ += "\n";
     }
 
     bool step_through_trace() {
@@ -58,6 +84,7 @@ private:
         if (request_.finish) rest = [&] { return report(); };
         const auto frame = [&] {
             show_progress(recording->length());
+            ++steps_;
             return report();
         };
         const auto done = episodes::replay(*recording, {&monitors_}, frame, rest);
@@ -66,22 +93,42 @@ private:
 
     bool report() {
         const std::vector<Verdict>& verdicts = monitors_.verdicts();
-        const auto out = std::back_inserter(text_);
+        const std::string distances = request_.distances ? distance_cells() : "";
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
-            const Verdict& v = verdicts[m];
-            const std::string& name = plan_.monitors[m].name;
-            if (v.decided())
-                fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{}\n", step_, name, v.lower,
-                               v.robustness, v.upper, status(v), v.final() ? 1 : 0);
-            else
-                fmt::format_to(out, "{},{},,,,undecided,0\n", step_, name);
+            if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
+            if (writes_rows()) print_row(plan_.monitors[m], verdicts[m], distances);
         }
         ++step_;
         return text_.size() < kBufferBytes || flush();
     }
 
+    void print_row(const plan::Monitor& monitor, const Verdict& v, const std::string& distances) {
+        const auto out = std::back_inserter(text_);
+        if (v.decided())
+            fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, monitor.name, v.lower,
+                           v.robustness, v.upper, status(v), v.final() ? 1 : 0,
+                           monitor.sliding ? step_ - monitor.horizon : 0);
+        else
+            fmt::format_to(out, "{},{},,,,undecided,0,", step_, monitor.name);
+        if (plan_.model->step_seconds > 0)
+            fmt::format_to(out, ",{:.9g}", static_cast<double>(step_) * plan_.model->step_seconds);
+        text_ += distances;
+        text_ += "\n";
+    }
+
+    /// Of this step's frame; empty after the last one, and where a sample is missing.
+    std::string distance_cells() const {
+        std::string cells;
+        for (const check::Index p : plan_.predicates) {
+            const float distance = monitors_.evaluator().distance(p);
+            const bool is_there = step_ < steps_ && !std::isnan(distance);
+            cells += is_there ? fmt::format(",{:.9g}", distance) : ",";
+        }
+        return cells;
+    }
+
     bool flush() {
-        const bool written = output_.write(text_);
+        const bool written = !writes_rows() || output_.write(text_);
         text_.clear();
         return written;
     }
@@ -97,9 +144,11 @@ private:
     const RunRequest& request_;
     diag::Sink& sink_;
     episodes::Follower monitors_;
+    RunSummary summary_;
     OutputFiles output_;
     std::string text_;
-    std::uint64_t step_ = 0;
+    std::uint64_t step_ = 0;   ///< rows so far, those after the trace included
+    std::uint64_t steps_ = 0;  ///< frames so far
     const bool watched_ = progress_is_seen();
 };
 

@@ -1,5 +1,5 @@
 // `etlc run`: the plan, executed on a recorded trace.
-// Takes: a compiled spec and a trace file. Gives: one CSV row per step and monitor.
+// Takes: a compiled spec and a trace file. Gives: one CSV row per step and monitor, or a summary.
 // Keeps true: constant memory and linear time; the output file appears whole or not at all.
 #pragma once
 
@@ -14,7 +14,12 @@ namespace etlc::driver {
 struct RunRequest {
     std::string trace;
     data::NamesInFile names;
+    /// Of the rows; empty: none are written.
     std::string output = "-";
+    /// A line a monitor and an input, on standard output.
+    bool summary = false;
+    /// A column a predicate: the distance, or expression, that it compares.
+    bool distances = false;
     /// Also the positions that sliding monitors report after the end of the trace.
     bool finish = false;
 };

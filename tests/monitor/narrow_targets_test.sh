@@ -185,12 +185,13 @@ int main() {
 }
 END
 
+run() { "$etlc" run narrow.etl --trace narrow.csv "$@" | cut -d, -f1-7; }
 "$etlc" narrow.etl -o wide/narrow.hpp
-"$etlc" run narrow.etl --trace narrow.csv -o f32.csv
+run >f32.csv
 for status in satisfied violated unknown; do
   grep -q ",$status," f32.csv || { echo "no verdict is $status" >&2; exit 1; }
 done
-"$etlc" run narrow.etl --trace narrow.csv --values boolean -o boolean.csv
+run --values boolean >boolean.csv
 grep -q 'z_direction = etlmon::direction_of' wide/narrow.hpp
 "$compiler" -std=c++17 -O1 -I "$runtime" -I wide source/main.cpp -o compiled
 ./compiled <narrow.csv >compiled.csv
@@ -201,10 +202,9 @@ built() {  # FLAGS FOLDER: what the class in the folder answers in that build
 }
 for flags in "$@"; do built "$flags" wide >"wide/$flags.csv"; done
 for storage in f16 i8; do
-  "$etlc" run narrow.etl --trace narrow.csv --targets-as $storage -o $storage.csv
+  run --targets-as $storage >$storage.csv
   encloses f32.csv $storage.csv
-  "$etlc" run narrow.etl --trace narrow.csv --values boolean --targets-as $storage \
-    -o $storage.boolean.csv
+  run --values boolean --targets-as $storage >$storage.boolean.csv
   cmp boolean.csv $storage.boolean.csv
   "$etlc" narrow.etl --targets-as $storage -o narrow.hpp
   [[ $storage != i8 ]] || grep -q 'measure_scaled<etlmon::Angular' narrow.hpp

@@ -80,7 +80,7 @@ TEST_F(Run, AnswersEveryStepOnce) {
     std::ifstream verdicts(output);
     std::string line;
     ASSERT_TRUE(std::getline(verdicts, line));
-    EXPECT_EQ(line, "step,monitor,lower,robustness,upper,status,final");
+    EXPECT_EQ(line, "step,monitor,lower,robustness,upper,status,final,position");
     std::uint64_t rows = 0;
     const std::vector<std::string> monitors{"answered", "nested", "steady"};
     while (std::getline(verdicts, line)) {

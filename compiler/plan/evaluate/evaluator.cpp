@@ -49,6 +49,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
 
 void Evaluator::reset() {
     for (Held& held : held_) held = {};
+    counts_.assign(model_.inputs.size(), {});
     for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
         for (const Member& member : members_of(plan_.streams[slot]))
             reset_member(member, stream_states_[slot]);
@@ -91,24 +92,34 @@ void Evaluator::observe(Index predicate, float distance, bool truth) {
 
 // ---- inputs, distances, predicates
 
-bool Evaluator::usable(const check::Input& input, const Sample& sample) const {
-    if (!sample.present || sample.values.empty()) return false;
-    if (!etlmon::finite(sample.values.data(), sample.values.size())) return false;
+namespace {
+
+bool is_there(const Sample& sample) {
+    return sample.present && !sample.values.empty() &&
+           etlmon::finite(sample.values.data(), sample.values.size());
+}
+
+bool in_range(const check::Input& input, const Sample& sample) {
     if (input.type != check::InputType::scalar) return true;
     return input.range.low <= sample.values[0] && sample.values[0] <= input.range.high;
 }
+
+}  // namespace
 
 /// `hold N`: the last present sample stands in for at most N missing ones in a row.
 void Evaluator::take_inputs(const std::vector<Sample>& samples) {
     for (Index i : plan_.inputs) {
         const check::Input& input = model_.inputs[i];
         Held& held = held_[i];
-        if (usable(input, samples[i])) {
+        const bool there = is_there(samples[i]);
+        if (there && in_range(input, samples[i])) {
             held.values = samples[i].values;
             held.age = 0;
             inputs_[i] = held.values.data();
         } else {
             const bool stands_in = !held.values.empty() && held.age < input.hold;
+            ++(there ? counts_[i].out_of_range : counts_[i].missing);
+            if (stands_in) ++counts_[i].held;
             held.age = saturating_increment(held.age);
             inputs_[i] = stands_in ? held.values.data() : nullptr;
         }

@@ -19,6 +19,14 @@
 
 namespace etlc::plan {
 
+/// What became of the samples of one input since reset().
+struct SampleCounts {
+    std::uint64_t missing = 0;  ///< not there, or not finite
+    std::uint64_t out_of_range =
+        0;                   ///< a scalar beyond its declared range, which counts as missing
+    std::uint64_t held = 0;  ///< of both: where the last one stood in
+};
+
 class Evaluator {
 public:
     explicit Evaluator(const Plan& plan);
@@ -36,6 +44,8 @@ public:
     /// Row of the nearest target; plain distances only.
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
     std::uint32_t missing_steps() const { return missing_steps_; }
+    /// By index of the model's inputs; those that no monitor depends on are not counted.
+    const std::vector<SampleCounts>& sample_counts() const { return counts_; }
 
     /// The threshold that the next step uses. An adaptive one moves with the labels that observe()
     /// is given and, as in generated code, stays through reset(); nobody but its caller gives
@@ -77,7 +87,6 @@ private:
     static void reset_member(const Member& member, StreamState& state);
     static void reset_reading(const Reading& reading, ReadingState& state);
     void take_inputs(const std::vector<Sample>& samples);
-    bool usable(const check::Input& input, const Sample& sample) const;
     void measure_distances();
     void measure_predicates();
     etlmon::Enclosed measure(Index distance, const float* z);
@@ -104,6 +113,7 @@ private:
     std::vector<const float*>
         inputs_;  ///< per input of the model: this step's values; null: missing
     std::vector<Held> held_;
+    std::vector<SampleCounts> counts_;
     std::vector<etlmon::Measured> distances_;
     /// Per distance: the same, with what narrow targets leave open.
     std::vector<etlmon::Enclosed> enclosed_;
