@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
 #include "driver/names.hpp"
 #include "driver/output_file.hpp"
@@ -88,7 +89,25 @@ private:
             return report();
         };
         const auto done = episodes::replay(*recording, {&monitors_}, frame, rest);
-        return done ? *done : fail(done.failure());
+        if (!done) return fail(done.failure());
+        if (*done) warn_of_absent_inputs();
+        return *done;
+    }
+
+    void warn_of_absent_inputs() {
+        for (const check::Index input : plan_.inputs) {
+            const plan::SampleCounts& counts = monitors_.evaluator().sample_counts()[input];
+            if (counts.missing + counts.out_of_range < steps_) continue;
+            const char* why = counts.missing == steps_        ? "missing"
+                              : counts.out_of_range == steps_ ? "out of its range"
+                                                              : "missing or out of its range";
+            sink_
+                .report(data::in_file(
+                    {diag::Code::no_sample, fmt::format("every sample of '{}' is {}",
+                                                        plan_.model->inputs[input].name, why)},
+                    request_.trace))
+                .note("whatever depends on it is unknown at every step");
+        }
     }
 
     bool report() {

@@ -53,6 +53,23 @@ void warn_of_constant_predicates(Context& c) {
     }
 }
 
+/// cosine(z, t) >= 0.9: near, were it a similarity.
+void warn_of_similarities(Context& c) {
+    for (const Predicate& predicate : c.model.predicates) {
+        if (predicate.text.empty() || !predicate.plain_distance() || predicate.upper_bound())
+            continue;
+        const bool is_cosine =
+            c.model.distances[predicate.expression.index].metric == Metric::cosine;
+        const Threshold& threshold = predicate.threshold;
+        if (!is_cosine || threshold.origin != ThresholdOrigin::literal) continue;
+        if (!(threshold.value64 > 0.5 && threshold.value64 <= 1)) continue;
+        c.report(Code::similarity_meant, predicate.span,
+                 "cosine is a distance: 0 where directions agree, 1 at a right angle, 2 at most")
+            .note(fmt::format("a similarity of at least {} is a distance of at most {:.6g}",
+                              threshold.text, 1 - threshold.value64));
+    }
+}
+
 void warn_of_same_predicates(Context& c) {
     std::map<std::string, const Entity*> first;
     for (Index i = 0; i < c.scope.all(NameKind::predicate).size(); ++i) {
@@ -77,6 +94,7 @@ void warn(Context& c) {
     // A name that was misspelt in its only use is no second cause.
     if (!c.sink.has_errors()) warn_of_unused(c);
     warn_of_constant_predicates(c);
+    warn_of_similarities(c);
     warn_of_same_predicates(c);
     warn_about_formulas(c);
 }
