@@ -22,7 +22,7 @@
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
-#include "driver/run.hpp"
+#include "driver/run/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"

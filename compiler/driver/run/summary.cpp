@@ -1,4 +1,4 @@
-#include "driver/run_summary.hpp"
+#include "driver/run/summary.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>

@@ -1,4 +1,4 @@
-#include "driver/run.hpp"
+#include "driver/run/run.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"
-#include "driver/run_summary.hpp"
+#include "driver/run/summary.hpp"
 #include "episodes/replay.hpp"
 
 namespace etlc::driver {
