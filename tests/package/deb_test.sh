@@ -32,5 +32,5 @@ SPEC
 data=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)/../unit/data
 verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") ||
     fail "an .h5 trace cannot be read: $verdicts"
-[ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1" ] ||
+[ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1,0" ] ||
     fail "the verdicts on an .h5 trace: $verdicts"
