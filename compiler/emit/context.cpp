@@ -1,5 +1,7 @@
 #include "emit/context.hpp"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "plan/narrow_targets.hpp"
@@ -23,16 +25,12 @@ std::string open_condition(ir::Interval interval) {
 }
 
 std::string call(std::string_view function, const std::vector<std::string>& arguments, bool lazy) {
+    if (arguments.size() == 1) return arguments.front();
+    if (!lazy) return fmt::format("{}({})", function, fmt::join(arguments, ", "));
     std::string text = arguments.front();
-    if (arguments.size() == 1) return text;
-    if (lazy) {
-        for (std::size_t i = 1; i < arguments.size(); ++i)
-            text = fmt::format("{}({}, {})", function, text, arguments[i]);
-        return text;
-    }
-    text.clear();
-    for (const std::string& argument : arguments) text += (text.empty() ? "" : ", ") + argument;
-    return fmt::format("{}({})", function, text);
+    for (std::size_t i = 1; i < arguments.size(); ++i)
+        text = fmt::format("{}({}, {})", function, text, arguments[i]);
+    return text;
 }
 
 bool Context::enclosed(check::Index distance) const {

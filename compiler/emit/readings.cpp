@@ -1,4 +1,6 @@
 // The readings of judge(): what the prefix says about position 0.
+#include <fmt/ranges.h>
+
 #include <algorithm>
 
 #include "emit/context.hpp"
@@ -96,9 +98,7 @@ void print_straight(Printer& out, const Context& context, std::uint32_t r) {
 // ---- tables
 
 std::string list(const std::vector<std::string>& items) {
-    std::string text;
-    for (const std::string& item : items) text += (text.empty() ? "" : ", ") + item;
-    return "{" + text + "}";
+    return fmt::format("{{{}}}", fmt::join(items, ", "));
 }
 
 void print_table_machine(Printer& out, const Context& context, std::uint32_t r) {

@@ -103,7 +103,7 @@ private:
 };
 
 /// A file whose first comment ends before what the file takes, gives and keeps true: that is for
-/// who changes it.
+/// those who change it.
 std::string with_short_comment(std::string_view text) {
     std::string result;
     while (text.starts_with("//")) {

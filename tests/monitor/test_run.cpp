@@ -15,6 +15,16 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr const char* kWatchSpec =
+    "spec watch;\n"
+    "rate 4 Hz;\n"
+    "input x : f32 in [0, 1] hold 1;\n"
+    "input y : f32;\n"
+    "predicate near = x > 0.5;\n"
+    "sliding monitor soon = F[0, 1] near;\n"
+    "monitor above = G x - y > -2;\n";
+constexpr const char* kWatchTrace = "x,y\n0.25,0\n0.75,0\n2,0\n,1\n0,0.5\n";
+
 constexpr const char* kSpec =
     "spec long_trace;\n"
     "input x : f32 in [0, 1];\n"
@@ -41,6 +51,19 @@ protected:
             state = state * 1664525U + 1013904223U;
             trace << "0." << (state >> 20U) << "\n";
         }
+    }
+
+    /// What `etlc run` prints of the short trace.
+    std::string watched(const std::string& options) const {
+        std::ofstream(folder_ / "watch.etl") << kWatchSpec;
+        std::ofstream(folder_ / "watch.csv") << kWatchTrace;
+        const std::string call = std::string("cd '") + folder_.string() + "' && '" + ETLC_COMMAND +
+                                 "' run watch.etl --trace watch.csv " + options;
+        std::FILE* const pipe = ::popen(call.c_str(), "r");
+        std::string text;
+        for (int c = std::fgetc(pipe); c != EOF; c = std::fgetc(pipe)) text += static_cast<char>(c);
+        EXPECT_EQ(::pclose(pipe), 0);
+        return text;
     }
 
     /// Peak resident kilobytes of `etlc run`.
@@ -89,6 +112,39 @@ TEST_F(Run, AnswersEveryStepOnce) {
         ++rows;
     }
     EXPECT_EQ(rows, 3 * kSteps);
+}
+
+TEST_F(Run, RowsSayPositionTimeAndDistances) {
+    EXPECT_EQ(watched("--finish --distances"),
+              "step,monitor,lower,robustness,upper,status,final,position,time,distance_near,"
+              "distance_x - y\n"
+              "0,soon,,,,undecided,0,,0,0.25,0.25\n"
+              "0,above,-inf,2.25,2.25,satisfied,0,0,0,0.25,0.25\n"
+              "1,soon,0.25,0.25,0.25,satisfied,1,0,0.25,0.75,0.75\n"
+              "1,above,-inf,2.25,2.25,satisfied,0,0,0.25,0.75,0.75\n"
+              "2,soon,0.25,0.25,0.25,satisfied,1,1,0.5,0.75,0.75\n"
+              "2,above,-inf,2.25,2.25,satisfied,0,0,0.5,0.75,0.75\n"
+              "3,soon,0.25,0.25,0.5,satisfied,1,2,0.75,,\n"
+              "3,above,-inf,-inf,2.25,unknown,0,0,0.75,,\n"
+              "4,soon,-0.5,-0.5,0.5,unknown,1,3,1,0,-0.5\n"
+              "4,above,-inf,-inf,1.5,unknown,0,0,1,0,-0.5\n"
+              "5,soon,-0.5,-0.5,-0.5,violated,1,4,1.25,,\n"
+              "5,above,-inf,-inf,1.5,unknown,0,0,1.25,,\n");
+}
+
+TEST_F(Run, SummaryCountsVerdictsAndSamples) {
+    const std::string rest =
+        "above: unknown so far, robustness -inf; unknown on 2 steps\n"
+        "5 steps\n"
+        "input x: 1 missing, 1 out of range, of which 1 held\n";
+    EXPECT_EQ(
+        watched("--summary"),
+        "soon: never violated, least robustness 0.25 at step 0 (0 s); unknown on 1 step\n" + rest);
+    EXPECT_EQ(watched("--summary --finish -o rows.csv"),
+              "soon: violated at 1 of 5 positions, first at step 4 (1 s), least robustness -0.5 at "
+              "step 4 (1 s); unknown on 1 step\n" +
+                  rest);
+    EXPECT_TRUE(fs::exists(folder_ / "rows.csv"));
 }
 
 }  // namespace

@@ -69,7 +69,11 @@ TEST(TemporalTruth, Answers) {
                 EXPECT_EQ(verdict.satisfied(), rank(holds) == 2);
                 EXPECT_EQ(verdict.violated(), rank(holds) == 0);
                 EXPECT_EQ(verdict.unknown(), rank(holds) == 1);
-                EXPECT_EQ(verdict.final(), surely || !perhaps);
+                const bool final = surely || !perhaps;
+                EXPECT_EQ(verdict.final(), final);
+                EXPECT_EQ(verdict.open(), !final);
+                EXPECT_EQ(verdict.alarm(), final && rank(holds) == 0);
+                EXPECT_EQ(verdict.fulfilled(), final && rank(holds) == 2);
                 EXPECT_TRUE(verdict.decided());
             }
     EXPECT_FALSE(etlmon::BooleanVerdict().decided());

@@ -174,6 +174,9 @@ TEST(TemporalVerdict, DefaultIsUndecided) {
     EXPECT_FALSE(verdict.unknown());
     EXPECT_FALSE(verdict.decided());
     EXPECT_FALSE(verdict.final());
+    EXPECT_FALSE(verdict.alarm());
+    EXPECT_FALSE(verdict.fulfilled());
+    EXPECT_FALSE(verdict.open());
 }
 
 /// Keys on both sides of zero, next to it and at the ends.
@@ -194,7 +197,11 @@ TEST(TemporalVerdict, EveryPrefixVerdict) {
                     ASSERT_EQ(verdict.violated(), high < 0);
                     ASSERT_EQ(verdict.unknown(), low < 0 && high >= 0);
                     ASSERT_TRUE(verdict.decided());
-                    ASSERT_EQ(verdict.final(), lower >= 0 || upper < 0);
+                    const bool final = lower >= 0 || upper < 0;
+                    ASSERT_EQ(verdict.final(), final);
+                    ASSERT_EQ(verdict.open(), !final);
+                    ASSERT_EQ(verdict.alarm(), final && high < 0);
+                    ASSERT_EQ(verdict.fulfilled(), final && low >= 0);
                     ++statuses[verdict.satisfied() ? 0 : verdict.violated() ? 1 : 2];
                 }
     EXPECT_GT(statuses[0], 0);
@@ -215,6 +222,9 @@ TEST(TemporalVerdict, EverySlidingVerdict) {
             ASSERT_EQ(verdict.unknown(), low < 0 && high >= 0);
             ASSERT_TRUE(verdict.decided());
             ASSERT_TRUE(verdict.final());
+            ASSERT_FALSE(verdict.open());
+            ASSERT_EQ(verdict.alarm(), high < 0);
+            ASSERT_EQ(verdict.fulfilled(), low >= 0);
         }
 }
 

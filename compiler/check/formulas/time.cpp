@@ -102,8 +102,9 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
                          bound_text(bound), name(below), name(below + 1)))
         .note(rate.span,
               fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit))
-        .note(fmt::format("'{} {} {}, durations up;' rounds all of them, or 'down', or 'nearest'",
-                          rate_word(rate), rate.number.text, rate.unit));
+        .note(
+            fmt::format("to round durations, write '{} {} {}, durations up;', or down, or nearest",
+                        rate_word(rate), rate.number.text, rate.unit));
 }
 
 /// The whole number of steps that a duration between two of them stands for.

@@ -1,7 +1,6 @@
 // Time: the length of a step, and interval bounds in steps.
 // Takes: rates, periods and durations as exact decimal fractions. Gives: whole numbers of steps.
-// Keeps true: nothing is rounded but
-// where the spec says so: 0.29 s at 100 Hz is 29 steps.
+// Keeps true: only what the spec says is rounded: 0.29 s at 100 Hz is 29 steps.
 #pragma once
 
 #include <cstdint>

@@ -67,14 +67,16 @@ private:
         text_ = "step,monitor,lower,robustness,upper,status,final,position";
         if (plan_.model->step_seconds > 0) text_ += ",time";
         if (request_.distances)
-            for (const check::Index p : plan_.predicates) {
-                const check::Predicate& predicate = plan_.model->predicates[p];
-                text_ +=
-                    "," + cell("distance_" + (predicate.name.empty()
-                                                  ? check::print(*plan_.model, predicate.expression)
-                                                  : predicate.name));
-            }
+            for (const check::Index p : plan_.predicates) text_ += "," + cell(column_of(p));
         text_ += "\n";
+    }
+
+    /// "distance_near"; of a comparison without a name, "distance_x - y".
+    std::string column_of(check::Index p) const {
+        const check::Predicate& predicate = plan_.model->predicates[p];
+        return "distance_" + (predicate.name.empty()
+                                  ? check::print(*plan_.model, predicate.expression)
+                                  : predicate.name);
     }
 
     bool step_through_trace() {
@@ -106,7 +108,7 @@ private:
                     {diag::Code::no_sample, fmt::format("every sample of '{}' is {}",
                                                         plan_.model->inputs[input].name, why)},
                     request_.trace))
-                .note("whatever depends on it is unknown at every step");
+                .note("predicates that measure it are unknown at every step");
         }
     }
 

@@ -16,9 +16,9 @@ struct RunRequest {
     data::NamesInFile names;
     /// Of the rows; empty: none are written.
     std::string output = "-";
-    /// A line a monitor and an input, on standard output.
+    /// A line for each monitor, and for each input with missing samples, on standard output.
     bool summary = false;
-    /// A column a predicate: the distance, or expression, that it compares.
+    /// A column for each predicate: the distance, or expression, that it compares.
     bool distances = false;
     /// Also the positions that sliding monitors report after the end of the trace.
     bool finish = false;

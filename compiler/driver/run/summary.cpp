@@ -3,8 +3,6 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
-
 #include "diag/diag.hpp"
 
 namespace etlc::driver {
@@ -22,9 +20,10 @@ void RunSummary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verd
     if (verdict.unknown()) ++m.unknown;
     if (verdict.violated()) {
         ++m.violated;
-        if (!m.first_violated) m.first_violated = here;
+        if (!m.first_violated) m.first_violated = step;
     }
-    if (!m.worst || here.robustness < m.worst->robustness) m.worst = here;
+    const bool known = !verdict.unknown();  // else its robustness is only a bound
+    if (known && (!m.worst || here.robustness < m.worst->robustness)) m.worst = here;
     if (!verdict.final())
         m.final_since.reset();
     else if (!m.final_since)
@@ -47,12 +46,13 @@ std::string RunSummary::of_prefix(const OfMonitor& m) const {
 }
 
 std::string RunSummary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
+    if (!m.worst) return "unknown throughout";
     if (!m.first_violated)
-        return fmt::format("violated nowhere, least robustness {:.6g} at {}", m.worst->robustness,
+        return fmt::format("never violated, least robustness {:.6g} at {}", m.worst->robustness,
                            when(m.worst->step - horizon));
     return fmt::format("violated at {} of {}, first at {}, least robustness {:.6g} at {}",
                        m.violated, diag::counted(m.decided, "position"),
-                       when(m.first_violated->step - horizon), m.worst->robustness,
+                       when(*m.first_violated - horizon), m.worst->robustness,
                        when(m.worst->step - horizon));
 }
 

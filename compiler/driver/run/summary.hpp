@@ -1,6 +1,6 @@
 // What a trace came to: `etlc run --summary`.
-// Takes: the verdicts of every step. Gives: a line a monitor, and one for each input of which
-// samples were missing. Keeps true: constant memory.
+// Takes: the verdicts of every step. Gives: a line for each monitor, and for each input with
+// missing samples. Keeps true: constant memory.
 #pragma once
 
 #include <cstdint>
@@ -32,8 +32,8 @@ private:
         std::uint64_t decided = 0;
         std::uint64_t violated = 0;
         std::uint64_t unknown = 0;
-        std::optional<At> first_violated;
-        std::optional<At> worst;
+        std::optional<std::uint64_t> first_violated;
+        std::optional<At> worst;  ///< of those that are known
         std::optional<std::uint64_t> final_since;
         etlmon::Verdict last;
     };

@@ -133,7 +133,7 @@ std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeI
     const auto worst = [&](std::vector<Term> terms) {
         return Term::extreme(!always, std::move(terms));
     };
-    streams.of(found->answer);  // stands before what is made of it
+    streams.of(found->answer);  // so that judge() computes it before what is made of it
     const Term unseen_answer =
         streams.term(streams.unseen(found->answer), always ? End::high : End::low);
     const Term unseen_body =

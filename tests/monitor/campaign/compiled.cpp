@@ -97,7 +97,7 @@ void compare(const GeneratedProgram& program, const std::vector<check::Values>& 
 
 /// One program; the number of formulas in it.
 int try_program(const Effort& effort, std::uint64_t first, int formulas, Tally& tally) {
-    GeneratedProgram program("campaign");
+    GeneratedProgram program(fmt::format("campaign_{}", effort.seed));
     std::vector<check::Values> values;
     std::vector<Request> requests;
     int monitors = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: MIT
 // What windows and delays take: bytes, and operations a step.
-// Takes: a length known at run time. Gives: sizeof(Window<Monoid, n>), sizeof(Delay<V, n>), for who
-// plans a monitor. Keeps true: the same on every target, as the classes have no padding that
+// Takes: a length known at run time. Gives: sizeof(Window<Monoid, n>) and sizeof(Delay<V, n>), for
+// planning a monitor. Keeps true: the same on every target, as the classes have no padding that
 // depends on one.
 #pragma once
 

@@ -28,6 +28,21 @@ class Age {
   uint32_t steps_;
 };
 
+/// What fails where W holds: both sides and the answer are negated.
+template <class W>
+class Dual {
+ public:
+  using Element = typename W::Element;
+
+  void reset() noexcept { failed_.reset(); }
+  Element push(Span<Truth> now) noexcept {
+    return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
+  }
+
+ private:
+  W failed_;
+};
+
 }  // namespace detail
 
 /// Or over the last N: some step was true.
@@ -89,18 +104,7 @@ class Window<Since<Truth>, N> {
 
 /// The dual of Since.
 template <uint32_t N>
-class Window<Trigger<Truth>, N> {
- public:
-  using Element = typename Window<Since<Truth>, N>::Element;
-
-  void reset() noexcept { failed_.reset(); }
-  Element push(Span<Truth> now) noexcept {
-    return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
-  }
-
- private:
-  Window<Since<Truth>, N> failed_;
-};
+class Window<Trigger<Truth>, N> : public detail::Dual<Window<Since<Truth>, N>> {};
 
 /// f U g at the oldest of the last N. The first position from there on where g holds, or where
 /// neither f nor g does, decides; before it f holds and g does not. Each decision is about a run of
@@ -179,18 +183,7 @@ class Window<Until<Truth>, N> {
 
 /// The dual of Until.
 template <uint32_t N>
-class Window<Release<Truth>, N> {
- public:
-  using Element = typename Window<Since<Truth>, N>::Element;
-
-  void reset() noexcept { failed_.reset(); }
-  Element push(Span<Truth> now) noexcept {
-    return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
-  }
-
- private:
-  Window<Until<Truth>, N> failed_;
-};
+class Window<Release<Truth>, N> : public detail::Dual<Window<Until<Truth>, N>> {};
 
 /// A delay of truth values, sixteen to a word.
 template <uint32_t N>

@@ -30,8 +30,8 @@ struct Answers {
   /// What comes may still change the answer.
   constexpr bool open() const noexcept { return decided() && !final(); }
 
-  // What the prefix says, were it to end now. Until that is final it is mostly "not yet": of
-  // G F[0,6] p, violated at any step of a good run at which p is not there.
+  // What the prefix says, were it to end now. Until it is final, `violated` mostly means "not yet":
+  // G F[0,6] p is violated at every step of a good run at which p does not hold.
   constexpr bool satisfied() const noexcept { return has(kSatisfied); }
   constexpr bool violated() const noexcept { return has(kViolated); }
   /// A missing sample leaves it open.
