@@ -209,7 +209,7 @@ private:
 
     /// A part of a monitor's formula: its own words where they are few.
     std::string part_name(std::uint32_t r) const {
-        const std::string words = identifier(graph_.text(plan_.readings[r].node), "");
+        const std::string words = identifier(graph_.short_text(plan_.readings[r].node), "");
         if (!words.empty() && words.size() <= kLongestPartName) return words;
         return monitor_of_[r] == nullptr ? "part" : monitor_of_[r]->name + "_part";
     }
@@ -252,7 +252,7 @@ private:
     void name_pending(const plan::Pending& pending, const std::string& name,
                       Names::OfReading& names) {
         for (const plan::Pending::Part& part : pending.parts) {
-            const std::string words = identifier(graph_.text(part.node), "");
+            const std::string words = identifier(graph_.short_text(part.node), "");
             const bool few = !words.empty() && words.size() <= kLongestPartName;
             names.parts.push_back(local(judge_, few ? words + "_last" : name + "_last"));
             if (part.leaf == plan::kNone) continue;

@@ -89,6 +89,8 @@ public:
     /// The formula for people to read, with symbols and names: "F (at_a && F at_b)". Parts of a
     /// long one are left out (check/model/elision.hpp).
     std::string text(NodeId id) const;
+    /// The same where nothing is left out, else nothing; soon, however long the formula is.
+    std::string short_text(NodeId id) const;
 
 private:
     NodeId intern(Node node);

@@ -91,4 +91,8 @@ std::string Graph::text(NodeId id) const {
     return check::elided_text(id, [this](NodeId node) { return phrase(*this, node); });
 }
 
+std::string Graph::short_text(NodeId id) const {
+    return check::short_text(id, [this](NodeId node) { return phrase(*this, node); });
+}
+
 }  // namespace etlc::ir

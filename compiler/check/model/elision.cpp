@@ -118,6 +118,10 @@ std::string whole_text(Index root, const PhraseOf& phrase_of) {
     return *Writer(phrase_of).whole({root}, std::numeric_limits<std::size_t>::max());
 }
 
+std::string short_text(Index root, const PhraseOf& phrase_of, std::size_t most) {
+    return Writer(phrase_of).whole({root}, most).value_or("");
+}
+
 std::string elided_text(Index root, const PhraseOf& phrase_of, std::size_t most) {
     return Writer(phrase_of).elided({root}, most);
 }

@@ -31,6 +31,9 @@ inline constexpr std::size_t kMostShown = 200;
 
 /// The text in full.
 std::string whole_text(Index root, const PhraseOf& phrase_of);
+/// The text in full where it has at most `most` characters, else nothing: for names, which want few
+/// words or none.
+std::string short_text(Index root, const PhraseOf& phrase_of, std::size_t most = kMostShown);
 /// For messages, comments, reports.
 std::string elided_text(Index root, const PhraseOf& phrase_of, std::size_t most = kMostShown);
 

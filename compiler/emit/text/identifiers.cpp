@@ -57,8 +57,7 @@ std::string head_of(const ir::Node& node) {
 }  // namespace
 
 std::string identifier(std::string_view text, const std::string& otherwise) {
-    if (text.find("...") != std::string_view::npos)
-        return otherwise;  // parts of the formula were left out
+    if (text.find("...") != std::string_view::npos) return otherwise;  // parts were left out
     std::string name;
     for (std::size_t i = 0; i < text.size();) {
         std::size_t end = i;
@@ -92,7 +91,7 @@ std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& o
     constexpr std::size_t kFew = 8;
     std::string shortest;
     for (std::size_t i = 0; i < std::min(kFew, operands.size()); ++i) {
-        const std::string words = identifier(graph.text(operands[i]), "");
+        const std::string words = identifier(graph.short_text(operands[i]), "");
         const bool shorter = shortest.empty() || words.size() < shortest.size();
         if (!words.empty() && words.size() <= room && shorter) shortest = words;
     }
@@ -102,7 +101,7 @@ std::string name_of_one(const ir::Graph& graph, const std::vector<ir::NodeId>& o
 }  // namespace
 
 std::string name_of(const ir::Graph& graph, ir::NodeId id, std::size_t room) {
-    const std::string words = identifier(graph.text(id), "");
+    const std::string words = identifier(graph.short_text(id), "");
     if (!words.empty() && words.size() <= room) return words;
     const ir::Node& node = graph[id];
     if (node.operands.empty()) return "";
