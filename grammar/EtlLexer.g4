@@ -44,15 +44,21 @@ PREVIOUS     : 'Y' | 'previous' ;
 ONCE         : 'O' | 'once' ;
 HISTORICALLY : 'H' | 'historically' ;
 
-// ---- contextual: inputs and their types
+// ---- contextual: inputs, their types, and what counts where a sample is missing
 
-IN    : 'in' ;
-HOLD  : 'hold' ;
-SCALE : 'scale' ;
-F32   : 'f32' ;
-F16   : 'f16' ;
-I8    : 'i8' ;
-BOOL  : 'bool' ;
+IN      : 'in' ;
+HOLD    : 'hold' ;
+MISSING : 'missing' ;
+SCALE   : 'scale' ;
+F32     : 'f32' ;
+F16     : 'f16' ;
+I8      : 'i8' ;
+BOOL    : 'bool' ;
+
+// ---- contextual: monitors that restart
+
+RESTARTABLE : 'restartable' ;
+REPEATING   : 'repeating' ;
 
 // ---- contextual: operators of formulas
 

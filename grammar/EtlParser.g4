@@ -17,12 +17,14 @@ declaration
     : SPEC name SEMICOLON                                                 # SpecDeclaration
     | RATE NUMBER HERTZ rounding? SEMICOLON                               # RateDeclaration
     | PERIOD NUMBER timeUnit rounding? SEMICOLON                          # PeriodDeclaration
-    | INPUT name (COMMA name)* COLON type range? hold? SEMICOLON          # InputDeclaration
+    | INPUT name (COMMA name)* COLON type range? hold? missing? SEMICOLON # InputDeclaration
     | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
-    | PREDICATE name ASSIGN sum comparisonOperator threshold SEMICOLON    # PredicateDeclaration
+    | PREDICATE name ASSIGN sum comparisonOperator threshold missing? SEMICOLON
+                                                                          # PredicateDeclaration
     | TRUTH name ASSIGN formula SEMICOLON                                 # TruthDeclaration
     | LET name ASSIGN formula SEMICOLON                                   # LetDeclaration
-    | SLIDING? MONITOR name ASSIGN formula calibrated? SEMICOLON          # MonitorDeclaration
+    | kind=(SLIDING | RESTARTABLE | REPEATING)? MONITOR name ASSIGN formula calibrated? SEMICOLON
+                                                                          # MonitorDeclaration
     ;
 
 rounding
@@ -172,6 +174,10 @@ hold
     : HOLD NUMBER
     ;
 
+missing
+    : MISSING op=(TRUE | FALSE)
+    ;
+
 // ---- data
 
 load
@@ -199,8 +205,9 @@ timeUnit
 
 name
     : IDENTIFIER
-    | IN | HOLD | SCALE
+    | IN | HOLD | MISSING | SCALE
     | F32 | F16 | I8 | BOOL
+    | RESTARTABLE | REPEATING
     | RISE | FALL | HELD
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS

@@ -191,6 +191,7 @@ struct Input {
     Type type;
     std::optional<Range> range;
     std::optional<Number> hold;
+    std::optional<bool> missing;  ///< what a sample that is not there counts as
     Span span;
 };
 
@@ -217,6 +218,7 @@ struct Predicate {
     ExprPtr expression;
     Comparison comparison = Comparison::less_equal;
     std::variant<Number, Calibrated> threshold;
+    std::optional<bool> missing;  ///< what it counts as where it is unknown
     Span span;
 };
 
@@ -233,9 +235,10 @@ struct Let {
 };
 
 struct Monitor {
+    enum class Kind : std::uint8_t { prefix, sliding, restartable, repeating };
+    Kind kind = Kind::prefix;
     Name name;
     FormulaPtr formula;
-    bool sliding = false;
     std::optional<Calibrated> calibrated;
     Span span;
 };

@@ -285,6 +285,10 @@ std::string text_of(const Rate& rate) {
                        rate.unit, rounding);
 }
 
+std::string text_of_missing(std::optional<bool> missing) {
+    return missing ? fmt::format(" missing {}", *missing) : "";
+}
+
 std::string text_of(const Input& input) {
     std::string result = fmt::format(
         "input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
@@ -292,7 +296,7 @@ std::string text_of(const Input& input) {
     if (input.range)
         result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
     if (input.hold) result += fmt::format(" hold {}", input.hold->text);
-    return result;
+    return result + text_of_missing(input.missing);
 }
 
 std::string text_of(const Target& target) {
@@ -300,8 +304,9 @@ std::string text_of(const Target& target) {
 }
 
 std::string text_of(const Predicate& predicate) {
-    return fmt::format("predicate {} = {} {} {}", predicate.name.text, print(*predicate.expression),
-                       symbol(predicate.comparison), text_of(predicate.threshold));
+    return fmt::format("predicate {} = {} {} {}{}", predicate.name.text,
+                       print(*predicate.expression), symbol(predicate.comparison),
+                       text_of(predicate.threshold), text_of_missing(predicate.missing));
 }
 
 std::string text_of(const Truth& truth) {
@@ -315,8 +320,9 @@ std::string text_of(const Let& let) {
 std::string text_of(const Monitor& monitor) {
     const std::string calibrated =
         monitor.calibrated ? fmt::format(" {}", text_of(*monitor.calibrated)) : "";
-    return fmt::format("{}monitor {} = {}{}", monitor.sliding ? "sliding " : "", monitor.name.text,
-                       print(*monitor.formula), calibrated);
+    constexpr std::array<std::string_view, 4> kWords{"", "sliding ", "restartable ", "repeating "};
+    return fmt::format("{}monitor {} = {}{}", kWords[static_cast<std::size_t>(monitor.kind)],
+                       monitor.name.text, print(*monitor.formula), calibrated);
 }
 
 }  // namespace

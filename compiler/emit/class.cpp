@@ -55,6 +55,19 @@ std::vector<Member> own_members(const Context& context) {
     if (context.on_demand)
         result.push_back(
             {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
+    for (const auto& [m, name] : context.names.position_member)
+        result.push_back({"uint32_t", name,
+                          fmt::format("steps since {} began; saturates", plan.monitors[m].name),
+                          name + " = 0;", "", static_cast<std::uint32_t>(m)});
+    for (const auto& [m, name] : context.names.alarms_member) {
+        const std::string& fulfilled = context.names.fulfilled_member.at(m);
+        const std::string& monitor = plan.monitors[m].name;
+        result.push_back({"uint32_t", name, fmt::format("alarms of {}; saturates", monitor),
+                          name + " = 0;", ""});
+        result.push_back({"uint32_t", fulfilled,
+                          fmt::format("times that {} was fulfilled; saturates", monitor),
+                          fulfilled + " = 0;", ""});
+    }
     if (plan.counts_steps)
         result.push_back(
             {"uint32_t", "position", "index of the step; saturates", "position = 0;", ""});
@@ -224,6 +237,35 @@ void declare_halves(Printer& out) {
     out.line();
 }
 
+/// restart_NAME() and what a monitor that repeats has counted.
+void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all) {
+    for (std::uint32_t m = 0; m < context.plan.monitors.size(); ++m) {
+        const plan::Monitor& monitor = context.plan.monitors[m];
+        if (monitor.restarts == check::Restarts::never) continue;
+        print_doc(out, fmt::format("From the next step on, {} is about that step; past operators "
+                                   "still see the whole trace.",
+                                   monitor.name));
+        out.open(fmt::format("void restart_{}() noexcept {{", monitor.name));
+        for (const Member& member : all)
+            if (member.begins_with == m) out.line(member.reset);
+        // What a repeating one has answered is returned before it is asked again.
+        if (context.on_demand && monitor.restarts == check::Restarts::on_request)
+            out.line("answers.{} = {}();", monitor.name, context.spelling.verdict);
+        out.close();
+        const auto alarms = context.names.alarms_member.find(m);
+        if (alarms != context.names.alarms_member.end()) {
+            print_doc(out,
+                      "How often it raised an alarm and was fulfilled, after which it goes on "
+                      "with the next step.");
+            out.line("uint32_t alarms_{}() const noexcept {{ return {}; }}", monitor.name,
+                     alarms->second);
+            out.line("uint32_t fulfilled_{}() const noexcept {{ return {}; }}", monitor.name,
+                     context.names.fulfilled_member.at(m));
+        }
+        out.line();
+    }
+}
+
 void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
     print_constructors(out, context);
     print_doc(out, context.names.threshold_member.empty()
@@ -231,9 +273,12 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
                        : "A new episode; adaptive thresholds stay where they are.");
     out.open("void reset() noexcept {");
     for (const Member& member : all)
-        if (!member.reset.empty()) out.line(member.reset);
+        if (!member.reset.empty() && member.begins_with == plan::kNone) out.line(member.reset);
+    for (const plan::Monitor& monitor : context.plan.monitors)
+        if (monitor.restarts != check::Restarts::never) out.line("restart_{}();", monitor.name);
     out.close();
     out.line();
+    print_restarts(out, context, all);
     print_doc(out, "One call, one time step.");
     if (context.on_demand)
         print_step_on_demand(out, context);

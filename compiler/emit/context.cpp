@@ -15,12 +15,12 @@ using plan::StreamOp;
 
 }  // namespace
 
-std::string open_condition(ir::Interval interval) {
-    if (interval.low == interval.high) return fmt::format("position == {}", interval.low);
+std::string open_condition(ir::Interval interval, std::string_view position) {
+    if (interval.low == interval.high) return fmt::format("{} == {}", position, interval.low);
     std::string text;
-    if (interval.low > 0) text = fmt::format("position >= {}", interval.low);
+    if (interval.low > 0) text = fmt::format("{} >= {}", position, interval.low);
     if (interval.bounded())
-        text += fmt::format("{}position <= {}", text.empty() ? "" : " && ", interval.high);
+        text += fmt::format("{}{} <= {}", text.empty() ? "" : " && ", position, interval.high);
     return text;
 }
 
@@ -112,7 +112,8 @@ std::string Context::high(plan::Slot slot) const {
 }
 
 std::string reading_declaration(const Context& context, std::uint32_t reading) {
-    const bool declared = context.on_demand && context.plan.readings[reading].operands.empty();
+    const bool declared = context.on_demand && context.plan.readings[reading].operands.empty() &&
+                          !open_monitors(context, context.dependents.of_reading[reading]).empty();
     return (declared ? "" : "const Reading ") + context.names.readings[reading].local;
 }
 
@@ -124,6 +125,11 @@ std::string open_monitors(const Context& context, const std::vector<std::size_t>
         text += (text.empty() ? "" : " || ") + open->second;
     }
     return text;
+}
+
+const std::string& Context::position(std::uint32_t begins_with) const {
+    static const std::string kOfTrace = "position";
+    return begins_with == plan::kNone ? kOfTrace : names.position_member.at(begins_with);
 }
 
 std::string Context::place(source::Span span) const {

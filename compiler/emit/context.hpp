@@ -62,14 +62,16 @@ struct Context {
     /// The low or high key of a stream: "reach_.low", "etlmon::key_of(0.31f)".
     std::string low(plan::Slot slot) const;
     std::string high(plan::Slot slot) const;
+    /// The steps since what begins with a monitor, or with the trace, began.
+    const std::string& position(std::uint32_t begins_with) const;
     /// "dubins.etl:21: F at_a": where a formula stands and its words, or its text where the spec
     /// does not say it so.
     std::string place(plan::NodeId node) const;
     std::string place(source::Span span) const;
 };
 
-/// "step_ >= 2 && step_ <= 5", empty where the window is always open.
-std::string open_condition(ir::Interval interval);
+/// "position >= 2 && position <= 5", empty where the window is always open.
+std::string open_condition(ir::Interval interval, std::string_view position);
 /// "max_of(a, b, c)"; of one argument, that argument. Where some are lazy,
 /// "max_of(max_of(a, b), c)".
 std::string call(std::string_view function, const std::vector<std::string>& arguments,
@@ -115,6 +117,8 @@ struct Member {
     std::string comment;
     std::string reset;    ///< a statement; empty: it outlives the episode
     std::string initial;  ///< empty: reset() or the constructor sets it
+    /// restart_NAME() of this monitor of the plan resets it too.
+    std::uint32_t begins_with = plan::kNone;
 };
 std::vector<Member> members(const Context& context);
 /// Those of readings and streams: the plan says what they are.

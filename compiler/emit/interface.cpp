@@ -1,4 +1,6 @@
 // What the user of the class fills in and gets back, and the constants behind it.
+#include <algorithm>
+
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -34,6 +36,7 @@ std::string remark_on(const check::Input& input) {
     if (input.type == InputType::i8) add(fmt::format("value = {} x integer", input.scale));
     if (input.hold > 0)
         add(fmt::format("held for {} missing step{}", input.hold, input.hold == 1 ? "" : "s"));
+    if (input.missing) add(fmt::format("counts as {} where it is missing", *input.missing));
     return text;
 }
 
@@ -134,9 +137,12 @@ void print_inputs_and_verdicts(Printer& out, const Context& context) {
     print_aligned(out, inputs);
     out.close("};");
     out.line();
-    print_doc(out,
-              "What they answer: about the prefix so far or, sliding, about the position their "
-              "horizon ago.");
+    const bool restarts =
+        std::any_of(context.plan.monitors.begin(), context.plan.monitors.end(),
+                    [](const auto& monitor) { return monitor.restarts != check::Restarts::never; });
+    print_doc(out, fmt::format("What they answer: about the prefix so far{} or, sliding, about the "
+                               "position their horizon ago.",
+                               restarts ? ", from where a monitor last began," : ""));
     out.open("struct Verdicts {");
     std::vector<std::pair<std::string, std::string>> verdicts;
     for (const plan::Monitor& monitor : context.plan.monitors)

@@ -33,13 +33,44 @@ std::string verdict(const Context& context, std::size_t m) {
 /// In a Boolean monitor: computed while some verdict can still change.
 void print_reading_while_open(Printer& out, const Context& context, std::uint32_t r) {
     const plan::Reading& reading = context.plan.readings[r];
-    if (!reading.operands.empty())
-        return print_reading(out, context, r);  // of others: nothing is asked for
+    const std::string open = open_monitors(context, context.dependents.of_reading[r]);
+    if (!reading.operands.empty() || open.empty())
+        return print_reading(out, context, r);  // of others, which ask for nothing; or always open
     out.line("Reading {}{{}};", context.names.readings[r].local);
-    print_wrapped(
-        out, fmt::format("if ({}) {{", open_monitors(context, context.dependents.of_reading[r])));
+    print_wrapped(out, fmt::format("if ({}) {{", open));
     out.indent();
     print_reading(out, context, r);
+    out.close();
+}
+
+/// Where a monitor that restarts stands: a repeating one goes on with the next step after a final
+/// verdict, which `verdict` names.
+void print_progress(Printer& out, const Context& context, std::size_t m,
+                    const std::string& verdict) {
+    const auto position = context.names.position_member.find(m);
+    const bool counts_steps = position != context.names.position_member.end();
+    const auto alarms = context.names.alarms_member.find(m);
+    if (alarms == context.names.alarms_member.end()) {
+        if (counts_steps) print_wrapped(out, counted(position->second));
+        return;
+    }
+    const auto open = context.names.open_local.find(m);
+    out.gap();
+    print_comment(out, "//",
+                  fmt::format("{} has decided: it goes on with the next step",
+                              context.plan.monitors[m].name));
+    out.open(fmt::format("if ({}{}.final()) {{",
+                         open == context.names.open_local.end() ? "" : open->second + " && ",
+                         verdict));
+    out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, alarms->second,
+             context.names.fulfilled_member.at(m));
+    print_wrapped(out, counted("count"));
+    out.line("restart_{}();", context.plan.monitors[m].name);
+    if (counts_steps) {
+        out.close(fmt::format("}} else if ({} != UINT32_MAX) {{", position->second));
+        out.indent();
+        out.line("++{};", position->second);
+    }
     out.close();
 }
 
@@ -63,7 +94,14 @@ void print_readings(Printer& out, const Context& context) {
     for (const auto& [m, name] : context.names.verdict_member)
         print_wrapped(out,
                       fmt::format("{} = {};", name, prefix_verdict(context, plan.monitors[m])));
+    for (const auto& [m, name] : context.names.verdict_member)
+        print_progress(out, context, m, name);
     out.close();
+}
+
+std::string if_open(const Context& context, std::size_t m) {
+    const auto open = context.names.open_local.find(m);
+    return open == context.names.open_local.end() ? "" : fmt::format("if ({}) ", open->second);
 }
 
 /// The answers so far, with those that can still change brought up to date.
@@ -74,10 +112,12 @@ void print_open_verdicts(Printer& out, const Context& context) {
             print_wrapped(out, fmt::format("answers.{} = {};", monitor.name,
                                            sliding_verdict(context, monitor)));
         else
-            print_wrapped(out, fmt::format("if ({}) answers.{} = etlmon::prefix_verdict({});",
-                                           context.names.open_local.at(m), monitor.name,
-                                           context.names.readings[monitor.reading].local));
+            print_wrapped(
+                out, fmt::format("{}answers.{} = etlmon::prefix_verdict({});", if_open(context, m),
+                                 monitor.name, context.names.readings[monitor.reading].local));
     }
+    for (std::size_t m = 0; m < context.plan.monitors.size(); ++m)
+        print_progress(out, context, m, "answers." + context.plan.monitors[m].name);
 }
 
 }  // namespace
@@ -92,10 +132,14 @@ void print_advance(Printer& out, const Context& context) {
     out.line("bool missing = false;");
     print_atoms_on_demand(out, context);
     out.gap();
-    for (const auto& [m, open] : context.names.open_local)
-        print_wrapped(
-            out, fmt::format("const bool {} = {}!answers.{}.final();", open,
-                             plan.has_sliding ? "finishes == 0 && " : "", plan.monitors[m].name));
+    for (const auto& [m, open] : context.names.open_local) {
+        const bool repeats = plan.monitors[m].restarts == check::Restarts::when_final;
+        const std::string undecided =
+            repeats ? "" : fmt::format("!answers.{}.final()", plan.monitors[m].name);
+        print_wrapped(out, fmt::format("const bool {} = {}{}{};", open,
+                                       plan.has_sliding ? "finishes == 0" : "",
+                                       plan.has_sliding && !repeats ? " && " : "", undecided));
+    }
     out.gap();
     print_streams(out, context);
     print_readings(out, context);
@@ -123,6 +167,9 @@ void print_judge(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out,
                       fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
+    if (!plan.has_sliding)
+        for (std::size_t m = 0; m < plan.monitors.size(); ++m)
+            print_progress(out, context, m, "verdicts." + plan.monitors[m].name);
     if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return verdicts;");
     out.close();

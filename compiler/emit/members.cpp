@@ -44,8 +44,9 @@ std::string reset_of(const Context& context, const plan::Member& member, const s
 }
 
 Member declared(const Context& context, const plan::Member& member, const std::string& name,
-                const std::string& comment) {
-    return {type_of(context, member), name, comment, reset_of(context, member, name), ""};
+                const std::string& comment, std::uint32_t begins_with) {
+    return {type_of(context, member),        name, comment,
+            reset_of(context, member, name), "",   begins_with};
 }
 
 }  // namespace
@@ -58,12 +59,14 @@ std::vector<Member> temporal_members(const Context& context) {
         const std::vector<plan::Member> members = plan::members_of(plan.readings[r]);
         for (std::size_t i = 0; i < members.size(); ++i)
             result.push_back(declared(context, members[i], names[i],
-                                      plan::comment_of(members[i], context.graph)));
+                                      plan::comment_of(members[i], context.graph),
+                                      plan.readings[r].begins_with));
     }
     for (plan::Slot slot = 0; slot < plan.streams.size(); ++slot)
         for (const plan::Member& member : plan::members_of(plan.streams[slot]))
             result.push_back(declared(context, member, context.names.streams[slot].member,
-                                      plan::text_of(plan.streams[slot], context.graph)));
+                                      plan::text_of(plan.streams[slot], context.graph),
+                                      plan.streams[slot].begins_with));
     return result;
 }
 

@@ -29,13 +29,16 @@ std::string local(Scope& scope, const std::string& name) {
 }
 
 /// The functions that have an underscore in their names: the runtime's, and those of the class that
-/// are named after predicates.
+/// are named after predicates and monitors.
 std::set<std::string> functions(const check::Model& model, const plan::Plan& plan) {
     std::set<std::string> names{"max_of", "min_of"};
     for (check::Index p : plan.predicates)
         for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
                                    "initial_threshold_", "set_threshold_", "observe_"})
             names.insert(prefix + model.predicates[p].name);
+    for (const plan::Monitor& monitor : plan.monitors)
+        for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
+            if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
     return names;
 }
 
@@ -191,12 +194,18 @@ private:
         std::map<std::uint32_t, std::string> wanted;
         for (std::size_t m = 0; m < plan_.monitors.size(); ++m) {
             const plan::Monitor& monitor = plan_.monitors[m];
-            if (!monitor.sliding) wanted.emplace(monitor.reading, monitor.name);
-            if (on_demand_) {
-                if (!monitor.sliding) names_.open_local[m] = local(judge_, monitor.name + "_open");
-            } else if (plan_.has_sliding && !monitor.sliding) {
+            if (monitor.sliding) continue;
+            wanted.emplace(monitor.reading, monitor.name);
+            const bool repeats = monitor.restarts == check::Restarts::when_final;
+            if (on_demand_ && (!repeats || plan_.has_sliding))
+                names_.open_local[m] = local(judge_, monitor.name + "_open");
+            else if (plan_.has_sliding)
                 names_.verdict_member[m] = member(members_, monitor.name + "_verdict");
-            }
+            if (monitor.counts_steps)
+                names_.position_member[m] = member(members_, monitor.name + "_position");
+            if (!repeats) continue;
+            names_.alarms_member[m] = member(members_, monitor.name + "_alarms");
+            names_.fulfilled_member[m] = member(members_, monitor.name + "_fulfilled");
         }
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);

@@ -72,7 +72,13 @@ struct Names {
     std::vector<OfReading> readings;
     /// Per monitor of the plan: a prefix monitor's last verdict.
     std::map<std::size_t, std::string> verdict_member;
-    /// Per prefix monitor of a Boolean class: can still change.
+    /// Per monitor that restarts: steps since it began, where some part of it asks.
+    std::map<std::size_t, std::string> position_member;
+    /// Per monitor that restarts after final verdicts: how many there were of each kind.
+    std::map<std::size_t, std::string> alarms_member;
+    std::map<std::size_t, std::string> fulfilled_member;
+    /// Per prefix monitor of a Boolean class: can still change. A repeating one always can, but
+    /// after the trace.
     std::map<std::size_t, std::string> open_local;
     /// Per distance whose stored set is searched.
     std::map<check::Index, std::string> search_member;

@@ -40,6 +40,11 @@ void print_part(Printer& out, const Context& context, const Pending& pending,
                               max ? context.high(part.unseen) : context.low(part.unseen)));
 }
 
+/// Steps since the reading began.
+const std::string& position(const Context& context, std::uint32_t r) {
+    return context.position(context.plan.readings[r].begins_with);
+}
+
 void print_fold(Printer& out, const Context& context, std::uint32_t r) {
     const Pending& pending = context.plan.readings[r].pending;
     const Names::OfReading& names = context.names.readings[r];
@@ -50,11 +55,11 @@ void print_fold(Printer& out, const Context& context, std::uint32_t r) {
         fold.interval.bounded() ? fmt::format("{}", fold.interval.high) : "etlmon::kWithoutEnd";
     print_wrapped(out,
                   fmt::format("{} = etlmon::pending_from_start<etlmon::{}>({}, {}, {}, {}, {}, "
-                              "position, {}, {}, {}, {});",
+                              "{}, {}, {}, {}, {});",
                               reading_declaration(context, r), max ? "Seeking" : "Guarding",
                               *(names.members.end() - 2), names.members.back(), left,
-                              names.parts[fold.operands.back()], names.count, pending.horizon,
-                              fold.interval.low, end,
+                              names.parts[fold.operands.back()], names.count, position(context, r),
+                              pending.horizon, fold.interval.low, end,
                               max ? context.high(fold.unseen) : context.low(fold.unseen)));
 }
 
@@ -77,10 +82,11 @@ void print_machine(Printer& out, const Context& context, std::uint32_t r) {
     print_machine_keys(out, context, r);
     const std::string tables = "tables::" + names.local;
     print_wrapped(
-        out, fmt::format(
-                 "{} = {}.read({}, {}, position >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
-                 reading_declaration(context, r), names.members.back(), names.guards, names.count,
-                 pending.horizon, tables, tables, tables, names.weak, names.strong));
+        out,
+        fmt::format("{} = {}.read({}, {}, {} >= {}, {}_transitions, {}_ends, {}_owed, {}, {});",
+                    reading_declaration(context, r), names.members.back(), names.guards,
+                    names.count, position(context, r), pending.horizon, tables, tables, tables,
+                    names.weak, names.strong));
 }
 
 }  // namespace
@@ -90,8 +96,8 @@ void print_pending(Printer& out, const Context& context, std::uint32_t r) {
     const Names::OfReading& names = context.names.readings[r];
     out.line("// evaluated again at the last {} positions, whose windows reach past this step",
              pending.horizon + 1);
-    out.line("const uint32_t {0} = position < {1} ? position + 1 : {2};", names.count,
-             pending.horizon, pending.horizon + 1);
+    out.line("const uint32_t {0} = {3} < {1} ? {3} + 1 : {2};", names.count, pending.horizon,
+             pending.horizon + 1, position(context, r));
     auto leaf = names.members.begin();  // the parts that are leaves come first among the members
     for (std::size_t i = 0; i < pending.parts.size(); ++i) {
         print_part(out, context, pending, names, i, *leaf);

@@ -41,7 +41,8 @@ std::string text_of(const Context& context, std::uint32_t r, const Term& term, E
         case Term::Kind::reg: return names.members[term.index] + part;
         case Term::Kind::local: return names.locals[term.index] + part;
         case Term::Kind::before:
-            return fmt::format("position < {} ? {} : {}", term.index,
+            return fmt::format("{} < {} ? {} : {}",
+                               context.position(context.plan.readings[r].begins_with), term.index,
                                text_of(context, r, term.operands[0], end),
                                text_of(context, r, term.operands[1], end));
         case Term::Kind::extreme: break;
@@ -62,9 +63,12 @@ void print_assignment(Printer& out, const Context& context, std::uint32_t r,
     if (assignment.target == Term::Kind::local)
         return print_wrapped(
             out, fmt::format("const Value {} = {};", names.locals[assignment.index], value));
-    const std::string condition = open_condition(assignment.positions);
-    const std::string update = fmt::format("{} = {};", names.members[assignment.index], value);
     const plan::Reading& reading = context.plan.readings[r];
+    const std::string condition =
+        assignment.positions == ir::Interval{}
+            ? ""
+            : open_condition(assignment.positions, context.position(reading.begins_with));
+    const std::string update = fmt::format("{} = {};", names.members[assignment.index], value);
     const std::string held =
         plan::comment_of(plan::members_of(reading)[assignment.index], context.graph);
     // What stands above the reading's code is not said again.

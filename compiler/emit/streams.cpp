@@ -1,4 +1,6 @@
 // The streams of judge(): present and past of every position, and the futures of sliding monitors.
+#include <algorithm>
+
 #include "emit/context.hpp"
 
 namespace etlc::emit {
@@ -49,8 +51,8 @@ std::string since(const Context& context, const Stream& stream, const std::strin
 std::string lazy_within(const Context& context, const Stream& stream, const std::string& name) {
     return fmt::format(
         "const etlmon::Lazy {}([&]() noexcept {{ return {} ? static_cast<Value>({}) : {}; }});",
-        name, open_condition(stream.interval), context.value(stream.operands[0]),
-        context.literal(stream.value));
+        name, open_condition(stream.interval, context.position(stream.begins_with)),
+        context.value(stream.operands[0]), context.literal(stream.value));
 }
 
 /// The value of a statement, found out when it is first asked for.
@@ -76,8 +78,10 @@ std::string statement(const Context& context, Slot slot, const std::string& loca
         case StreamOp::negation: return fmt::format("{}etlmon::negate({});", local, at(0));
         case StreamOp::combination: return local + combination(context, max, stream.operands) + ";";
         case StreamOp::within:
-            return fmt::format("{}{} ? {} : {};", local, open_condition(stream.interval), at(0),
-                               context.literal(stream.value));
+            return fmt::format(
+                "{}{} ? {} : {};", local,
+                open_condition(stream.interval, context.position(stream.begins_with)), at(0),
+                context.literal(stream.value));
         case StreamOp::delay: {
             // In a Boolean monitor a delayed atom is measured: not where the trace has ended.
             const bool lazy = context.lazy(stream.operands[0]) && context.plan.has_sliding;
@@ -113,6 +117,17 @@ struct Statement {
     std::string declaration;  ///< what has to stand before it, if anything
 };
 
+/// When a stream that remembers has to be kept up. A monitor that restarts asks again, of a past
+/// that began with the trace.
+std::string while_open(const Context& context, Slot slot) {
+    const std::vector<std::size_t>& monitors = context.dependents.of_stream[slot];
+    const bool asked_again = context.plan.streams[slot].begins_with == plan::kNone &&
+                             std::any_of(monitors.begin(), monitors.end(), [&](std::size_t m) {
+                                 return context.plan.monitors[m].restarts != check::Restarts::never;
+                             });
+    return asked_again ? "" : open_monitors(context, monitors);
+}
+
 /// The statement with what it declares. In a Boolean monitor, what must remember is only kept up
 /// while some verdict depends on it, and what need not is found out when it is asked for.
 Statement whole_statement(const Context& context, Slot slot) {
@@ -123,7 +138,7 @@ Statement whole_statement(const Context& context, Slot slot) {
         return {lazy_within(context, stream, name), ""};
     if (context.keeps(slot)) return {lazy_value(statement(context, slot, ""), name), ""};
     if (context.lazy(slot)) return {statement(context, slot, "const auto " + name + " = "), ""};
-    const std::string condition = open_monitors(context, context.dependents.of_stream[slot]);
+    const std::string condition = while_open(context, slot);
     if (member.empty() || condition.empty())
         return {statement(context, slot, "const Value " + name + " = "), ""};
     const std::string text = statement(context, slot, name + " = ");

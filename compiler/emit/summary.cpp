@@ -2,10 +2,12 @@
 // report.
 #include <algorithm>
 
+#include "check/formulas/gaps.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/model/fingerprint.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
+#include "emit/text/table.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
@@ -14,11 +16,6 @@ namespace etlc::emit {
 namespace {
 
 using check::Index;
-using Row = std::vector<std::string>;
-
-bool is_comment(const std::string& prefix) {
-    return prefix.starts_with("//");
-}
 
 /// "//   " without its blanks, and a report's prefix: an empty line.
 std::string blank(const std::string& prefix) {
@@ -28,61 +25,6 @@ std::string blank(const std::string& prefix) {
 /// Sentences, next to the margin.
 void print_sentences(Printer& out, const std::string& prefix, std::string_view text) {
     print_comment(out, is_comment(prefix) ? "//" : prefix.substr(1), text);
-}
-
-/// The words of a cell in lines of at most `width`, where that many hold a word.
-std::vector<std::string> lines_of(std::string cell, std::size_t width) {
-    std::vector<std::string> lines;
-    while (cell.size() > width) {
-        std::size_t end = cell.rfind(' ', width);
-        if (end == std::string::npos) end = cell.find(' ');
-        if (end == std::string::npos) break;
-        lines.push_back(cell.substr(0, end));
-        cell.erase(0, end + 1);
-    }
-    lines.push_back(cell);
-    return lines;
-}
-
-/// How wide each column is: as its widest cell. In a comment words that do not fit go on below.
-std::vector<std::size_t> column_widths(const std::string& prefix, const std::vector<Row>& rows,
-                                       std::size_t first_number) {
-    constexpr std::size_t kWidestText = 40;
-    std::vector<std::size_t> widths(rows.front().size(), 0);
-    for (const Row& row : rows)
-        for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-    if (!is_comment(prefix)) return widths;
-    std::size_t before = prefix.size();
-    for (std::size_t c = 0; c < widths.size() && c < first_number; ++c) {
-        const bool last = c + 1 == widths.size();
-        widths[c] = std::min(widths[c], last ? kLineWidth - before : kWidestText);
-        before += widths[c] + 2;
-    }
-    return widths;
-}
-
-/// Numbers, which are all columns from `first_number` on, stand to the right.
-void print_table(Printer& out, const std::string& prefix, const std::vector<Row>& rows,
-                 std::size_t first_number) {
-    const std::vector<std::size_t> widths = column_widths(prefix, rows, first_number);
-    for (const Row& row : rows) {
-        std::vector<std::vector<std::string>> cells;
-        std::size_t height = 1;
-        for (std::size_t c = 0; c < row.size(); ++c) {
-            cells.push_back(lines_of(row[c], widths[c]));
-            height = std::max(height, cells.back().size());
-        }
-        for (std::size_t i = 0; i < height; ++i) {
-            std::string line = prefix;
-            for (std::size_t c = 0; c < row.size(); ++c) {
-                const std::string text = i < cells[c].size() ? cells[c][i] : "";
-                line += c < first_number ? fmt::format("{:<{}}  ", text, widths[c])
-                                         : fmt::format("{:>{}}  ", text, widths[c]);
-            }
-            line.erase(line.find_last_not_of(' ') + 1);
-            out.line(line);
-        }
-    }
 }
 
 /// A formula in a table: its beginning, where it is long.
@@ -109,6 +51,16 @@ Row cost_row(Row row, const plan::Cost& cost, bool both_layouts) {
     return row;
 }
 
+std::string about(const plan::Monitor& monitor) {
+    if (monitor.sliding) return fmt::format("{} steps ago", monitor.horizon);
+    switch (monitor.restarts) {
+        case check::Restarts::never: break;
+        case check::Restarts::on_request: return "since restart";
+        case check::Restarts::when_final: return "the present cycle";
+    }
+    return "the prefix";
+}
+
 std::vector<Row> monitor_rows(const plan::Plan& plan) {
     const bool both_layouts = laid_out_by_machine(plan);
     std::vector<Row> rows{{"monitor", "about", "state B", "targets B"}};
@@ -116,9 +68,8 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
     rows[0].insert(rows[0].end(), {"operations", "distance elements"});
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = plan.monitors[m];
-        const std::string about =
-            monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
-        rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m], both_layouts));
+        rows.push_back(
+            cost_row({monitor.name, about(monitor)}, plan.monitor_costs[m], both_layouts));
     }
     rows.push_back(cost_row({"all together", ""}, plan.cost, both_layouts));
     return rows;
@@ -318,6 +269,33 @@ void print_rounded(Printer& out, const std::string& prefix, const check::Model& 
                     fmt::format("Durations are rounded {}: {}.", model.rounding, list));
 }
 
+std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
+    if (gap.inputs.empty()) return "never";
+    if (gap.steps != check::Gap::kForGood)
+        return fmt::format("for up to {} steps", number(gap.steps));
+    switch (monitor.restarts) {
+        case check::Restarts::never: break;
+        case check::Restarts::on_request: return "until it is restarted";
+        case check::Restarts::when_final: return "for good: no final verdict, no restart";
+    }
+    return "for good";
+}
+
+/// How long a missing sample may leave each verdict unknown.
+void print_gaps(Printer& out, const plan::Plan& plan) {
+    const std::vector<check::Gap> gaps = check::gaps(*plan.model);
+    std::vector<Row> rows{{"monitor", "a missing sample of", "may leave it unknown"}};
+    for (const plan::Monitor& monitor : plan.monitors) {
+        const check::Gap& gap = gaps[monitor.index];
+        std::string inputs;
+        for (const Index input : gap.inputs)
+            inputs += (inputs.empty() ? "" : ", ") + plan.model->inputs[input].name;
+        rows.push_back({monitor.name, inputs, unknown_for(monitor, gap)});
+    }
+    out.line();
+    print_table(out, "  ", rows, 3);
+}
+
 }  // namespace
 
 void print_summary(Printer& out, const Context& context) {
@@ -343,6 +321,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     print_stored(out, "  ", plan,
                  options.targets_file.empty() ? "the file of targets" : options.targets_file);
     print_rounded(out, "  ", *plan.model);
+    print_gaps(out, plan);
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)

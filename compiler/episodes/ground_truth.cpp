@@ -19,8 +19,12 @@ GroundTruth ground_truth(const check::Model& model, const std::vector<Index>& la
         formula.kind = check::Formula::Kind::boolean_input;
         formula.index = label;
     }
-    for (check::Monitor& monitor : result.model.monitors)
+    for (check::Monitor& monitor : result.model.monitors) {
         monitor.calibration.reset();  // the truth needs no shift
+        // It is asked about the positions of the monitor that it judges.
+        if (monitor.restarts == check::Restarts::when_final)
+            monitor.restarts = check::Restarts::on_request;
+    }
     result.model.truths.clear();
     return result;
 }

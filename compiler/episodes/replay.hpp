@@ -33,6 +33,8 @@ public:
     bool reports(Index monitor) const;
 
     void reset() { evaluator_.reset(); }
+    /// From the next step on, this monitor of the model is about that step.
+    void restart(Index monitor) { evaluator_.restart(places_[monitor]); }
     void step(const Recording& recording);
     /// After the last frame.
     void finish();

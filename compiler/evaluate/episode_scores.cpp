@@ -113,7 +113,16 @@ void EpisodeScorer::note_verdicts() {
         if (subject.truth == kNone || !monitors_.reports(subject.monitor)) continue;
         tracks_[m].said.push_back(label_of(monitors_.verdict(subject.monitor)));
         tracks_[m].is.push_back(label_of(truths_.verdict(subject.truth)));
+        if (model().monitors[subject.monitor].restarts == check::Restarts::when_final) follow(m);
     }
+}
+
+/// The truth of a repeating monitor is asked about the same positions.
+void EpisodeScorer::follow(std::size_t m) {
+    const MonitorSubject& subject = subject_.monitors[m];
+    tracks_[m].said_alarm |= monitors_.verdict(subject.monitor).alarm();
+    tracks_[m].is_alarm |= truths_.verdict(subject.truth).alarm();
+    if (monitors_.verdict(subject.monitor).final()) truths_.restart(subject.truth);
 }
 
 MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
@@ -122,10 +131,12 @@ MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Trac
     for (std::size_t i = 0; i < tracks.said.size(); ++i)
         result.steps.add(tracks.said[i], tracks.is[i]);
     const bool sliding = model().monitors[subject.monitor].sliding;
-    const auto verdict = [&](const Track& track) {
+    const auto verdict = [&](const Track& track, bool alarm) {
+        if (alarm) return Label::no;
         return sliding ? *std::min_element(track.begin(), track.end()) : track.back();
     };
-    result.episode.add(verdict(tracks.said), verdict(tracks.is));
+    result.episode.add(verdict(tracks.said, tracks.said_alarm),
+                       verdict(tracks.is, tracks.is_alarm));
     result.turn = turn_of(tracks.said, tracks.is);
     const auto visited = [&](Index stage) { return truths_.verdict(stage).satisfied(); };
     if (!subject.stages.empty() &&

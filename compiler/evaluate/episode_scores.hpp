@@ -61,10 +61,13 @@ private:
     struct Tracks {
         Track said;
         Track is;
+        bool said_alarm = false;  ///< at some step
+        bool is_alarm = false;
     };
 
     void count_predicates(const episodes::Recording& recording, EpisodeResult& result) const;
     void note_verdicts();
+    void follow(std::size_t m);
     float distance(Index predicate) const;
     MonitorEpisode conclude(const MonitorSubject& subject, const Tracks& tracks) const;
     const check::Model& model() const { return *plan_.model; }

@@ -55,9 +55,12 @@ const std::vector<Pass>& passes() {
 void optimise(ir::Program& program) {
     for (const Pass& pass : passes()) {
         Rewriting rewriting(program.graph, pass);
-        for (std::size_t m = 0; m < program.monitors.size(); ++m)
-            if (!program.graph.model().monitors[m].sliding)
+        for (std::size_t m = 0; m < program.monitors.size(); ++m) {
+            const check::Monitor& monitor = program.graph.model().monitors[m];
+            const bool stays_at_start = monitor.restarts == check::Restarts::never;
+            if (!monitor.sliding && (stays_at_start || !pass.at_start_only))
                 program.monitors[m] = rewriting.rewrite(program.monitors[m]);
+        }
     }
     split_windows(program);
     ir::verify(program.graph);

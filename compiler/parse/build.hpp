@@ -42,6 +42,7 @@ private:
     ast::Target target(Grammar::TargetDeclarationContext& context, source::Span span) const;
     ast::Predicate predicate(Grammar::PredicateDeclarationContext& context,
                              source::Span span) const;
+    static std::optional<bool> missing(Grammar::MissingContext* context);  ///< null: not written
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
     ast::Load load(Grammar::LoadContext& context) const;

@@ -61,6 +61,7 @@ ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Spa
     result.type = type(*context.type());
     if (auto* const limits = context.range()) result.range = range(*limits);
     if (auto* const hold = context.hold()) result.hold = number(*hold->NUMBER()->getSymbol());
+    result.missing = missing(context.missing());
     result.span = span;
     return result;
 }
@@ -117,16 +118,36 @@ ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context,
     else
         result.threshold =
             number(*dynamic_cast<Grammar::NumberThresholdContext&>(*context.threshold()).number());
+    result.missing = missing(context.missing());
     result.span = span;
     return result;
 }
+
+std::optional<bool> Builder::missing(Grammar::MissingContext* context) {
+    if (context == nullptr) return std::nullopt;
+    return context->op->getType() == Grammar::TRUE;
+}
+
+namespace {
+
+ast::Monitor::Kind monitor_kind(const Token* word) {
+    using Kind = ast::Monitor::Kind;
+    if (word == nullptr) return Kind::prefix;
+    switch (word->getType()) {
+        case Grammar::SLIDING: return Kind::sliding;
+        case Grammar::RESTARTABLE: return Kind::restartable;
+        default: return Kind::repeating;
+    }
+}
+
+}  // namespace
 
 ast::Monitor Builder::monitor(Grammar::MonitorDeclarationContext& context,
                               source::Span span) const {
     ast::Monitor result;
     result.name = name(*context.name());
     result.formula = formula(*context.formula()).root;
-    result.sliding = context.SLIDING() != nullptr;
+    result.kind = monitor_kind(context.kind);
     if (auto* const calibration = context.calibrated())
         result.calibrated = calibrated(*calibration);
     result.span = span;

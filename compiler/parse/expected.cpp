@@ -49,6 +49,7 @@ const std::vector<Group>& groups() {
         {{EtlParser::HERTZ}, "'Hz'", true},
         {{EtlParser::DURATIONS}, "'durations'", true},
         {{EtlParser::UP, EtlParser::NEAREST}, "a way to round (up, down or nearest)", true},
+        {{EtlParser::TRUE, EtlParser::FALSE}, "true or false", true},
         {{EtlParser::LOAD, EtlParser::LBRACKET}, "load(\"FILE\") or a matrix [[...], ...]", false},
         {{EtlParser::STRING}, "a file name between double quotes", false},
         {{EtlParser::NUMBER}, "a number", false},
@@ -116,7 +117,8 @@ std::string name_words(const Stuck& stuck) {
 bool operators_could_follow(const Stuck& stuck) {
     const bool in_formula =
         stuck.declaration == EtlParser::LET || stuck.declaration == EtlParser::TRUTH ||
-        stuck.declaration == EtlParser::MONITOR || stuck.declaration == EtlParser::SLIDING;
+        stuck.declaration == EtlParser::MONITOR || stuck.declaration == EtlParser::SLIDING ||
+        stuck.declaration == EtlParser::RESTARTABLE || stuck.declaration == EtlParser::REPEATING;
     if (stuck.rule == EtlParser::RulePrimary) return true;
     return stuck.rule == EtlParser::RuleDeclaration && in_formula &&
            has(stuck, EtlParser::SEMICOLON);
@@ -136,6 +138,7 @@ std::string spelling(std::size_t type) {
         case EtlParser::SCALE: return "scale";
         case EtlParser::IN: return "in";
         case EtlParser::HOLD: return "hold";
+        case EtlParser::MISSING: return "missing";
         default: return {};
     }
 }
@@ -210,7 +213,7 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
                                  "since", "calibrated"})
             words.emplace_back(word);
     if (stuck.rule == EtlParser::RuleDeclaration && stuck.declaration == EtlParser::INPUT)
-        for (const char* word : {"in", "hold", "scale"}) words.emplace_back(word);
+        for (const char* word : {"in", "hold", "scale", "missing"}) words.emplace_back(word);
     return words;
 }
 

@@ -24,7 +24,9 @@ bool begins_declaration(const Tokens& tokens, std::size_t i) {
         case EtlLexer::INPUT:
             return name_follows &&
                    (type(i + 2) == EtlLexer::COMMA || type(i + 2) == EtlLexer::COLON);
-        case EtlLexer::SLIDING: return type(i + 1) == EtlLexer::MONITOR;
+        case EtlLexer::SLIDING:
+        case EtlLexer::RESTARTABLE:
+        case EtlLexer::REPEATING: return type(i + 1) == EtlLexer::MONITOR;
         case EtlLexer::TARGET:
         case EtlLexer::PREDICATE:
         case EtlLexer::TRUTH:
@@ -41,8 +43,9 @@ std::vector<Slice> slices_of(const Tokens& tokens) {
     std::size_t begin = 0;
     const std::size_t last = tokens.size() - 1;  // EOF
     for (std::size_t i = 0; i < last; ++i) {
-        const bool after_sliding = i == begin + 1 && tokens[begin]->getType() == EtlLexer::SLIDING;
-        if (i > begin && !after_sliding && begins_declaration(tokens, i)) {
+        const bool of_a_kind = i == begin + 1 && tokens[i]->getType() == EtlLexer::MONITOR &&
+                               begins_declaration(tokens, begin);
+        if (i > begin && !of_a_kind && begins_declaration(tokens, i)) {
             slices.push_back({begin, i});
             begin = i;
         }

@@ -74,9 +74,9 @@ private:
     }
 
     Diagnostic no_declaration() const {
-        static const std::vector<std::string> kWords{"spec",    "rate",      "period", "input",
-                                                     "target",  "predicate", "truth",  "let",
-                                                     "monitor", "sliding"};
+        static const std::vector<std::string> kWords{
+            "spec",  "rate", "period",  "input",   "target",      "predicate",
+            "truth", "let",  "monitor", "sliding", "restartable", "repeating"};
         const bool word = found_is_word();
         Diagnostic result =
             at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
@@ -85,7 +85,7 @@ private:
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, input, target, predicate, truth, "
-                "let, monitor or sliding monitor");
+                "let, or with monitor, before which sliding, restartable or repeating may stand");
         return result;
     }
 

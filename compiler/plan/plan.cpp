@@ -52,6 +52,7 @@ public:
         const check::Monitor& source = plan_.model->monitors[index];
         Monitor monitor{.name = source.name,
                         .sliding = source.sliding,
+                        .restarts = source.restarts,
                         .horizon = source.horizon,
                         .index = index,
                         .node = program_.monitors[index]};
@@ -70,9 +71,12 @@ public:
         }
         if (source.sliding) {
             plan_.has_sliding = true;
+            streams_.begin_with(kNone);
             const Slot slot = streams_.of(program_.monitors[index]);
             monitor.stream = streams_.delayed(slot, source.horizon - plan_.streams[slot].lag);
         } else {
+            const auto own = static_cast<std::uint32_t>(plan_.monitors.size());
+            streams_.begin_with(source.restarts == check::Restarts::never ? kNone : own);
             const std::size_t known = readings_.oversize().size();
             const auto reading = readings_.of(program_.monitors[index]);
             for (std::size_t i = known; i < readings_.oversize().size(); ++i)
@@ -92,12 +96,7 @@ public:
         collect_inputs();
         plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
-        plan_.counts_steps =
-            plan_.has_sliding ||
-            std::any_of(plan_.readings.begin(), plan_.readings.end(),
-                        [](const Reading& reading) { return asks_position(reading); }) ||
-            std::any_of(plan_.streams.begin(), plan_.streams.end(),
-                        [](const Stream& stream) { return stream.op == StreamOp::within; });
+        count_steps();
         add_costs(plan_);
         return std::move(plan_);
     }
@@ -126,6 +125,18 @@ private:
             if (used[slot]) keep(keep, slot);
         plan_.streams = std::move(kept);
         for_each_root([&](Slot& slot) { slot = renumbered[slot]; });
+    }
+
+    /// Where the number of the step is asked for, from the start of the trace or of a monitor.
+    void count_steps() {
+        plan_.counts_steps = plan_.has_sliding;
+        const auto count = [&](std::uint32_t from) {
+            (from == kNone ? plan_.counts_steps : plan_.monitors[from].counts_steps) = true;
+        };
+        for (const Reading& reading : plan_.readings)
+            if (asks_position(reading)) count(reading.begins_with);
+        for (const Stream& stream : plan_.streams)
+            if (stream.op == StreamOp::within) count(stream.begins_with);
     }
 
     /// Every place outside the streams that names one.

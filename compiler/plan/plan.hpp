@@ -22,6 +22,8 @@ namespace etlc::plan {
 struct Monitor {
     std::string name;
     bool sliding = false;
+    check::Restarts restarts = check::Restarts::never;
+    bool counts_steps = false;  ///< where it restarts: some part of it counts from there
     std::uint32_t horizon = 0;
     std::uint32_t reading = kNone;  ///< prefix monitors
     Slot stream = kNone;            ///< sliding monitors: the verdicts, lagging by the horizon

@@ -49,6 +49,9 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
                 }
             range = {truth(always), truth(ever)};
         }
+        // "of a predicate that counts as false where it is missing, the lowest is -inf"
+        if (predicate.missing == false) range.lowest = -kInfinity;
+        if (predicate.missing == true) range.highest = kInfinity;
     }
     return atom.negated ? negate(range) : range;
 }
@@ -70,6 +73,14 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     if (delta != delta) return {};
     if (values == Values::boolean) return truth(holds(predicate, delta, epsilon));
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
+}
+
+/// What the spec lets the atom count as where it is unknown.
+std::optional<double> rho_of_missing(const check::Model& model, const Node& atom) {
+    const std::optional<bool> missing = atom.kind == Node::Kind::boolean
+                                            ? model.inputs[atom.index].missing
+                                            : model.predicates[atom.index].missing;
+    return missing ? std::optional(truth(*missing)) : std::nullopt;
 }
 
 /// The literal's four numbers: "with known samples (v, v)"; "its literal contributes (low, low,
@@ -110,10 +121,12 @@ Verdict sliding_verdict(const Value& value) {
 class Evaluation {
 public:
     Evaluation(const check::Model& model, const Trace& trace, Values values,
-               const Thresholds& thresholds)
+               const Thresholds& thresholds, const Requests& requests)
         : model_(model),
           values_(values),
           thresholds_(thresholds),
+          requests_(requests),
+          starts_(model.monitors.size(), 0),
           form_(normal_form(model)),
           samples_(accept(model, trace)) {
         for (const check::Monitor& monitor : model.monitors)
@@ -132,6 +145,8 @@ private:
     const check::Model& model_;
     Values values_;
     const Thresholds& thresholds_;
+    const Requests& requests_;
+    std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
     NormalForm form_;
     std::vector<Samples> samples_;
     std::vector<std::uint64_t> horizons_;
@@ -162,27 +177,41 @@ private:
             if (!node.is_atom()) continue;
             literals_.ranges[n] = range_of(model_, node, values_);
             for (std::size_t step = 0; step < samples_.size(); ++step) {
-                const auto rho =
-                    rho_of(model_, node, samples_[step], run_.telemetry[step], values_,
-                           thresholds_.empty() ? std::vector<double>{} : thresholds_[step]);
+                auto rho = rho_of(model_, node, samples_[step], run_.telemetry[step], values_,
+                                  thresholds_.empty() ? std::vector<double>{} : thresholds_[step]);
+                if (!rho) {
+                    lacking[step] = true;
+                    rho = rho_of_missing(model_, node);
+                }
                 literals_.values[n].push_back(literal(rho, node.negated, literals_.ranges[n]));
-                if (!rho) lacking[step] = true;
             }
         }
         run_.missing_steps =
             static_cast<std::uint32_t>(std::count(lacking.begin(), lacking.end(), true));
     }
 
+    /// rho(f, p, i), p being 0, or the step from which on the monitor was restarted, or the one
+    /// after its last final verdict.
+    Verdict about_its_start(Prefix& prefix, std::size_t n, std::uint64_t i) {
+        std::uint64_t& p = starts_[n];
+        if (i < requests_.size() && requests_[i][n]) p = i;
+        const Verdict result = prefix_verdict(prefix.at(form_.roots[n], p));
+        run_.positions[i][n] = p;
+        if (result.final && model_.monitors[n].restarts == check::Restarts::when_final) p = i + 1;
+        return result;
+    }
+
     std::vector<Verdict> after(std::uint64_t i) {
         Prefix prefix(form_, literals_, i);
+        run_.positions.emplace_back(model_.monitors.size());
         std::vector<Verdict> result;
         for (std::size_t n = 0; n < model_.monitors.size(); ++n) {
             const std::uint64_t h = horizons_[n];
             if (!model_.monitors[n].sliding)
-                result.push_back(prefix_verdict(prefix.at(form_.roots[n], 0)));  // rho(f, 0, i)
+                result.push_back(about_its_start(prefix, n, i));
             else if (i >= h)
-                result.push_back(
-                    sliding_verdict(prefix.at(form_.roots[n], i - h)));  // rho(f, i-h, i)
+                result.push_back(sliding_verdict(
+                    prefix.at(form_.roots[n], run_.positions[i][n] = i - h)));  // rho(f, i-h, i)
             else
                 result.push_back({});  // "for i < h it is undecided"
         }
@@ -215,8 +244,8 @@ private:
 }  // namespace
 
 Run evaluate(const check::Model& model, const Trace& trace, Values values,
-             const Thresholds& thresholds) {
-    return Evaluation(model, trace, values, thresholds).run();
+             const Thresholds& thresholds, const Requests& requests) {
+    return Evaluation(model, trace, values, thresholds, requests).run();
 }
 
 }  // namespace etlc::reference

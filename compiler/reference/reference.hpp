@@ -36,6 +36,8 @@ struct Telemetry {
 struct Run {
     /// verdicts[step][monitor], as after `step` steps have been seen.
     std::vector<std::vector<Verdict>> verdicts;
+    /// positions[step][monitor]: the position that the verdict is about, where it is decided.
+    std::vector<std::vector<std::uint64_t>> positions;
     /// finish[call][monitor]: the calls of finish() after the trace, as many as the largest
     /// horizon.
     std::vector<std::vector<Verdict>> finish;
@@ -51,10 +53,14 @@ struct Run {
 /// of other predicates are ignored; without any, adaptive thresholds stay where they start.
 using Thresholds = std::vector<std::vector<double>>;
 
+/// requests[step][monitor]: the program restarted that monitor before the step.
+using Requests = std::vector<std::vector<bool>>;
+
 /// Boolean: a predicate is true (+inf) or false (-inf) as its comparison says, in double; lowest
 /// and highest unseen value are what its comparison can say over the range of its expression.
 /// Without thresholds, adaptive ones stay where they start.
 Run evaluate(const check::Model& model, const Trace& trace,
-             check::Values values = check::Values::robustness, const Thresholds& thresholds = {});
+             check::Values values = check::Values::robustness, const Thresholds& thresholds = {},
+             const Requests& requests = {});
 
 }  // namespace etlc::reference

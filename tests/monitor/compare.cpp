@@ -41,6 +41,7 @@ public:
 
     std::optional<std::string> judge() {
         if (auto bad = rows("step", expected_.verdicts, observed_.verdicts)) return bad;
+        if (auto bad = positions()) return bad;
         if (auto bad = rows("finish call", expected_.finish, observed_.finish)) return bad;
         if (auto bad = later_values()) return bad;
         if (auto bad = telemetry()) return bad;
@@ -87,6 +88,18 @@ private:
         return {};
     }
 
+    std::optional<std::string> positions() const {
+        for (std::size_t step = 0; step < observed_.positions.size(); ++step)
+            for (std::size_t m = 0; m < model_.monitors.size(); ++m) {
+                const std::uint64_t expected = expected_.positions[step][m];
+                const std::uint64_t observed = observed_.positions[step][m];
+                if (expected_.verdicts[step][m].status != Status::undecided && observed != expected)
+                    return fmt::format("step {} of {}: about position {}, expected {}", step,
+                                       monitor(m), observed, expected);
+            }
+        return {};
+    }
+
     /// What differs, or null.
     const char* verdict(const Verdict& e, const Verdict& o, bool sliding) const {
         if ((e.status == Status::undecided) != (o.status == Status::undecided)) return "decided";
@@ -106,7 +119,7 @@ private:
         return nullptr;
     }
 
-    /// The bounds hold for rho at every later step of this trace.
+    /// The bounds hold for rho at every later step of this trace, while it is about the position.
     std::optional<std::string> later_values() const {
         for (std::size_t m = 0; m < model_.monitors.size(); ++m) {
             if (model_.monitors[m].sliding) continue;
@@ -114,6 +127,12 @@ private:
             double most = -kInfinity;
             for (std::size_t step = expected_.verdicts.size(); step-- > 0;) {
                 const Verdict& o = observed_.verdicts[step][m];
+                const bool last = step + 1 == expected_.verdicts.size() ||
+                                  expected_.positions[step + 1][m] != expected_.positions[step][m];
+                if (last) {
+                    least = kInfinity;
+                    most = -kInfinity;
+                }
                 least = std::min(least, expected_.verdicts[step][m].robustness);
                 most = std::max(most, expected_.verdicts[step][m].robustness_high);
                 if (!at_most(o.lower, least) || !at_most(most, o.upper))

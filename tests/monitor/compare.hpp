@@ -34,6 +34,8 @@ struct Observed {
     };
     std::vector<std::vector<reference::Verdict>> verdicts;
     std::vector<std::vector<reference::Verdict>> finish;
+    /// The position that each verdict is about, where it is decided; empty: not seen.
+    std::vector<std::vector<std::uint64_t>> positions;
     std::vector<std::vector<Predicate>> telemetry;
     std::uint32_t missing_steps = 0;
     Dependencies dependencies;

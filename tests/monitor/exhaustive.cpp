@@ -144,7 +144,7 @@ std::string spec(const std::string& name, const std::string& kind, const Formula
 
 }  // namespace
 
-std::string exhaustive_spec(const std::string& name) {
+std::string exhaustive_spec(const std::string& name, const std::string& kind) {
     Formulas formulas = kConnectives;
     append(formulas, kWithoutInterval);
     for (const Formulas* intervals : {&kBounded, &kUnbounded})
@@ -152,7 +152,7 @@ std::string exhaustive_spec(const std::string& name) {
     for (const Formulas* more :
          {&kOverConstants, &kWeakUntil, &kUnboundedNestings, &kBoundedNestings, &kOverThePast})
         append(formulas, *more);
-    return spec(name, "monitor", formulas);
+    return spec(name, kind, formulas);
 }
 
 std::string exhaustive_sliding_spec(const std::string& name) {

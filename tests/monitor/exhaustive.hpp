@@ -13,8 +13,10 @@
 
 namespace etlc::tests {
 
-/// Prefix monitors m0, m1, ... over p = x >= 0 and q = y > 0.
-std::string exhaustive_spec(const std::string& name = "exhaustive");
+/// Prefix monitors m0, m1, ... over p = x >= 0 and q = y > 0; `kind` may be "restartable monitor"
+/// or "repeating monitor".
+std::string exhaustive_spec(const std::string& name = "exhaustive",
+                            const std::string& kind = "monitor");
 /// Sliding monitors, with bounded futures and past operators over them.
 std::string exhaustive_sliding_spec(const std::string& name = "exhaustive_sliding");
 

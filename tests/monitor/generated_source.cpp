@@ -84,6 +84,17 @@ std::string labelling(const check::Model& model) {
     return labels + "  }\n" + restart + "  }\n";
 }
 
+/// restart_NAME() where restart_schedule.hpp says so.
+std::string restarting(const check::Model& model) {
+    std::string result =
+        "  static void restart_before(Monitor& m, uint32_t step) {\n    (void)m, (void)step;\n";
+    for (std::size_t m = 0; m < model.monitors.size(); ++m)
+        if (model.monitors[m].restarts != check::Restarts::never)
+            result += fmt::format("    if (harness::restarts_before(step, {})) m.restart_{}();\n",
+                                  m, model.monitors[m].name);
+    return result + "  }\n";
+}
+
 }  // namespace
 
 std::string adaptor_source(const check::Model& model) {
@@ -96,7 +107,7 @@ std::string adaptor_source(const check::Model& model) {
                "#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n",
                model.name,
                aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
-                   reporting(model) + finishing(model)) +
+                   restarting(model) + reporting(model) + finishing(model)) +
            fmt::format(
                "void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); "
                "}}\n",

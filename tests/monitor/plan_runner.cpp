@@ -5,6 +5,7 @@
 
 #include "ir/lower.hpp"
 #include "opt/opt.hpp"
+#include "restart_schedule.hpp"
 
 namespace etlc::tests {
 namespace {
@@ -61,7 +62,14 @@ Observed PlanRunner::run(const reference::Trace& trace, const Labels* labels) {
             if (model_.predicates[p].threshold.adaptation)
                 for (const Label& label : (*labels)[n][p])
                     evaluator_->observe(p, label.distance, label.truth);
+        for (std::size_t m = 0; m < plan_->monitors.size(); ++m) {
+            const plan::Index monitor = plan_->monitors[m].index;
+            if (model_.monitors[monitor].restarts != check::Restarts::never &&
+                restarts_before(n, monitor))
+                evaluator_->restart(m);
+        }
         result.verdicts.push_back(verdicts(evaluator_->step(samples_of(trace[n]))));
+        result.positions.push_back(positions());
         result.telemetry.push_back(telemetry());
     }
     result.missing_steps = evaluator_->missing_steps();
@@ -88,6 +96,13 @@ std::vector<reference::Verdict> PlanRunner::verdicts(
     std::vector<reference::Verdict> result(model_.monitors.size());
     for (std::size_t n = 0; n < from.size(); ++n)
         result[plan_->monitors[n].index] = observed(from[n]);
+    return result;
+}
+
+std::vector<std::uint64_t> PlanRunner::positions() const {
+    std::vector<std::uint64_t> result(model_.monitors.size());
+    for (std::size_t n = 0; n < plan_->monitors.size(); ++n)
+        result[plan_->monitors[n].index] = evaluator_->position(n);
     return result;
 }
 

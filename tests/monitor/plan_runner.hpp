@@ -41,6 +41,7 @@ private:
 
     std::vector<reference::Verdict> verdicts(const std::vector<etlmon::Verdict>& from) const;
     std::vector<Observed::Predicate> telemetry() const;
+    std::vector<std::uint64_t> positions() const;
 };
 
 /// A verdict of the runtime in the reference's terms.

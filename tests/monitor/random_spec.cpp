@@ -15,12 +15,13 @@ namespace {
 /// Declarations that formulas are built on.
 class Declarations {
 public:
-    Declarations(Random& random, bool exact) : random_(random), exact_(exact) {}
+    Declarations(Random& random, const SpecShape& shape)
+        : random_(random), exact_(shape.exact), missing_share_(shape.missing) {}
 
     std::string text() {
         std::string result;
         for (const char* name : {"x", "y"}) result += scalar(name);
-        result += fmt::format("input on : bool{};\n", hold());
+        result += fmt::format("input on : bool{}{};\n", hold(), missing());
         dimension_ = random_.between(1, 5);
         result += fmt::format("input v : {}{};\n", embedding(), hold());
         for (const char* name : {"near", "far"}) result += target(name, dimension_);
@@ -28,7 +29,7 @@ public:
         const int count = random_.between(4, 6);
         for (int n = 0; n < count; ++n) {
             atoms_.push_back(fmt::format("p{}", n));
-            result += fmt::format("predicate p{} = {};\n", n, predicate());
+            result += fmt::format("predicate p{} = {}{};\n", n, predicate(), missing());
         }
         atoms_.emplace_back("on");
         return result;
@@ -44,12 +45,17 @@ public:
 private:
     Random& random_;
     bool exact_;
+    double missing_share_;
     int dimension_ = 1;
     std::map<std::string, int> rows_;  // of each target
     std::vector<std::string> atoms_;
 
     std::string hold() {
         return random_.chance(0.3) ? fmt::format(" hold {}", random_.between(1, 3)) : "";
+    }
+    std::string missing() {
+        if (missing_share_ == 0 || !random_.chance(missing_share_)) return "";
+        return random_.chance(0.5) ? " missing true" : " missing false";
     }
     std::string number(int low, int high) {
         return fmt::format("{}", random_.grid(low, high, 0.25));
@@ -168,7 +174,7 @@ FormulaShape formula_shape(const SpecShape& shape, bool sliding) {
 
 std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
     Random random(seed);
-    Declarations declarations(random, shape.exact);
+    Declarations declarations(random, shape);
     std::string result = fmt::format("spec random_{};\n", seed) + declarations.text();
     const auto comparison = [&] { return declarations.comparison(); };
     RandomFormula prefix(random, declarations.atoms(), comparison, formula_shape(shape, false));
@@ -178,9 +184,12 @@ std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
         const bool slides = shape.formulas == SpecShape::Formulas::sliding ||
                             (shape.formulas == SpecShape::Formulas::mixed && n % 2 == 1);
         RandomFormula& formula = slides ? sliding : prefix;
+        const bool restarts = !slides && shape.restarts > 0 && random.chance(shape.restarts);
+        const std::string kind = slides      ? "sliding "
+                                 : !restarts ? ""
+                                             : random.word({"restartable ", "repeating "});
         const std::string text = formula.make();
-        result += formula.take_lets() +
-                  fmt::format("{}monitor m{} = {};\n", slides ? "sliding " : "", n, text);
+        result += formula.take_lets() + fmt::format("{}monitor m{} = {};\n", kind, n, text);
     }
     return result;
 }

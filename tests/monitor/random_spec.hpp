@@ -27,6 +27,8 @@ struct SpecShape {
     /// Only expressions and distances that float32 computes without rounding on samples that are
     /// multiples of 1/4.
     bool exact = true;
+    double restarts = 0;  ///< share of prefix monitors that are restartable or repeating
+    double missing = 0;  ///< share of predicates and bools that say what a missing sample counts as
 };
 
 /// One spec of each kind of formulas, of a size that compiles in a second.

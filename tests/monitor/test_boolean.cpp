@@ -13,7 +13,7 @@
 #include "plan_runner.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "reference/reference.hpp"
+#include "restart_schedule.hpp"
 
 namespace {
 
@@ -24,8 +24,9 @@ using Formulas = SpecShape::Formulas;
 
 void expect_agreement(const check::Model& model, PlanRunner& runner,
                       const reference::Trace& trace) {
-    const auto mismatch = first_mismatch(model, reference::evaluate(model, trace, Values::boolean),
-                                         runner.run(trace), {});
+    const Observed observed = runner.run(trace);
+    const auto mismatch =
+        first_mismatch(model, expected_run(model, trace, observed, Values::boolean), observed, {});
     ASSERT_FALSE(mismatch) << *mismatch << "\n"
                            << model.file.text() << "\n"
                            << to_csv(model, trace);
@@ -85,6 +86,14 @@ const RandomCase kCases[] = {
     {"Prefix", {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 3}, 60},
     {"Sliding", {.formulas = Formulas::sliding, .depth = 4, .window = 3}, 60},
     {"Mixed", {.formulas = Formulas::mixed, .monitors = 6, .depth = 3, .window = 3}, 40},
+    {"Restarts",
+     {.formulas = Formulas::mixed,
+      .monitors = 6,
+      .depth = 3,
+      .window = 4,
+      .restarts = 0.8,
+      .missing = 0.3},
+     60},
     {"PrefixLongWindows",
      {.formulas = Formulas::prefix, .monitors = 2, .depth = 3, .window = 25},
      40},

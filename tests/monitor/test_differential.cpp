@@ -14,7 +14,7 @@
 #include "plan_runner.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "reference/reference.hpp"
+#include "restart_schedule.hpp"
 
 namespace {
 
@@ -28,8 +28,9 @@ constexpr double kRounding = 1e-5;
 
 void expect_agreement(const check::Model& model, PlanRunner& runner, const reference::Trace& trace,
                       double rounding) {
+    const Observed observed = runner.run(trace);
     const auto mismatch =
-        first_mismatch(model, reference::evaluate(model, trace), runner.run(trace), {rounding});
+        first_mismatch(model, expected_run(model, trace, observed), observed, {rounding});
     ASSERT_FALSE(mismatch) << *mismatch << "\n"
                            << model.file.text() << "\n"
                            << to_csv(model, trace);
@@ -53,6 +54,13 @@ TEST(PlanExhaustive, PrefixMonitors) {
 }
 TEST(PlanExhaustive, PrefixMonitorsWithGaps) {
     expect_agreement_on_all(exhaustive_spec(), 4, true);
+}
+
+TEST(PlanExhaustive, MonitorsThatRestart) {
+    for (const char* kind : {"restartable monitor", "repeating monitor"}) {
+        expect_agreement_on_all(exhaustive_spec("restarted", kind), 6, false);
+        expect_agreement_on_all(exhaustive_spec("restarted", kind), 4, true);
+    }
 }
 
 // For sliding monitors the end of the trace matters too.
@@ -124,6 +132,17 @@ const RandomCase kCases[] = {
     {"SlidingLongWindows",
      {.formulas = Formulas::sliding, .monitors = 2, .depth = 3, .window = 15},
      40},
+    {"Restarts",
+     {.formulas = Formulas::prefix, .monitors = 4, .depth = 3, .window = 5, .restarts = 1},
+     100},
+    {"MissingCounts",
+     {.formulas = Formulas::mixed,
+      .monitors = 4,
+      .depth = 3,
+      .window = 4,
+      .restarts = 0.5,
+      .missing = 0.6},
+     80},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

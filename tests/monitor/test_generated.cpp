@@ -16,7 +16,7 @@
 #include "plan_runner.hpp"
 #include "random_spec.hpp"
 #include "random_trace.hpp"
-#include "reference/reference.hpp"
+#include "restart_schedule.hpp"
 
 namespace {
 
@@ -37,13 +37,20 @@ struct Subject {
 
 std::vector<Subject> subjects() {
     std::vector<Subject> result{{exhaustive_spec(), true, true},
-                                {exhaustive_sliding_spec(), true, true}};
+                                {exhaustive_sliding_spec(), true, true},
+                                {exhaustive_spec("restarted", "restartable monitor"), true, true}};
     const std::vector<SpecShape> shapes = {
         {.formulas = Formulas::unnested, .depth = 3},
         {.formulas = Formulas::unbounded_nesting, .depth = 3},
         {.formulas = Formulas::prefix, .monitors = 6, .depth = 3, .window = 3},
         {.formulas = Formulas::sliding, .depth = 4, .window = 3},
         {.formulas = Formulas::mixed, .depth = 3, .window = 3},
+        {.formulas = Formulas::mixed,
+         .monitors = 8,
+         .depth = 3,
+         .window = 4,
+         .restarts = 0.9,
+         .missing = 0.4},
         {.formulas = Formulas::unnested, .depth = 2, .exact = false},
         {.formulas = Formulas::prefix, .monitors = 6, .depth = 2, .exact = false},
         {.formulas = Formulas::sliding, .depth = 3, .exact = false},
@@ -100,8 +107,8 @@ struct Expectation {
                                         const char* run) const {
         observed.dependencies = dependencies;
         const Comparison comparison{rounding, values == check::Values::boolean};
-        const auto found =
-            first_mismatch(model, reference::evaluate(model, trace, values), observed, comparison);
+        const auto found = first_mismatch(model, expected_run(model, trace, observed, values),
+                                          observed, comparison);
         if (!found) return {};
         return fmt::format("{}: {}\n{}\n{}", run, *found, model.file.text(), to_csv(model, trace));
     }

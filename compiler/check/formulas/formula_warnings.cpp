@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <map>
+#include <tuple>
 
 #include "check/formulas/constancy.hpp"
 #include "check/formulas/formulas.hpp"
@@ -144,13 +145,14 @@ private:
 
     bool warn_of_constant(const Monitor& monitor, Span name) {
         const Constancies& found = constancies_[monitor.formula];
-        const Constancy constancy = monitor.sliding ? found.anywhere : found.at_start;
+        const bool anywhere = monitor.sliding || monitor.restarts != Restarts::never;
+        const Constancy constancy = anywhere ? found.anywhere : found.at_start;
         if (constancy == Constancy::varies) return false;
         auto& warning = c_.report(
             Code::constant_verdict, name,
             fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
                         constancy == Constancy::always ? "satisfied" : "violated"));
-        if (!monitor.sliding && found.anywhere == Constancy::varies)
+        if (!anywhere && found.anywhere == Constancy::varies)
             warning.note(
                 "a prefix monitor reports about position 0, which has no past; did you mean a "
                 "sliding monitor?");
@@ -158,7 +160,9 @@ private:
     }
 
     void warn_of_first_position(const Monitor& monitor, Span name) {
-        if (monitor.sliding || reaches_[monitor.formula].future != kNone) return;
+        if (monitor.sliding || monitor.restarts != Restarts::never ||
+            reaches_[monitor.formula].future != kNone)
+            return;
         c_.report(Code::first_position_only, name,
                   fmt::format("'{}' looks only at position 0, so that its verdict never changes "
                               "after the first step",
@@ -167,9 +171,10 @@ private:
     }
 
     void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
-        if (monitor.calibration) return;  // shifted, each by its own
-        const auto [first, is_new] =
-            monitors_.try_emplace({structures_[monitor.formula], monitor.sliding}, &entity);
+        if (monitor.calibration) return;                       // shifted, each by its own
+        if (monitor.restarts == Restarts::on_request) return;  // each at its own time
+        const auto [first, is_new] = monitors_.try_emplace(
+            {structures_[monitor.formula], monitor.sliding, monitor.restarts}, &entity);
         if (is_new) return;
         c_.report(Code::same_definition, entity.span,
                   fmt::format("'{}' is the same monitor as '{}'", entity.name, first->second->name))
@@ -181,7 +186,7 @@ private:
     std::vector<Index> structures_;
     std::vector<Constancies> constancies_;
     std::vector<Reach> reaches_;
-    std::map<std::pair<Index, bool>, const Entity*> monitors_;
+    std::map<std::tuple<Index, bool, Restarts>, const Entity*> monitors_;
 };
 
 }  // namespace

@@ -205,12 +205,38 @@ void check_truths(Context& c) {
     c.model.truths = std::move(truths);
 }
 
+namespace {
+
+Restarts restarts(ast::Monitor::Kind kind) {
+    switch (kind) {
+        case ast::Monitor::Kind::prefix:
+        case ast::Monitor::Kind::sliding: return Restarts::never;
+        case ast::Monitor::Kind::restartable: return Restarts::on_request;
+        case ast::Monitor::Kind::repeating: break;
+    }
+    return Restarts::when_final;
+}
+
+/// The positions that it reports about depend on its verdicts, and these on the shift.
+bool moves_with_its_shift(Context& c, const Monitor& monitor) {
+    if (monitor.restarts == Restarts::never) return false;
+    c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
+             fmt::format("'{}' restarts at steps that its shift would change; only a monitor "
+                         "that reports about fixed positions is calibrated as a whole",
+                         monitor.name))
+        .note("calibrate its predicates, or leave out 'restartable' or 'repeating'");
+    return true;
+}
+
+}  // namespace
+
 void check_monitors(Context& c) {
     for_each_declaration<ast::Monitor>(c.spec, [&](const ast::Monitor& declaration, Index index) {
         Monitor monitor;
         monitor.name = declaration.name.text;
         monitor.span = declaration.span;
-        monitor.sliding = declaration.sliding;
+        monitor.sliding = declaration.kind == ast::Monitor::Kind::sliding;
+        monitor.restarts = restarts(declaration.kind);
         monitor.formula = check_formula(c, *declaration.formula);
         if (declaration.calibrated)
             monitor.calibration = check_monitor_calibrated(c, *declaration.calibrated);
@@ -226,7 +252,7 @@ void check_monitors(Context& c) {
             check.sliding(monitor, name);
         else
             check.prefix(monitor, name);
-        if (!monitor.calibration) continue;
+        if (!monitor.calibration || moves_with_its_shift(c, monitor)) continue;
         refuse_moving_thresholds(c, monitor);
         refuse_comparisons_without_truth(c, monitor);
     }

@@ -148,6 +148,10 @@ Claim claim(const Model& model, Literal part, Values values) {
             no_at_zero |= says_no_at_zero(model.predicates[predicate], polarity);
             continue;
         }
+        // Where there is no sample it may miss its truth, and with it an alarm.
+        if (polarity.negative && model.predicates[predicate].missing == false)
+            result.why = fmt::format("'{}' counts as false where its sample is missing",
+                                     model.predicates[predicate].shown());
         alphas.push_back(model.predicates[predicate].threshold.alpha);
         if (polarity.positive) positive = model.predicates[predicate].shown();
         if (polarity.negative) negative = model.predicates[predicate].shown();

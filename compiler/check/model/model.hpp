@@ -41,6 +41,7 @@ struct Input {
     bool has_range = false;
     /// At most so many missing samples in a row are replaced by the last present one.
     std::uint32_t hold = 0;
+    std::optional<bool> missing;  ///< bool: what it counts as where it is missing
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
@@ -201,8 +202,9 @@ struct Predicate {
     Threshold threshold;
     Range delta;       ///< of the expression, by interval arithmetic, rounded outward
     Range robustness;  ///< of epsilon - delta or delta - epsilon for any epsilon it may have,
-                       ///< rounded outward
-    std::vector<Index> inputs;  ///< all inputs it reads, ascending
+                       ///< rounded outward, and what a missing sample counts as
+    std::optional<bool> missing;  ///< what it counts as where it is unknown; else its whole range
+    std::vector<Index> inputs;    ///< all inputs it reads, ascending
     Span span;
 
     bool upper_bound() const {
@@ -273,10 +275,18 @@ struct MonitorCalibration {
     Against against = Against::missed_alarm;
 };
 
+/// When the position moves that a prefix monitor reports about; it is 0 at first.
+enum class Restarts : std::uint8_t {
+    never,
+    on_request,  ///< restart_NAME(): to the next step
+    when_final,  ///< and after each final verdict
+};
+
 struct Monitor {
     std::string name;
     Index formula = 0;
     bool sliding = false;
+    Restarts restarts = Restarts::never;
     std::uint32_t horizon = 0;  ///< sliding: steps of delay; 0 otherwise
     std::optional<MonitorCalibration> calibration{};
     Span span;

@@ -31,6 +31,7 @@ public:
         input.scale = scale();
         set_range(input);
         input.hold = hold();
+        input.missing = missing(input.type);
         return input;
     }
 
@@ -122,6 +123,15 @@ private:
         report(Code::number_overflow, number.span,
                fmt::format("{} is beyond the largest float32; an open end is written {}inf",
                            number.text, number.text.starts_with('-') ? "-" : ""));
+    }
+
+    /// A comparison may be false where a sample is missing; a number has no such value.
+    std::optional<bool> missing(InputType type) {
+        if (declaration_.missing && type != InputType::boolean)
+            report(Code::missing_form, declaration_.span,
+                   "only a bool has a value to stand in for a missing sample")
+                .note("say it where it is compared: predicate ... missing false;");
+        return declaration_.missing;
     }
 
     std::uint32_t hold() {

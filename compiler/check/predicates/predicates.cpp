@@ -82,12 +82,16 @@ std::optional<Threshold> declared_threshold(Context& c, const ast::Predicate& de
     return check_calibrated(c, std::get<ast::Calibrated>(declaration.threshold));
 }
 
-/// epsilon - delta or delta - epsilon.
+/// epsilon - delta or delta - epsilon; and -inf or +inf, where a missing sample counts as that.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
     const Range epsilon = predicate.threshold.range();
-    return predicate.upper_bound() ? subtract(epsilon, predicate.delta)
-                                   : subtract(predicate.delta, epsilon);
+    Range range = predicate.upper_bound() ? subtract(epsilon, predicate.delta)
+                                          : subtract(predicate.delta, epsilon);
+    if (predicate.missing)
+        (*predicate.missing ? range.high : range.low) =
+            *predicate.missing ? kEverything.high : kEverything.low;
+    return range;
 }
 
 }  // namespace
@@ -122,6 +126,7 @@ void check_predicates(Context& c) {
             if (!predicate) c.scope.entity(NameKind::predicate, index).broken = true;
             c.model.predicates.push_back(predicate ? std::move(*predicate) : Predicate{});
             c.model.predicates.back().name = declaration.name.text;
+            c.model.predicates.back().missing = declaration.missing;
         });
 }
 

@@ -117,20 +117,21 @@ private:
         const std::string distances = request_.distances ? distance_cells() : "";
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
-            if (writes_rows()) print_row(plan_.monitors[m], verdicts[m], distances);
+            if (writes_rows()) print_row(m, verdicts[m], distances);
         }
         ++step_;
         return text_.size() < kBufferBytes || flush();
     }
 
-    void print_row(const plan::Monitor& monitor, const Verdict& v, const std::string& distances) {
+    void print_row(std::size_t m, const Verdict& v, const std::string& distances) {
+        const std::string& name = plan_.monitors[m].name;
         const auto out = std::back_inserter(text_);
         if (v.decided())
-            fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, monitor.name, v.lower,
+            fmt::format_to(out, "{},{},{:.9g},{:.9g},{:.9g},{},{},{}", step_, name, v.lower,
                            v.robustness, v.upper, status(v), v.final() ? 1 : 0,
-                           monitor.sliding ? step_ - monitor.horizon : 0);
+                           monitors_.evaluator().position(m));
         else
-            fmt::format_to(out, "{},{},,,,undecided,0,", step_, monitor.name);
+            fmt::format_to(out, "{},{},,,,undecided,0,", step_, name);
         if (plan_.model->step_seconds > 0)
             fmt::format_to(out, ",{:.9g}", static_cast<double>(step_) * plan_.model->step_seconds);
         text_ += distances;

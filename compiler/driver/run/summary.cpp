@@ -28,6 +28,11 @@ void RunSummary::add(std::size_t monitor, std::uint64_t step, const etlmon::Verd
         m.final_since.reset();
     else if (!m.final_since)
         m.final_since = step;
+    if (verdict.fulfilled()) ++m.fulfilled;
+    if (verdict.alarm()) {
+        ++m.alarms;
+        if (!m.first_alarm) m.first_alarm = step;
+    }
     m.last = verdict;
 }
 
@@ -43,6 +48,14 @@ std::string RunSummary::of_prefix(const OfMonitor& m) const {
     if (m.final_since)
         text = fmt::format("{} for good from {} on", status(m.last), when(*m.final_since));
     return text + fmt::format(", robustness {:.6g}", m.last.robustness);
+}
+
+std::string RunSummary::of_repeating(const OfMonitor& m) const {
+    std::string text = diag::counted(m.alarms, "alarm");
+    if (m.first_alarm) text += fmt::format(", the first at {}", when(*m.first_alarm));
+    return text + fmt::format("; fulfilled {}; at the end {}, robustness {:.6g}",
+                              diag::counted(m.fulfilled, "time"), status(m.last),
+                              m.last.robustness);
 }
 
 std::string RunSummary::of_sliding(const OfMonitor& m, std::uint64_t horizon) const {
@@ -71,8 +84,10 @@ std::string RunSummary::text(std::uint64_t steps, const plan::Evaluator& evaluat
     for (std::size_t i = 0; i < monitors_.size(); ++i) {
         const OfMonitor& m = monitors_[i];
         const plan::Monitor& monitor = plan_.monitors[i];
+        const bool repeats = monitor.restarts == check::Restarts::when_final;
         const std::string said = m.decided == 0    ? "undecided throughout"
                                  : monitor.sliding ? of_sliding(m, monitor.horizon)
+                                 : repeats         ? of_repeating(m)
                                                    : of_prefix(m);
         text += fmt::format("{}: {}", monitor.name, said);
         if (m.unknown > 0) text += fmt::format("; unknown on {}", diag::counted(m.unknown, "step"));

@@ -35,9 +35,13 @@ private:
         std::optional<std::uint64_t> first_violated;
         std::optional<At> worst;  ///< of those that are known
         std::optional<std::uint64_t> final_since;
+        std::uint64_t alarms = 0;
+        std::uint64_t fulfilled = 0;
+        std::optional<std::uint64_t> first_alarm;
         etlmon::Verdict last;
     };
     std::string of_prefix(const OfMonitor& monitor) const;
+    std::string of_repeating(const OfMonitor& monitor) const;
     std::string of_sliding(const OfMonitor& monitor, std::uint64_t horizon) const;
     std::string of_input(check::Index input, const plan::SampleCounts& counts) const;
     std::string when(std::uint64_t step) const;

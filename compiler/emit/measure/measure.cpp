@@ -113,7 +113,7 @@ private:
                                                              : general(predicate, variable, kept);
         if (context_.on_demand) {
             const std::string range =
-                context_.literal(plan::unseen_range(predicate, context_.plan.values));
+                context_.literal(plan::missing_value(predicate, context_.plan.values));
             out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
             const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
             print_wrapped(
@@ -128,8 +128,15 @@ private:
             enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
         print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
                                         predicate.upper_bound() ? "at_most" : "at_least", known,
-                                        threshold, context_.names.predicate_unseen.at(p) + "()"));
+                                        threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
+    }
+
+    /// What stands for a predicate whose sample is not there.
+    std::string missing_value(Index p) const {
+        const check::Predicate& predicate = context_.model.predicates[p];
+        if (!predicate.missing) return context_.names.predicate_unseen.at(p) + "()";
+        return context_.literal(plan::missing_value(predicate, context_.plan.values));
     }
 
     /// AGG DIST(point, target): kept with its nearest row.

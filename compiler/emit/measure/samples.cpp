@@ -1,6 +1,7 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
 #include "emit/measure/measurements.hpp"
 #include "plan/decide/point_checks.hpp"
+#include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
 
@@ -60,17 +61,20 @@ std::string held_flag(const std::string& word) {
 
 void print_flag(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
+    const std::string missing =
+        input.missing ? ", " + context.literal(plan::missing_value(input)) : "";
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i)) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
-        out.line("return etlmon::truth_of(in.{});", input.name);
+        out.line("return etlmon::truth_of(in.{}{});", input.name, missing);
         out.close("});");
         return;
     }
     if (input.hold == 0) {
-        out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
+        out.line("now.{} = etlmon::value_of(in.{}{});", context.names.flag_atom.at(i), input.name,
+                 missing);
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
         return;
     }
@@ -83,12 +87,13 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(local + " == nullptr"));
-        print_wrapped(out, fmt::format("return etlmon::truth_of({});", held_flag(local)));
+        print_wrapped(out,
+                      fmt::format("return etlmon::truth_of({}{});", held_flag(local), missing));
         out.close("});");
         return;
     }
-    print_wrapped(out, fmt::format("now.{} = etlmon::value_of({});", context.names.flag_atom.at(i),
-                                   held_flag(local)));
+    print_wrapped(out, fmt::format("now.{} = etlmon::value_of({}{});",
+                                   context.names.flag_atom.at(i), held_flag(local), missing));
     out.line(missed(local + " == nullptr"));
 }
 

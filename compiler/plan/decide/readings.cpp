@@ -76,7 +76,8 @@ ReadingBuilder::ReadingBuilder(const ir::Program& program, ir::Graph& graph, Str
       work_left_(total_work(limits)) {}
 
 std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
-    if (const auto known = known_.find(id); known != known_.end()) return known->second;
+    const std::pair key(id, streams_.begins_with());
+    if (const auto known = known_.find(key); known != known_.end()) return known->second;
     const Node node = graph_[id];  // a copy: automata make the graph grow
     std::optional<std::uint32_t> reading;
     if (!node.has_future)
@@ -90,11 +91,12 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
         reading = add(id, "response", std::move(*code));
     else
         reading = nested(node, id);
-    if (reading) known_.emplace(id, *reading);
+    if (reading) known_.emplace(key, *reading);
     return reading;
 }
 
 std::uint32_t ReadingBuilder::add(Reading reading) {
+    reading.begins_with = streams_.begins_with();
     readings_.push_back(std::move(reading));
     return static_cast<std::uint32_t>(readings_.size() - 1);
 }

@@ -52,7 +52,8 @@ private:
     check::Values values_;
     std::uint64_t work_left_;
     bool is_apart_ = false;
-    std::map<NodeId, std::uint32_t> known_;
+    /// By the formula, and the monitor that it begins with.
+    std::map<std::pair<NodeId, std::uint32_t>, std::uint32_t> known_;
     std::vector<Oversize> oversize_;
 };
 

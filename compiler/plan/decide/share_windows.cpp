@@ -12,7 +12,8 @@ namespace {
 
 /// Windows that take the same element at each step, also while finish() reports the last positions:
 /// one without lag goes on beyond the end of the trace, since no position of its own lies there.
-using Signal = std::tuple<bool, std::vector<Slot>, std::uint32_t, bool>;
+/// And that begin together.
+using Signal = std::tuple<bool, std::vector<Slot>, std::uint32_t, bool, std::uint32_t>;
 
 void widen(Stream& stream, Slot from, std::uint32_t from_length) {
     stream.op = StreamOp::widening;
@@ -29,8 +30,9 @@ void share_windows(Plan& plan) {
     for (Slot slot = 0; slot < plan.streams.size(); ++slot) {
         const Stream& stream = plan.streams[slot];
         if (stream.op == StreamOp::window && stream.length > 1)
-            watching[{stream.max, stream.operands, stream.operand_lag, stream.lag == 0}].push_back(
-                slot);
+            watching[{stream.max, stream.operands, stream.operand_lag, stream.lag == 0,
+                      stream.begins_with}]
+                .push_back(slot);
     }
     for (auto& [signal, windows] : watching) {
         const auto length = [&](Slot slot) { return plan.streams[slot].length; };

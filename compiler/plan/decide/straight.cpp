@@ -116,8 +116,7 @@ Answering answering(StreamBuilder& streams, ir::Graph& graph, const Asked& asked
                             ? streams.constant(urgent)
                             : streams.of(graph.combine(either, asked.excuses, span));
     const Slot excuse = streams.within(stated, asked.outer, idle);
-    const Slot pending =
-        streams.pending(always, streams.shift(excuse, low, 0, idle, kNone), answer);
+    const Slot pending = streams.pending(always, streams.earlier(excuse, low, idle), answer);
     result.pending = streams.term(pending);
     result.passed = streams.term(streams.recent(always, pending, high - low + 1));
     if (low > 0) result.recent = streams.term(streams.recent(!always, excuse, low));

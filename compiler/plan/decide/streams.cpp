@@ -26,9 +26,10 @@ bool equal(Value a, Value b) {
 }  // namespace
 
 Slot StreamBuilder::intern(Stream stream) {
-    Identity identity{stream.op,          stream.max,          stream.operands,     stream.index,
-                      stream.length,      stream.value.low,    stream.value.high,   stream.lag,
-                      stream.operand_lag, stream.interval.low, stream.interval.high};
+    Identity identity{stream.op,           stream.max,           stream.operands,
+                      stream.index,        stream.length,        stream.value.low,
+                      stream.value.high,   stream.lag,           stream.operand_lag,
+                      stream.interval.low, stream.interval.high, stream.begins_with};
     const auto [entry, added] =
         interned_.emplace(std::move(identity), static_cast<Slot>(streams_.size()));
     if (added) {
@@ -144,35 +145,42 @@ Slot StreamBuilder::running(bool max, Slot slot, NodeId node) {
 }
 
 Slot StreamBuilder::shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before,
-                          NodeId node) {
+                          NodeId node, std::uint32_t begins_with) {
     if (steps == 0) return slot;
     // What is constant was so at every position: whether there is one is all that counts.
     if (lag == 0 && streams_[slot].op == StreamOp::constant)
-        return within(slot, {steps, kUnbounded}, before);
+        return within(slot, {steps, kUnbounded}, before, begins_with);
     return intern({.op = StreamOp::shift,
                    .operands = {slot},
                    .length = steps,
                    .value = before,
                    .lag = lag,
                    .operand_lag = lag,
+                   .begins_with = begins_with,
                    .node = node});
 }
 
 Slot StreamBuilder::window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,
-                           std::uint32_t operand_lag, std::uint32_t lag, NodeId node) {
+                           std::uint32_t operand_lag, std::uint32_t lag, NodeId node,
+                           std::uint32_t begins_with) {
     return intern({.op = op,
                    .max = max,
                    .operands = std::move(operands),
                    .length = length,
                    .lag = lag,
                    .operand_lag = operand_lag,
+                   .begins_with = begins_with,
                    .node = node});
 }
 
-Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere) {
+Slot StreamBuilder::within(Slot slot, ir::Interval interval, Value elsewhere,
+                           std::uint32_t begins_with) {
     if (interval == ir::Interval{}) return slot;
-    return intern(
-        {.op = StreamOp::within, .operands = {slot}, .interval = interval, .value = elsewhere});
+    return intern({.op = StreamOp::within,
+                   .operands = {slot},
+                   .interval = interval,
+                   .value = elsewhere,
+                   .begins_with = begins_with});
 }
 
 /// "Since the last answer", but satisfied where nothing has been asked yet.
@@ -180,11 +188,13 @@ Slot StreamBuilder::pending(bool of_always, Slot excuse, Slot answer) {
     return intern({.op = StreamOp::since,
                    .max = of_always,
                    .operands = {excuse, answer},
-                   .value = neutral(!of_always)});
+                   .value = neutral(!of_always),
+                   .begins_with = begins_with_});
 }
 
 Slot StreamBuilder::recent(bool max, Slot slot, std::uint32_t length) {
-    return length == 1 ? slot : window(StreamOp::window, max, {slot}, length, 0, 0, kNone);
+    if (length == 1) return slot;
+    return window(StreamOp::window, max, {slot}, length, 0, 0, kNone, begins_with_);
 }
 
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
@@ -199,7 +209,7 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
         slot = running(max, operand, inner);
     else if (high > low)
         slot = window(StreamOp::window, max, {operand}, high - low + 1, lag, lag, inner);
-    return shift(slot, low, lag, neutral(max), id);
+    return shift(slot, low, lag, neutral(max), id, kNone);
 }
 
 /// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
@@ -221,7 +231,7 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
     else if (high > low)
         slot = window(StreamOp::window_since, max, operands, high - low + 1, lag, lag, inner);
     if (low == 0) return slot;
-    const Slot earlier = shift(slot, low, lag, neutral(max), kNone);
+    const Slot earlier = shift(slot, low, lag, neutral(max), kNone, kNone);
     const Slot held = low == 1
                           ? operands[0]
                           : window(StreamOp::window, !max, {operands[0]}, low, lag, lag, kNone);

@@ -36,10 +36,18 @@ public:
     bool on_demand(Slot slot) const { return on_demand_[slot]; }
 
     Slot constant(Value value);
-    /// The stream `steps` positions earlier, `before` where there is none.
-    Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node);
+
+    // What readings add of their own begins where they begin: with this monitor, or with the trace.
+    void begin_with(std::uint32_t monitor) { begins_with_ = monitor; }
+    std::uint32_t begins_with() const { return begins_with_; }
+    /// A stream without lag `steps` positions earlier, `before` where there is none.
+    Slot earlier(Slot slot, std::uint32_t steps, Value before) {
+        return shift(slot, steps, 0, before, kNone, begins_with_);
+    }
     /// A stream without lag at the positions of the interval, `elsewhere` at others.
-    Slot within(Slot slot, ir::Interval interval, Value elsewhere);
+    Slot within(Slot slot, ir::Interval interval, Value elsewhere) {
+        return within(slot, interval, elsewhere, begins_with_);
+    }
     /// What open windows say that wait for `answer`, where `excuse` speaks for the positions that
     /// ask (decide/straight.hpp). Of G (excuse || F answer), or of its dual; both without lag.
     Slot pending(bool of_always, Slot excuse, Slot answer);
@@ -52,10 +60,15 @@ private:
     Slot aligned_combination(const ir::Node& node, NodeId id);
     Slot past_unary(const ir::Node& node, NodeId id);
     Slot past_binary(const ir::Node& node, NodeId id);
+    /// The stream `steps` positions earlier, `before` where there is none.
+    Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node,
+               std::uint32_t begins_with);
+    Slot within(Slot slot, ir::Interval interval, Value elsewhere, std::uint32_t begins_with);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
     Slot window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,
-                std::uint32_t operand_lag, std::uint32_t lag, NodeId node);
+                std::uint32_t operand_lag, std::uint32_t lag, NodeId node,
+                std::uint32_t begins_with = kNone);
     Slot running(bool max, Slot slot, NodeId node);
     std::vector<Slot> align(const std::vector<NodeId>& nodes);
     Slot unseen_temporal(const ir::Node& node, NodeId id);
@@ -63,11 +76,13 @@ private:
     const ir::Graph& graph_;
     std::vector<Stream>& streams_;
     check::Values values_;
+    std::uint32_t begins_with_ = kNone;
     std::vector<bool> on_demand_;  ///< per stream
     std::map<NodeId, Slot> slots_;
     std::map<NodeId, Slot> unseen_;
-    using Identity = std::tuple<StreamOp, bool, std::vector<Slot>, Index, std::uint32_t, Key, Key,
-                                std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
+    using Identity =
+        std::tuple<StreamOp, bool, std::vector<Slot>, Index, std::uint32_t, Key, Key, std::uint32_t,
+                   std::uint32_t, std::uint32_t, std::uint32_t, std::uint32_t>;
     std::map<Identity, Slot> interned_;
 };
 

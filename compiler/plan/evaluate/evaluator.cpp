@@ -44,19 +44,21 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     readings_.resize(plan.readings.size());
     reading_states_.resize(plan.readings.size());
     verdicts_.resize(plan.monitors.size());
+    starts_.resize(plan.monitors.size());
+    restarts_.resize(plan.monitors.size());
     reset();
 }
 
 void Evaluator::reset() {
     for (Held& held : held_) held = {};
     counts_.assign(model_.inputs.size(), {});
-    for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
-        for (const Member& member : members_of(plan_.streams[slot]))
-            reset_member(member, stream_states_[slot]);
+    for (Slot slot = 0; slot < plan_.streams.size(); ++slot) reset_stream(slot);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         reset_reading(plan_.readings[i], reading_states_[i]);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
+    std::fill(starts_.begin(), starts_.end(), 0);
+    std::fill(restarts_.begin(), restarts_.end(), false);
     steps_ = 0;
     started_ = false;
     finished_ = 0;
@@ -64,19 +66,47 @@ void Evaluator::reset() {
 }
 
 const std::vector<etlmon::Verdict>& Evaluator::step(const std::vector<Sample>& samples) {
-    if (started_) steps_ = saturating_increment(steps_);
+    if (started_) ++steps_;
     started_ = true;
+    restart_those_due();
     take_inputs(samples);
     measure_distances();
     measure_predicates();
     advance_streams();
     advance_readings();
     judge();
+    for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
+        if (plan_.monitors[m].restarts == check::Restarts::when_final && verdicts_[m].final())
+            restart(m);
     return verdicts_;
 }
 
+void Evaluator::restart(std::size_t monitor) {
+    restarts_[monitor] = true;
+}
+
+std::uint64_t Evaluator::position(std::size_t monitor) const {
+    const Monitor& m = plan_.monitors[monitor];
+    return m.sliding ? steps_ - m.horizon : starts_[monitor];
+}
+
+/// What begins with a monitor that was restarted before this step.
+void Evaluator::restart_those_due() {
+    const auto restarts = [&](std::uint32_t begins_with) {
+        return begins_with != kNone && restarts_[begins_with];
+    };
+    for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
+        if (restarts(plan_.streams[slot].begins_with)) reset_stream(slot);
+    for (std::size_t i = 0; i < plan_.readings.size(); ++i)
+        if (restarts(plan_.readings[i].begins_with))
+            reset_reading(plan_.readings[i], reading_states_[i]);
+    for (std::size_t m = 0; m < plan_.monitors.size(); ++m)
+        if (restarts_[m]) starts_[m] = steps_;
+    std::fill(restarts_.begin(), restarts_.end(), false);
+}
+
 const std::vector<etlmon::Verdict>& Evaluator::finish() {
-    if (started_) steps_ = saturating_increment(steps_);
+    if (started_) ++steps_;
     started_ = true;
     finished_ = saturating_increment(finished_);
     advance_streams();
@@ -97,6 +127,11 @@ namespace {
 bool is_there(const Sample& sample) {
     return sample.present && !sample.values.empty() &&
            etlmon::finite(sample.values.data(), sample.values.size());
+}
+
+Value flag_value(const check::Input& input, const float* sample) {
+    if (sample == nullptr) return missing_value(input);
+    return *sample != 0 ? kTrue : kFalse;
 }
 
 bool in_range(const check::Input& input, const Sample& sample) {
@@ -123,15 +158,14 @@ void Evaluator::take_inputs(const std::vector<Sample>& samples) {
             held.age = saturating_increment(held.age);
             inputs_[i] = stands_in ? held.values.data() : nullptr;
         }
-        if (input.type == check::InputType::boolean)
-            flags_[i] = inputs_[i] == nullptr ? kAnything : inputs_[i][0] != 0 ? kTrue : kFalse;
+        if (input.type == check::InputType::boolean) flags_[i] = flag_value(input, inputs_[i]);
     }
 }
 
 void Evaluator::measure_predicates() {
     bool missing = false;
     for (const Stream& stream : plan_.streams)
-        if (stream.op == StreamOp::flag) missing |= etlmon::unknown(flags_[stream.index]);
+        if (stream.op == StreamOp::flag) missing |= inputs_[stream.index] == nullptr;
     for (Index p : plan_.predicates) {
         const check::Predicate& predicate = model_.predicates[p];
         const bool present = std::all_of(predicate.inputs.begin(), predicate.inputs.end(),
@@ -213,9 +247,12 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
             for (Slot slot : stream.operands) value = combined(max, value, streams_[slot]);
             return value;
         }
-        case StreamOp::within:
-            return stream.interval.low <= steps_ && steps_ <= stream.interval.high ? at(0)
-                                                                                   : stream.value;
+        case StreamOp::within: {
+            const std::uint64_t position = steps_since(stream.begins_with);
+            const auto [low, high] = stream.interval;
+            const bool inside = low <= position && (high == kUnbounded || position <= high);
+            return inside ? at(0) : stream.value;
+        }
         case StreamOp::delay: return delayed(stream.length, at(0));
         case StreamOp::shift: return delayed(stream.length, operand(stream, 0, stream.value));
         case StreamOp::running:
@@ -232,6 +269,11 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
         case StreamOp::window_until: return advance_window(stream, state);
     }
     return kAnything;
+}
+
+void Evaluator::reset_stream(Slot slot) {
+    for (const Member& member : members_of(plan_.streams[slot]))
+        reset_member(member, stream_states_[slot]);
 }
 
 void Evaluator::reset_member(const Member& member, StreamState& state) {

@@ -39,6 +39,11 @@ public:
     /// monitors their last verdict.
     const std::vector<etlmon::Verdict>& finish();
 
+    /// From the next step on, this monitor of the plan is about that step.
+    void restart(std::size_t monitor);
+    /// The position that the verdict of the last step is about, where it is decided.
+    std::uint64_t position(std::size_t monitor) const;
+
     /// delta of the last step, by index of the model's predicates; NaN where it was unknown.
     float distance(Index predicate) const { return measured_[predicate].delta; }
     /// Row of the nearest target; plain distances only.
@@ -85,6 +90,8 @@ private:
 
     void prepare_distances();
     static void reset_member(const Member& member, StreamState& state);
+    void restart_those_due();
+    void reset_stream(Slot slot);
     static void reset_reading(const Reading& reading, ReadingState& state);
     void take_inputs(const std::vector<Sample>& samples);
     void measure_distances();
@@ -96,11 +103,15 @@ private:
     Value advance_window(const Stream& stream, StreamState& state) const;
     Value operand(const Stream& stream, std::size_t i, Value where_none) const;
     bool exists(std::uint32_t lag) const { return steps_ >= lag && finished_ <= lag; }
+    /// Steps since the trace or this monitor began.
+    std::uint64_t steps_since(std::uint32_t begins_with) const {
+        return begins_with == kNone ? steps_ : steps_ - starts_[begins_with];
+    }
     void advance_readings();
     etlmon::Reading advance(const Reading& reading, ReadingState& state) const;
-    etlmon::Reading run(const Straight& code, ReadingState& state) const;
+    etlmon::Reading run(const Straight& code, ReadingState& state, std::uint64_t position) const;
     etlmon::Reading run(const Table& table, ReadingState& state) const;
-    Value value(const Term& term, const ReadingState& state) const;
+    Value value(const Term& term, const ReadingState& state, std::uint64_t position) const;
     void judge();
 
     const Plan& plan_;
@@ -128,7 +139,9 @@ private:
     std::vector<etlmon::Reading> readings_;
     std::vector<ReadingState> reading_states_;
     std::vector<etlmon::Verdict> verdicts_;
-    std::uint32_t steps_ = 0;  ///< index of the current step, calls of finish() included; saturates
+    std::uint64_t steps_ = 0;            ///< index of the current step, calls of finish() included
+    std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
+    std::vector<bool> restarts_;         ///< per monitor: with the next step
     bool started_ = false;
     std::uint32_t finished_ = 0;  ///< calls of finish()
     std::uint32_t missing_steps_ = 0;

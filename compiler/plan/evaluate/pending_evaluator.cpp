@@ -1,6 +1,7 @@
 #include "plan/evaluate/pending_evaluator.hpp"
 
 #include <algorithm>
+#include <limits>
 
 namespace etlc::plan {
 
@@ -23,7 +24,11 @@ void PendingEvaluator::reset() {
     }
 }
 
-etlmon::Reading PendingEvaluator::advance(std::uint32_t step, const std::vector<Value>& streams) {
+etlmon::Reading PendingEvaluator::advance(std::uint64_t position,
+                                          const std::vector<Value>& streams) {
+    // As in generated code, whose counter saturates.
+    const auto step = static_cast<std::uint32_t>(
+        std::min<std::uint64_t>(position, std::numeric_limits<std::uint32_t>::max()));
     const std::uint32_t count = std::min(step, pending_.horizon) + 1;
     evaluate_parts(count, streams);
     return pending_.is_fold ? advance_fold(step, count, streams)

@@ -16,8 +16,8 @@ public:
     explicit PendingEvaluator(const Pending& pending);
 
     void reset();
-    /// step: its index from 0; streams: the values of all streams at it.
-    etlmon::Reading advance(std::uint32_t step, const std::vector<Value>& streams);
+    /// position: of the step, from the start; streams: the values of all streams at it.
+    etlmon::Reading advance(std::uint64_t position, const std::vector<Value>& streams);
 
 private:
     using Readings = std::vector<etlmon::Reading>;

@@ -36,10 +36,11 @@ void Evaluator::advance_readings() {
 }
 
 etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) const {
+    const std::uint64_t position = steps_since(reading.begins_with);
     switch (reading.kind) {
-        case Reading::Kind::straight: return run(reading.straight, state);
+        case Reading::Kind::straight: return run(reading.straight, state, position);
         case Reading::Kind::table: return run(reading.table, state);
-        case Reading::Kind::pending: return state.pending->advance(steps_, streams_);
+        case Reading::Kind::pending: return state.pending->advance(position, streams_);
         case Reading::Kind::combination: break;
     }
     etlmon::Reading result = readings_[reading.operands[0]];
@@ -50,14 +51,14 @@ etlmon::Reading Evaluator::advance(const Reading& reading, ReadingState& state) 
     return result;
 }
 
-Value Evaluator::value(const Term& term, const ReadingState& state) const {
-    const auto operand = [&](std::size_t i) { return value(term.operands[i], state); };
+Value Evaluator::value(const Term& term, const ReadingState& state, std::uint64_t position) const {
+    const auto operand = [&](std::size_t i) { return value(term.operands[i], state, position); };
     switch (term.kind) {
         case Term::Kind::constant: return term.value;
         case Term::Kind::stream: return streams_[term.index];
         case Term::Kind::reg: return state.registers[term.index];
         case Term::Kind::local: return state.next[term.index];
-        case Term::Kind::before: return operand(steps_ < term.index ? 0 : 1);
+        case Term::Kind::before: return operand(position < term.index ? 0 : 1);
         case Term::Kind::extreme: break;
     }
     Value result = operand(0);
@@ -66,15 +67,17 @@ Value Evaluator::value(const Term& term, const ReadingState& state) const {
     return result;
 }
 
-etlmon::Reading Evaluator::run(const Straight& code, ReadingState& state) const {
+etlmon::Reading Evaluator::run(const Straight& code, ReadingState& state,
+                               std::uint64_t position) const {
     for (const Assignment& assignment : code.assignments) {
         const auto [low, high] = assignment.positions;
-        if (steps_ < low || (high != kUnbounded && steps_ > high)) continue;
+        if (position < low || (high != kUnbounded && position > high)) continue;
         const bool is_register = assignment.target == Term::Kind::reg;
         (is_register ? state.registers : state.next)[assignment.index] =
-            value(assignment.value, state);
+            value(assignment.value, state, position);
     }
-    return {value(code.rho, state), value(code.lower, state).low, value(code.upper, state).high};
+    return {value(code.rho, state, position), value(code.lower, state, position).low,
+            value(code.upper, state, position).high};
 }
 
 etlmon::Reading Evaluator::run(const Table& table, ReadingState& state) const {

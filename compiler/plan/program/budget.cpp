@@ -281,6 +281,9 @@ void add_costs(Plan& plan) {
         // The last one: a final verdict stays, and finish() repeats those of prefix monitors.
         const bool kept = type.on_demand || (plan.has_sliding && !monitor.sliding);
         if (kept) fixed.state_bytes += type.verdict;
+        if (monitor.counts_steps) fixed.state_bytes += kWord;
+        const bool counts_verdicts = monitor.restarts == check::Restarts::when_final;
+        if (counts_verdicts) fixed.state_bytes += 2 * kWord;  // alarms and fulfilled ones
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

@@ -31,6 +31,8 @@ etlmon::Truth truth_range(const check::Predicate& predicate) {
             const etlmon::Truth at = comparison(predicate, delta, epsilon, etlmon::kPerhaps);
             range = {range.low && at.low, range.high || at.high};
         }
+    if (predicate.missing)
+        return {range.low && *predicate.missing, range.high || *predicate.missing};
     return range;
 }
 
@@ -47,12 +49,30 @@ Value unseen_range(const check::Predicate& predicate, Values values) {
     return value_of(truth_range(predicate));
 }
 
+namespace {
+
+Value constant(bool truth) {
+    return truth ? etlmon::kTrue : etlmon::kFalse;
+}
+
+}  // namespace
+
+Value missing_value(const check::Predicate& predicate, Values values) {
+    return predicate.missing ? constant(*predicate.missing) : unseen_range(predicate, values);
+}
+
+Value missing_value(const check::Input& input) {
+    return input.missing ? constant(*input.missing) : Value{etlmon::kBottom, etlmon::kTop};
+}
+
 Value value_of(const check::Predicate& predicate, float delta, float epsilon, Values values) {
-    if (values == Values::boolean)
-        return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
-    const Value range = unseen_range(predicate, values);
-    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
-                                   : etlmon::at_least(delta, epsilon, range);
+    const Value missing = missing_value(predicate, values);
+    if (values == Values::boolean) {
+        const etlmon::Truth otherwise{missing.low == etlmon::kTop, missing.high == etlmon::kTop};
+        return value_of(comparison(predicate, delta, epsilon, otherwise));
+    }
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, missing)
+                                   : etlmon::at_least(delta, epsilon, missing);
 }
 
 float observed(const check::Predicate& predicate, float epsilon, float distance) {
@@ -68,9 +88,9 @@ etlmon::Adaptation runtime_adaptation(const check::Adaptation& adaptation, bool 
 }
 
 Value value_of(const check::Predicate& predicate, const etlmon::Enclosed& delta, float epsilon) {
-    const Value range = unseen_range(predicate, Values::robustness);
-    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
-                                   : etlmon::at_least(delta, epsilon, range);
+    const Value missing = missing_value(predicate, Values::robustness);
+    return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, missing)
+                                   : etlmon::at_least(delta, epsilon, missing);
 }
 
 }  // namespace etlc::plan

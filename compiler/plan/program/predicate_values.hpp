@@ -14,6 +14,13 @@ namespace etlc::plan {
 /// what its comparison can say over the range of its expression and that of its threshold.
 etlmon::Value unseen_range(const check::Predicate& predicate, check::Values values);
 
+/// What stands for a predicate at a step that lacks its sample: all it can be, or what the spec
+/// says that it counts as.
+etlmon::Value missing_value(const check::Predicate& predicate, check::Values values);
+
+/// The same of a bool input.
+etlmon::Value missing_value(const check::Input& input);
+
 /// The value of a predicate whose distance or expression came to delta, with the threshold that it
 /// has at this step.
 etlmon::Value value_of(const check::Predicate& predicate, float delta, float epsilon,

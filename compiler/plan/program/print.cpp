@@ -149,6 +149,15 @@ std::string pending_text(const Pending& pending, const ir::Graph& graph) {
     return pending.is_fold ? text : text + table_text(pending.table, 'p', graph);
 }
 
+std::string restarting(check::Restarts restarts) {
+    switch (restarts) {
+        case check::Restarts::never: break;
+        case check::Restarts::on_request: return ", which restarts on request";
+        case check::Restarts::when_final: return ", which restarts after a final verdict";
+    }
+    return "";
+}
+
 std::string reading_text(const Reading& reading, const ir::Graph& graph) {
     std::string text = reading.as;
     for (std::uint32_t operand : reading.operands) text += fmt::format(" r{}", operand);
@@ -176,7 +185,8 @@ std::string print(const Plan& plan) {
     for (const Monitor& monitor : plan.monitors) {
         text += monitor.sliding ? fmt::format("  {} = s{}, about the position {} steps ago\n",
                                               monitor.name, monitor.stream, monitor.horizon)
-                                : fmt::format("  {} = r{}\n", monitor.name, monitor.reading);
+                                : fmt::format("  {} = r{}{}\n", monitor.name, monitor.reading,
+                                              restarting(monitor.restarts));
     }
     return text;
 }

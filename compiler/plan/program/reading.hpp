@@ -1,4 +1,4 @@
-// Readings: what prefix monitors say about position 0.
+// Readings: what prefix monitors say about the position where they began.
 // Takes: streams. Gives: rho on the prefix, and the bounds over every continuation of it. Keeps
 // true: which formula a reading came from matters no more: it is straight-line code, a table, a
 // formula over the last positions, or a max or min of readings.
@@ -71,6 +71,9 @@ struct Reading {
     Kind kind = Kind::straight;
     NodeId node = 0;
     std::string as;  ///< what people call it: "fold"
+    /// It restarts with this monitor, by index in the plan, and counts positions from there;
+    /// kNone: with the trace.
+    std::uint32_t begins_with = kNone;
     Straight straight;
     Table table;
     Pending pending;

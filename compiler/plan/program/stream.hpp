@@ -43,6 +43,9 @@ struct Stream {
     std::uint32_t lag = 0;  ///< after step i the stream tells about position i - lag
     /// And its operands about position i - operand_lag; a constant is of any lag.
     std::uint32_t operand_lag = 0;
+    /// It restarts with this monitor, by index in the plan, and counts positions from there;
+    /// kNone: with the trace.
+    std::uint32_t begins_with = kNone;
     NodeId node = kNone;  ///< the formula it is, for comments; kNone for the values in between
 };
 

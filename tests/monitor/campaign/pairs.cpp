@@ -5,7 +5,7 @@
 #include "compare.hpp"
 #include "loading.hpp"
 #include "plan_runner.hpp"
-#include "reference/reference.hpp"
+#include "restart_schedule.hpp"
 
 namespace etlc::tests {
 namespace {
@@ -20,8 +20,8 @@ Trial trial_on(check::Values values) {
         if (!model) return {};
         PlanRunner runner(*model, {}, values);
         if (!runner.refusal().empty()) return {};
-        return first_mismatch(*model, reference::evaluate(*model, trace, values), runner.run(trace),
-                              {});
+        const Observed observed = runner.run(trace);
+        return first_mismatch(*model, expected_run(*model, trace, observed, values), observed, {});
     };
 }
 
@@ -47,8 +47,9 @@ void try_formula(const Effort& effort, const Subject& subject, Tally& tally) {
             trace = continuation(*model, subject_trace(*model, subject, 0, effort.longest),
                                  subject.seed);
         ++tally.pairs;
+        const Observed observed = runner.run(trace);
         const auto mismatch = first_mismatch(
-            *model, reference::evaluate(*model, trace, subject.values), runner.run(trace), {});
+            *model, expected_run(*model, trace, observed, subject.values), observed, {});
         if (!mismatch) continue;
         tally.findings.push_back(
             shrink({subject.spec(), trace, *mismatch}, trial_on(subject.values), kShrinkingTries));

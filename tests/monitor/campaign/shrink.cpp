@@ -166,6 +166,16 @@ std::string used_only(const std::string& spec) {
     return kept;
 }
 
+std::string kind_of(const check::Monitor& monitor) {
+    if (monitor.sliding) return "sliding ";
+    switch (monitor.restarts) {
+        case check::Restarts::never: break;
+        case check::Restarts::on_request: return "restartable ";
+        case check::Restarts::when_final: return "repeating ";
+    }
+    return "";
+}
+
 class Shrinking {
 public:
     Shrinking(Finding finding, const Trial& trial, int tries)
@@ -177,7 +187,7 @@ public:
         declarations_ = declarations(best_.spec);
         for (const check::Monitor& monitor : model->monitors) {
             tree_ = tree_of(*model, monitor.formula);
-            sliding_ = monitor.sliding;
+            kind_ = kind_of(monitor);
             if (accepts(tree_, best_.trace)) break;
         }
         for (bool progress = true; progress && tries_ > 0;) {
@@ -189,8 +199,7 @@ public:
 
 private:
     std::string spec_of(const Tree& tree) const {
-        return used_only(declarations_ + fmt::format("{}monitor m = {};\n",
-                                                     sliding_ ? "sliding " : "", text(tree)));
+        return used_only(declarations_ + fmt::format("{}monitor m = {};\n", kind_, text(tree)));
     }
 
     bool accepts(const Tree& tree, const reference::Trace& trace) {
@@ -230,7 +239,7 @@ private:
     int tries_;
     std::string declarations_;
     Tree tree_;
-    bool sliding_ = false;
+    std::string kind_;  ///< "sliding ", "repeating " and so on
 };
 
 }  // namespace

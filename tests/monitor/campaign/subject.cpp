@@ -15,6 +15,8 @@ Subject subject(std::uint64_t campaign, std::uint64_t n, int monitors) {
     result.shape.window = n / 4 % 2 == 0 ? kLongWindow : kShortWindow;
     if (n / 8 % 2 == 1) result.shape.future = kMostlyFuture;
     result.shape.depth = 1 + static_cast<int>(n / 16 % kDepths);
+    result.shape.restarts = 0.4;
+    result.shape.missing = 0.2;
     if (n / 16 / kDepths % 4 == 3) result.values = check::Values::boolean;
     return result;
 }

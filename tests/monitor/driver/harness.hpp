@@ -188,6 +188,11 @@ void take_labels(Monitor& monitor) {
   }
 }
 
+/// restart_schedule.hpp says what for.
+constexpr bool restarts_before(uint32_t step, uint32_t monitor) {
+  return (7 * step + 3 * monitor) % 23 == 5 || (7 * step + 3 * monitor) % 23 == 12;
+}
+
 /// A trace as it came in, and what a monitor says on it, kept until it is its turn to be written.
 constexpr size_t kTraceBytes = size_t{1} << 18;
 constexpr size_t kAnswerBytes = size_t{1} << 22;
@@ -207,7 +212,8 @@ extern Tape* sink;
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
 /// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers,
-/// Spec::labels, Spec::restart, Spec::feed, Spec::verdicts, Spec::telemetry, Spec::finish.
+/// Spec::labels, Spec::restart, Spec::restart_before, Spec::feed, Spec::verdicts, Spec::telemetry,
+/// Spec::finish.
 template <class Spec>
 class Session {
  public:
@@ -224,8 +230,8 @@ class Session {
     for (Tape* answer : answers) answer->size = 0;
     const uint32_t most = steps_[0] < steps_[1] ? steps_[1] : steps_[0];
     for (uint32_t n = 0; n < most; ++n) {
-      if (n < steps_[0]) step(first, tape(0), *answers[0]);
-      if (n < steps_[1]) step(second, tape(1), *answers[1]);
+      if (n < steps_[0]) step(first, n, tape(0), *answers[0]);
+      if (n < steps_[1]) step(second, n, tape(1), *answers[1]);
     }
     end(first, calls, *answers[0]);
     end(second, calls, *answers[1]);
@@ -234,7 +240,7 @@ class Session {
     reset(first);
     tape(1).position = 0;
     answers[0]->size = 0;
-    for (uint32_t n = 0; n < steps_[1]; ++n) step(first, tape(1), *answers[0]);
+    for (uint32_t n = 0; n < steps_[1]; ++n) step(first, n, tape(1), *answers[0]);
     end(first, calls, *answers[0]);
     write_bytes(answers[0]->bytes, answers[0]->size);
   }
@@ -254,7 +260,7 @@ class Session {
     monitor.reset();
   }
 
-  static void step(typename Spec::Monitor& monitor, Tape& trace, Tape& answer) {
+  static void step(typename Spec::Monitor& monitor, uint32_t number, Tape& trace, Tape& answer) {
     typename Spec::Inputs inputs{};
     typename Spec::Buffers buffers{};
     source = &trace;
@@ -264,6 +270,7 @@ class Session {
     typename Spec::Verdicts verdicts{};
     {
       const Watch watch;
+      Spec::restart_before(monitor, number);
       verdicts = monitor.step(inputs);
     }
     sink = &answer;

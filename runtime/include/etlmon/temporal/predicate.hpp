@@ -1,9 +1,9 @@
 // SPDX-License-Identifier: MIT
 // From what was measured to robustness: the comparison of a predicate.
-// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; the range of the
-// robustness. Gives: epsilon - delta or delta - epsilon as a value; the whole range where delta is
-// unknown. Keeps true: one float32 subtraction; a NaN is found by its bits and never becomes a
-// verdict.
+// Takes: delta (a distance or an expression), NaN where it is unknown; epsilon; what stands for it
+// then: the range of the robustness, or what the spec lets it count as. Gives: epsilon - delta or
+// delta - epsilon as a value, or what stands for it. Keeps true: one float32 subtraction; a NaN is
+// found by its bits and never becomes a verdict.
 #pragma once
 
 #include "etlmon/bits.hpp"
@@ -44,9 +44,9 @@ ETLMON_INLINE Value at_least(const float& delta, const float& epsilon, Value ran
   return {robustness, robustness};
 }
 
-/// A bool input: true is +inf, false is -inf, missing is anything in between.
-ETLMON_INLINE Value value_of(Flag flag) noexcept {
-  if (!flag.present()) return {kBottom, kTop};
+/// A bool input: true is +inf, false is -inf, missing is anything in between, or `missing`.
+ETLMON_INLINE Value value_of(Flag flag, Value missing = {kBottom, kTop}) noexcept {
+  if (!flag.present()) return missing;
   return flag.value() ? kTrue : kFalse;
 }
 

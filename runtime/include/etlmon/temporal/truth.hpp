@@ -41,8 +41,8 @@ struct Lattice<Truth> {
 };
 
 constexpr Truth truth_of(bool yes) noexcept { return yes ? kYes : kNo; }
-constexpr Truth truth_of(Flag flag) noexcept {
-  return flag.present() ? truth_of(flag.value()) : kPerhaps;
+constexpr Truth truth_of(Flag flag, Truth missing = kPerhaps) noexcept {
+  return flag.present() ? truth_of(flag.value()) : missing;
 }
 
 /// The comparison itself decides, on keys: exact under any compiler flags. Where delta is NaN it is

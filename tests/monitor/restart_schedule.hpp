@@ -1,0 +1,44 @@
+// When the tests restart monitors: the same steps for the reference, the evaluator and compiled
+// classes.
+#pragma once
+
+#include <cstddef>
+
+#include "check/model/model.hpp"
+#include "compare.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::tests {
+
+/// restart_NAME() of the m-th monitor is called before the step; now and then, and sometimes twice
+/// in a row. generated_source.cpp has it once more, for compiled programs.
+constexpr bool restarts_before(std::size_t step, std::size_t monitor) {
+    const std::size_t turn = (7 * step + 3 * monitor) % 23;
+    return turn == 5 || turn == 12;
+}
+
+/// What the program and final verdicts restart in the observed run. A monitor's bounds may be
+/// tighter than the definition's, and its verdict final earlier: then the reference has to follow
+/// it.
+inline reference::Requests restarts_of(const check::Model& model, const Observed& observed) {
+    const std::size_t steps = observed.verdicts.size();
+    reference::Requests requests(steps, std::vector<bool>(model.monitors.size()));
+    for (std::size_t step = 0; step < steps; ++step)
+        for (std::size_t m = 0; m < model.monitors.size(); ++m) {
+            const check::Restarts restarts = model.monitors[m].restarts;
+            if (restarts == check::Restarts::never) continue;
+            const bool was_final = restarts == check::Restarts::when_final && step > 0 &&
+                                   observed.verdicts[step - 1][m].final;
+            requests[step][m] = restarts_before(step, m) || was_final;
+        }
+    return requests;
+}
+
+/// What the reference says of such a run.
+inline reference::Run expected_run(const check::Model& model, const reference::Trace& trace,
+                                   const Observed& observed,
+                                   check::Values values = check::Values::robustness) {
+    return reference::evaluate(model, trace, values, {}, restarts_of(model, observed));
+}
+
+}  // namespace etlc::tests

@@ -1,0 +1,99 @@
+// What a program does with monitors that restart: the calls of a generated class, one by one. That
+// every verdict is the definition's is shown by test_generated.
+#include <gtest/gtest.h>
+
+#include "restarts.hpp"
+
+namespace {
+
+using restarts::Inputs;
+using restarts::Monitor;
+using restarts::Verdicts;
+
+/// A step in which nothing happens but what `change` says.
+template <class Change>
+Verdicts step(Monitor& monitor, Change change) {
+    Inputs in;
+    in.pick = false;
+    in.place = false;
+    in.open = false;
+    in.near = 3.0F;
+    change(in);
+    return monitor.step(in);
+}
+
+Verdicts step(Monitor& monitor) {
+    return step(monitor, [](Inputs&) {});
+}
+
+TEST(Restarts, ARepeatingMonitorCountsItsCycles) {
+    Monitor monitor;
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.pick = true; }).cycle.open());
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.place = true; }).cycle.fulfilled());
+    EXPECT_EQ(monitor.fulfilled_cycle(), 1U);
+    // The next cycle has 6 steps to begin, and nobody picks.
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
+    EXPECT_TRUE(step(monitor).cycle.alarm());
+    EXPECT_EQ(monitor.alarms_cycle(), 1U);
+    // And the one after that has 6 of its own.
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
+    EXPECT_TRUE(step(monitor).cycle.alarm());
+    EXPECT_EQ(monitor.alarms_cycle(), 2U);
+    EXPECT_EQ(monitor.fulfilled_cycle(), 1U);
+    monitor.reset();
+    EXPECT_EQ(monitor.alarms_cycle(), 0U);
+    EXPECT_EQ(monitor.fulfilled_cycle(), 0U);
+}
+
+TEST(Restarts, AProgramMayRestartARepeatingMonitorToo) {
+    Monitor monitor;
+    for (int i = 0; i < 5; ++i) step(monitor);
+    monitor.restart_cycle();  // before its time is over
+    for (int i = 0; i < 5; ++i) EXPECT_TRUE(step(monitor).cycle.open()) << i;
+    EXPECT_TRUE(step(monitor).cycle.alarm());
+    EXPECT_EQ(monitor.alarms_cycle(), 1U);
+}
+
+TEST(Restarts, AnAlarmStaysUntilItIsAcknowledged) {
+    Monitor monitor;
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.open = true; }).shut.alarm());
+    EXPECT_TRUE(step(monitor).shut.alarm());
+    monitor.restart_shut();
+    EXPECT_FALSE(step(monitor).shut.alarm());
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.open = true; }).shut.alarm());
+}
+
+TEST(Restarts, AnOutageIsOverWhereTheProgramSaysSo) {
+    Monitor monitor;
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.open = etlmon::Flag(); }).shut.unknown());
+    for (int i = 0; i < 10; ++i) EXPECT_TRUE(step(monitor).shut.unknown());
+    monitor.restart_shut();
+    EXPECT_TRUE(step(monitor).shut.satisfied());
+}
+
+TEST(Restarts, ThePastIsTheWholeTrace) {
+    Monitor monitor;
+    step(monitor, [](Inputs& in) { in.pick = true; });
+    monitor.restart_knocked();
+    EXPECT_TRUE(step(monitor, [](Inputs& in) { in.open = true; }).knocked.satisfied());
+}
+
+TEST(Restarts, OthersGoOn) {
+    Monitor monitor;
+    step(monitor, [](Inputs& in) { in.open = true; });
+    monitor.restart_knocked();
+    EXPECT_TRUE(step(monitor).shut.alarm());
+}
+
+TEST(Missing, CountsAsTheSpecSays) {
+    Monitor monitor;
+    const Verdicts verdicts = step(monitor, [](Inputs& in) { in.near = etlmon::kMissing; });
+    EXPECT_TRUE(verdicts.safe.alarm());
+    EXPECT_TRUE(verdicts.now.violated());
+    EXPECT_EQ(monitor.missing_steps(), 1U);
+    EXPECT_FALSE(step(monitor).now.violated());
+    // A sample may be missing at any step to come, so nothing is settled early.
+    EXPECT_TRUE(Monitor().step(Inputs()).safe.alarm());
+}
+
+}  // namespace
