@@ -7,7 +7,6 @@
 #include "opt/opt.hpp"
 
 namespace etlc::tests {
-namespace {
 
 std::vector<plan::Sample> samples_of(const reference::Step& step) {
     std::vector<plan::Sample> samples;
@@ -19,8 +18,6 @@ std::vector<plan::Sample> samples_of(const reference::Step& step) {
     }
     return samples;
 }
-
-}  // namespace
 
 reference::Verdict observed(const etlmon::Verdict& verdict) {
     using reference::Status;
