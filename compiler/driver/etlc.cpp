@@ -17,11 +17,12 @@
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
 #include "driver/evaluate.hpp"
-#include "driver/names.hpp"
+#include "driver/explain/options.hpp"
 #include "driver/options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
+#include "driver/recording_options.hpp"
 #include "driver/run/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
@@ -46,6 +47,7 @@ struct Call {
     driver::RunRequest run;
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
+    driver::ExplainRequest explain;
 };
 
 /// Prints the findings; the exit status that they mean.
@@ -232,36 +234,6 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     return std::nullopt;
 }
 
-void add_map_option(CLI::App& app, data::NamesInFile& names) {
-    const auto read = [&names](const std::vector<std::string>& words) {
-        std::string mistake;
-        auto parsed = driver::parse_names(words, mistake);
-        if (!parsed) throw CLI::ValidationError(mistake);
-        names = std::move(*parsed);
-    };
-    app.add_option_function<std::vector<std::string>>(
-           "--map", read, "what an input is called in the files: --map z=obs/z")
-        ->type_name("NAME=OTHER");
-}
-
-void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups,
-                         std::string& allow_overlap, unsigned& jobs) {
-    app.add_option("--data", data,
-                   "episodes: files (" + data::trace_endings() + "), folders, 'patterns'")
-        ->type_name("FILE...")
-        ->required();
-    app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")
-        ->type_name("PATTERN");
-    app.add_option(
-           "--allow-overlap", allow_overlap,
-           "why episodes may share most of their content, or hold targets, and still count; "
-           "it is written into the result")
-        ->type_name("REASON")
-        ->check(CLI::Validator(driver::mistake_in_reason, ""));
-    driver::add_number(app, "-j,--jobs", jobs, "threads (default: as many as the machine has)", 1,
-                       1024);
-}
-
 /// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check
 /// writes nothing, so any name does.
 void name_targets_file(Call& call) {
@@ -278,7 +250,7 @@ int compile_command(int argc, char** argv) {
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
         "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...,\n"
-        "etlc evaluate SPEC.etl --data FILE...",
+        "etlc evaluate SPEC.etl --data FILE..., etlc explain SPEC.etl --trace FILE",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
@@ -307,7 +279,7 @@ int run_command(int argc, char** argv) {
                    "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
         ->type_name("FILE")
         ->required();
-    add_map_option(app, call.run.names);
+    driver::add_map_option(app, call.run.names);
     app.add_option("-o,--output", call.run.output,
                    "where to write the verdicts, as CSV; - is standard output")
         ->type_name("FILE")
@@ -336,9 +308,9 @@ int calibrate_command(int argc, char** argv) {
         "file.",
         "etlc calibrate");
     add_spec_options(app, call);
-    add_episode_options(app, calibration.data, calibration.groups, calibration.allow_overlap,
-                        calibration.jobs);
-    add_map_option(app, calibration.names);
+    driver::add_episode_options(app, calibration.data, calibration.groups,
+                                calibration.allow_overlap, calibration.jobs);
+    driver::add_map_option(app, calibration.names);
     app.add_option("-o,--output", call.calibrate.output,
                    "where to write the thresholds (default: SPEC.thresholds.json beside the spec); "
                    "- is standard output")
@@ -360,9 +332,10 @@ int evaluate_command(int argc, char** argv) {
         "Compares a spec's predicates and monitors with ground truth on recorded episodes.",
         "etlc evaluate");
     add_common_options(app, call);
-    add_episode_options(app, call.evaluate.data, call.evaluate.groups,
-                        call.evaluate.evaluation.allow_overlap, call.evaluate.evaluation.jobs);
-    add_map_option(app, call.evaluate.evaluation.names);
+    driver::add_episode_options(app, call.evaluate.data, call.evaluate.groups,
+                                call.evaluate.evaluation.allow_overlap,
+                                call.evaluate.evaluation.jobs);
+    driver::add_map_option(app, call.evaluate.evaluation.names);
     app.add_option("--json", call.evaluate.json,
                    "also write the result as JSON; - is standard output")
         ->type_name("FILE");
@@ -374,10 +347,27 @@ int evaluate_command(int argc, char** argv) {
     });
 }
 
+int explain_command(int argc, char** argv) {
+    Call call;
+    CLI::App app(
+        "Says why a monitor's verdict on a recorded trace is what it is: the samples that it "
+        "takes, "
+        "the one\nwhose robustness it has, and the smallest change that would turn it.",
+        "etlc explain");
+    add_common_options(app, call);
+    driver::add_explain_options(app, call.explain);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
+        const auto compiled = driver::compile(file, call.request, sink);
+        if (compiled && !sink.refused()) driver::explain(file, *compiled, call.explain, sink);
+    });
+}
+
 int execute(int argc, char** argv) {
     const std::string_view command = argc > 1 ? argv[1] : "";
     if (command == "run") return run_command(argc - 1, argv + 1);
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
+    if (command == "explain") return explain_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
 }

@@ -1,6 +1,7 @@
 #include "ir/lower.hpp"
 
 #include <array>
+#include <utility>
 
 namespace etlc::ir {
 
@@ -24,6 +25,8 @@ public:
         }
         return known;
     }
+
+    std::array<std::vector<NodeId>, 2> take_nodes() { return std::move(memo_); }
 
 private:
     static Op turn(Op op, bool negated) { return negated ? info(op).dual : op; }
@@ -116,10 +119,11 @@ private:
 }  // namespace
 
 Program lower(const check::Model& model) {
-    Program program{Graph(model), {}, {}};
+    Program program{Graph(model), {}, {}, {}};
     Lowering lowering(model, program.graph);
     for (const check::Monitor& monitor : model.monitors)
         program.monitors.push_back(lowering.lower(monitor.formula, false));
+    program.formulas = lowering.take_nodes();
     return program;
 }
 

@@ -3,6 +3,7 @@
 // lowered at most once a polarity, so shared `let`s stay shared.
 #pragma once
 
+#include <array>
 #include <unordered_map>
 #include <vector>
 
@@ -16,6 +17,9 @@ struct Program {
     /// Of some formulas an equal one, whose windows end before an unbounded future begins: what is
     /// cheaper to monitor, the plan decides (opt/split_windows.cpp).
     std::unordered_map<NodeId, NodeId> split_windows;
+    /// The node of each formula of the model, and, at [1], of its negation; kNone where no monitor
+    /// needs it.
+    std::array<std::vector<NodeId>, 2> formulas;
 };
 
 /// Every node that a monitor reaches, operands first: `--emit graph`.

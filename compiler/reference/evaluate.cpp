@@ -2,6 +2,7 @@
 #include <limits>
 
 #include "reference/atoms.hpp"
+#include "reference/explanation.hpp"
 #include "reference/normal_form.hpp"
 #include "reference/prefix.hpp"
 #include "reference/reference.hpp"
@@ -141,6 +142,18 @@ public:
         return std::move(run_);
     }
 
+    Literals literals(const std::vector<Alteration>& alterations) {
+        measure_all();
+        for (const Alteration& a : alterations) {
+            if (a.is_predicate)
+                run_.telemetry[a.step][a.index].delta = a.measured;
+            else
+                samples_[a.step][a.index] = {static_cast<float>(a.measured)};
+        }
+        fill_literals();
+        return std::move(literals_);
+    }
+
 private:
     const check::Model& model_;
     Values values_;
@@ -242,6 +255,11 @@ private:
 };
 
 }  // namespace
+
+Literals literals(const check::Model& model, const Trace& trace, Values values,
+                  const std::vector<Alteration>& alterations) {
+    return Evaluation(model, trace, values, {}).literals(alterations);
+}
 
 Run evaluate(const check::Model& model, const Trace& trace, Values values,
              const Thresholds& thresholds, const Requests& requests) {

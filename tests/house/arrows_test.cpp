@@ -28,16 +28,17 @@ const std::map<std::string, Names> kArrows = {
     {"opt", {"ir"}},
     {"plan", {"ir"}},
     {"emit", {"plan"}},
+    {"explain", {"plan"}},
     {"pipeline", {"opt", "plan"}},
     {"episodes", {"plan"}},
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
-    {"driver", {"parse", "emit", "calibrate", "evaluate"}},
+    {"driver", {"parse", "emit", "explain", "calibrate", "evaluate"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
-const Names kBelowTheModel = {"reference", "ir",       "opt",       "plan",    "emit",
-                              "pipeline",  "episodes", "calibrate", "evaluate"};
+const Names kBelowTheModel = {"reference", "ir",       "opt",      "plan",      "emit",
+                              "explain",   "pipeline", "episodes", "calibrate", "evaluate"};
 
 /// The judge in tests shares no arithmetic with what it judges.
 const Names kWithoutRuntime = {"reference"};

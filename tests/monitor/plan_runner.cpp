@@ -8,7 +8,6 @@
 #include "restart_schedule.hpp"
 
 namespace etlc::tests {
-namespace {
 
 std::vector<plan::Sample> samples_of(const reference::Step& step) {
     std::vector<plan::Sample> samples;
@@ -20,8 +19,6 @@ std::vector<plan::Sample> samples_of(const reference::Step& step) {
     }
     return samples;
 }
-
-}  // namespace
 
 reference::Verdict observed(const etlmon::Verdict& verdict) {
     using reference::Status;

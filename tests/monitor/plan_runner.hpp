@@ -44,6 +44,9 @@ private:
     std::vector<std::uint64_t> positions() const;
 };
 
+/// A step of a trace as an evaluator takes it.
+std::vector<plan::Sample> samples_of(const reference::Step& step);
+
 /// A verdict of the runtime in the reference's terms.
 reference::Verdict observed(const etlmon::Verdict& verdict);
 

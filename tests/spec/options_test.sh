@@ -43,6 +43,11 @@ for number in 0 -1 1025 all; do
     refuses "--jobs: found '$number', expected a whole number from 1 to 1024" \
         evaluate t.etl --data t.csv "--jobs=$number"
 done
+refuses "--format: found 'xml', expected text or json" explain t.etl --trace t.csv --format xml
+for time in -1 nan 1s ' 1'; do
+    refuses "--at: found '$time', expected a number of seconds from 0" \
+        explain t.etl --trace t.csv "--at=$time"
+done
 "$etlc" t.etl --values boolean -o boolean.hpp 2>err.txt || fail "$(cat err.txt)"
 "$etlc" t.etl --values robustness -o robustness.hpp 2>err.txt || fail "$(cat err.txt)"
 ! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"

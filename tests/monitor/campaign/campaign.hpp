@@ -19,6 +19,7 @@ struct Effort {
     int pairs = 100'000;   ///< of a formula and a trace, for the evaluator
     int planned = 20'000;  ///< formulas that are only planned, for the share that is refused
     int compiled = 2'000;  ///< formulas in compiled classes
+    int explained = 0;     ///< pairs whose verdict is explained
     int builds = 4;        ///< of each: as is, -ffast-math, -Os by clang++, with sanitizers
     std::size_t longest = 200;
     bool show_refused = false;
@@ -40,6 +41,9 @@ struct Tally {
     Row boolean;
     int pairs = 0;
     int compiled = 0;
+    int explained = 0;
+    int with_samples = 0;  ///< of these: the explanation has some
+    int with_change = 0;   ///< and it knows what would turn the verdict
     std::vector<Finding> findings;
     /// There is enough to repair: the campaign ends.
     bool enough() const { return findings.size() >= 10; }
@@ -62,5 +66,8 @@ void try_plans(const Effort& effort, Tally& tally);
 
 /// Classes of many monitors, compiled; formulas that are refused are left out.
 void try_compiled(const Effort& effort, Tally& tally);
+
+/// Explanations of random pairs, at random positions.
+void try_explanations(const Effort& effort, Tally& tally);
 
 }  // namespace etlc::tests

@@ -49,9 +49,10 @@ int report(const Effort& effort, const Tally& tally) {
     good &= show_refused("sliding", tally.sliding, kMayBeRefused);
     good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
     fmt::print(
-        "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds: "
-        "{} mismatches\n",
-        tally.pairs, tally.compiled, effort.builds, tally.findings.size());
+        "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds, "
+        "{} explained ({} by samples, {} with what would turn them): {} mismatches\n",
+        tally.pairs, tally.compiled, effort.builds, tally.explained, tally.with_samples,
+        tally.with_change, tally.findings.size());
     good = good && tally.findings.empty();
     // A spec that does not load or a class that does not compile is a failure of GoogleTest's,
     // outside of any test.
@@ -76,6 +77,8 @@ int main(int argc, char** argv) {
            "of compiled classes: 1 as is, 2 also -ffast-math, 3 -Os by clang++, 4 sanitizers")
         ->check(CLI::Range(1, 4))
         ->capture_default_str();
+    app.add_option("--explained", effort.explained, "pairs whose verdict is explained")
+        ->capture_default_str();
     app.add_option("--longest", effort.longest, "steps of the longest trace")
         ->capture_default_str();
     app.add_option("--seed", effort.seed, "another campaign")->capture_default_str();
@@ -85,5 +88,6 @@ int main(int argc, char** argv) {
     try_pairs(effort, tally);
     try_plans(effort, tally);
     try_compiled(effort, tally);
+    try_explanations(effort, tally);
     return report(effort, tally);
 }

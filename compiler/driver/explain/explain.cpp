@@ -1,0 +1,190 @@
+#include "driver/explain/explain.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "data/files/file.hpp"
+#include "data/quote.hpp"
+#include "driver/names.hpp"
+#include "driver/output_file.hpp"
+#include "episodes/replay.hpp"
+#include "explain/report.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using check::Index;
+
+/// What a monitor said at every step.
+struct History {
+    std::vector<etlmon::Verdict> verdicts;
+    std::optional<std::uint64_t> first_alarm;
+    std::optional<std::uint64_t> first_final;
+
+    void add(const etlmon::Verdict& verdict) {
+        if (verdict.alarm() && !first_alarm) first_alarm = verdicts.size();
+        if (verdict.final() && !first_final) first_final = verdicts.size();
+        verdicts.push_back(verdict);
+    }
+};
+
+class Explaining {
+public:
+    Explaining(const Compiled& compiled, const ExplainRequest& request, diag::Sink& sink)
+        : plan_(compiled.plan),
+          model_(*compiled.plan.model),
+          request_(request),
+          sink_(sink),
+          observations_(model_, plan_.values, plan_.predicates, plan_.inputs),
+          histories_(plan_.monitors.size()) {}
+
+    std::optional<std::string> text() {
+        if (!monitor_is_there() || !time_is_there() || !step_through_trace()) return std::nullopt;
+        const History& history = choose_monitor();
+        const auto step = choose_step(history);
+        if (!step) return std::nullopt;
+        const plan::Monitor& monitor = plan_.monitors[chosen_];
+        const explain::Question question{monitor.index,
+                                         monitor.sliding ? *step - monitor.horizon : 0, *step};
+        const etlmon::Verdict& verdict = history.verdicts[*step];
+        const explain::Report report{observations_, question, verdict.final(),
+                                     explain::explain(ir::lower(model_), observations_, question)};
+        hold_to(verdict, report.explanation);
+        return request_.format == ExplanationFormat::json
+                   ? explain::json(report)
+                   : source::visible_lines(explain::text(report));
+    }
+
+private:
+    std::nullopt_t refuse(diag::Code code, const std::string& message) {
+        sink_.report(data::in_file({code, message}, request_.trace));
+        return std::nullopt;
+    }
+
+    bool monitor_is_there() {
+        if (request_.monitor.empty()) return true;
+        std::vector<std::string> names;
+        for (const plan::Monitor& monitor : plan_.monitors) {
+            if (monitor.name == request_.monitor) return true;
+            names.push_back(monitor.name);
+        }
+        const auto meant = diag::nearest_name(request_.monitor, names);
+        sink_.report(data::in_file(
+            {diag::Code::no_such_monitor,
+             fmt::format("the spec has no monitor {}{}", data::in_quotes(request_.monitor),
+                         meant ? fmt::format("; did you mean '{}'?", *meant)
+                               : fmt::format(", it has {}", diag::alternatives(names)))},
+            "--monitor " + request_.monitor));
+        return false;
+    }
+
+    bool time_is_there() {
+        if (!request_.at || model_.step_seconds > 0) return true;
+        sink_
+            .report(data::in_file({diag::Code::steps_without_time,
+                                   "the spec says no rate, so its steps have no time"},
+                                  "--at"))
+            .note("give the step with --step, or the spec a rate");
+        return false;
+    }
+
+    bool step_through_trace() {
+        auto recording =
+            episodes::Recording::open({&model_, plan_.inputs}, request_.trace, request_.names);
+        if (!recording) return fail(recording.failure());
+        episodes::Follower monitors(plan_);
+        episodes::Follower atoms(observations_.plan());
+        const auto frame = [&] {
+            observations_.add(atoms.evaluator());
+            for (std::size_t m = 0; m < histories_.size(); ++m)
+                histories_[m].add(monitors.verdicts()[m]);
+            return true;
+        };
+        const auto done = episodes::replay(*recording, {&monitors, &atoms}, frame);
+        if (!done) return fail(done.failure());
+        return observations_.steps() > 0 || fail(data::no_steps());
+    }
+
+    bool fail(const diag::Failure& failure) {
+        sink_.report(data::in_trace(failure, request_.trace));
+        return false;
+    }
+
+    const History& choose_monitor() {
+        for (std::size_t m = histories_.size(); m-- > 0;) {
+            const bool is_asked_for = request_.monitor.empty()
+                                          ? histories_[m].first_alarm.has_value()
+                                          : plan_.monitors[m].name == request_.monitor;
+            if (is_asked_for) chosen_ = m;
+        }
+        return histories_[chosen_];
+    }
+
+    std::optional<std::uint64_t> choose_step(const History& history) {
+        const plan::Monitor& monitor = plan_.monitors[chosen_];
+        const std::uint64_t steps = history.verdicts.size();
+        std::uint64_t step = steps - 1;
+        if (request_.step) {
+            step = *request_.step;
+        } else if (request_.at) {
+            step = static_cast<std::uint64_t>(
+                std::llround(std::min(*request_.at / model_.step_seconds, 1e18)));
+        } else if (history.first_alarm) {
+            step = *history.first_alarm;
+        } else if (history.first_final && !monitor.sliding) {
+            step = *history.first_final;
+        }
+        if (step >= steps) return refuse(diag::Code::no_such_step, beyond(steps));
+        if (!history.verdicts[step].decided())
+            return refuse(diag::Code::no_such_step,
+                          fmt::format("'{}' says nothing before step {}, found step {}",
+                                      monitor.name, monitor.horizon, step));
+        return step;
+    }
+
+    std::string beyond(std::uint64_t steps) const {
+        if (request_.step)
+            return fmt::format("found step {}, expected one from 0 to {}", *request_.step,
+                               steps - 1);
+        return fmt::format("found {:.6g} s, expected a time from 0 to {:.6g} s", *request_.at,
+                           static_cast<double>(steps - 1) * model_.step_seconds);
+    }
+
+    static void hold_to(const etlmon::Verdict& verdict, const explain::Explanation& explanation) {
+        const explain::Status status = verdict.satisfied()  ? explain::Status::satisfied
+                                       : verdict.violated() ? explain::Status::violated
+                                                            : explain::Status::unknown;
+        if (status != explanation.status)
+            throw std::logic_error("an explanation of another verdict than the monitor's");
+    }
+
+    const plan::Plan& plan_;
+    const check::Model& model_;
+    const ExplainRequest& request_;
+    diag::Sink& sink_;
+    explain::Observations observations_;
+    std::vector<History> histories_;  ///< by index of the plan's monitors
+    std::size_t chosen_ = 0;
+};
+
+}  // namespace
+
+bool explain(const source::File& spec, const Compiled& compiled, const ExplainRequest& request,
+             diag::Sink& sink) {
+    const check::Model& model = *compiled.plan.model;
+    if (!check_names(model, request.names, sink)) return false;
+    std::vector<std::string> inputs = model.dependencies;
+    inputs.insert(inputs.end(), {spec.path(), data::trace_file(request.trace)});
+    if (!check_outputs({request.output}, inputs, sink)) return false;
+    const auto text = Explaining(compiled, request, sink).text();
+    OutputFiles output(sink);
+    return text && output.add(request.output, *text) && output.commit();
+}
+
+}  // namespace etlc::driver

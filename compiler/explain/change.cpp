@@ -1,0 +1,125 @@
+// The smallest change of one measurement that turns a verdict: where some literal of it changes
+// sides, found by bisection over the floats in between, and tried in order of size.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <set>
+#include <string>
+#include <utility>
+
+#include "etlmon/temporal/shift.hpp"
+#include "explain/support.hpp"
+
+namespace etlc::explain {
+
+namespace {
+
+using etlmon::Key;
+
+class Search {
+public:
+    Search(const Subject& subject, Status status) : subject_(subject), status_(status) {}
+
+    std::optional<Change> among(const std::vector<Sample>& samples) {
+        const Judged judged = judge(subject_);
+        const Key weakest = status_ == Status::satisfied ? etlmon::kBottom : etlmon::kTop;
+        Support support(subject_, judged, weakest);
+        std::set<std::pair<std::uint64_t, Index>> seen;  // step and first atom
+        for (const Sample& sample : samples) {
+            const std::vector<Index> atoms = of_same_measurement(sample.atom);
+            if (!seen.insert({sample.step, atoms.front()}).second) continue;
+            std::vector<Sample> all;
+            for (const Index atom : atoms) all.push_back({atom, sample.step});
+            if (support.needs(all)) add_candidates(sample, atoms, support);
+        }
+        std::stable_sort(candidates_.begin(), candidates_.end(),
+                         [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
+        for (const Candidate& candidate : candidates_) {
+            const Judged then = judge(subject_, candidate.altered);
+            if (then.status != Status::unknown && then.status != status_)
+                return Change{candidate.sample, candidate.altered.measured, then.status,
+                              etlmon::float_of(etlmon::shifted(then.root.key, subject_.shift))};
+        }
+        return std::nullopt;
+    }
+
+private:
+    struct Candidate {
+        double size = 0;
+        Sample sample;
+        Altered altered;
+    };
+
+    /// The atoms that one distance or expression, or one bool, decides.
+    std::vector<Index> of_same_measurement(Index atom) {
+        const Observations& observed = subject_.observations;
+        if (expressions_.empty())
+            for (Index a = 0; a < observed.atoms().size(); ++a)
+                expressions_.push_back(
+                    observed.atoms()[a].is_predicate
+                        ? check::print(observed.model(), observed.predicate(a).expression)
+                        : "");
+        if (!observed.atoms()[atom].is_predicate) return {atom};
+        std::vector<Index> result;
+        for (Index a = 0; a < expressions_.size(); ++a)
+            if (expressions_[a] == expressions_[atom]) result.push_back(a);
+        return result;
+    }
+
+    /// Where a literal that supports the status no longer does.
+    void add_candidates(Sample sample, const std::vector<Index>& atoms, const Support& support) {
+        const Observations& observed = subject_.observations;
+        const float measured = observed.measured(sample);
+        if (!observed.atoms()[sample.atom].is_predicate) {
+            add(sample, atoms, measured != 0 ? 0.0F : 1.0F, kInfinity);
+            return;
+        }
+        for (const Index atom : atoms)
+            for (const NodeId literal : support.literals({atom, sample.step}))
+                for (const bool up : {false, true})
+                    if (const auto other =
+                            turning_point(atom, measured, subject_.graph[literal].negated, up))
+                        add(sample, atoms, *other,
+                            std::abs(static_cast<double>(*other) - static_cast<double>(measured)));
+    }
+
+    void add(Sample sample, const std::vector<Index>& atoms, float measured, double size) {
+        candidates_.push_back({size, sample, {sample.step, atoms, measured}});
+    }
+
+    /// The first number above or below at which the literal no longer supports the status.
+    std::optional<float> turning_point(Index atom, float measured, bool negated, bool up) const {
+        const auto supports = [&](Key delta) {
+            const etlmon::Value value = subject_.observations.value(atom, etlmon::float_of(delta));
+            return subject_.supports(status_, negated ? -value.low : value.low);
+        };
+        const check::Range& range = subject_.observations.predicate(atom).delta;
+        constexpr float kGreatest = std::numeric_limits<float>::max();
+        std::int64_t other =
+            etlmon::key_of(up ? std::min(range.high, kGreatest) : std::max(range.low, -kGreatest));
+        std::int64_t same = etlmon::key_of(measured);
+        if ((up ? other <= same : other >= same) || supports(static_cast<Key>(other)))
+            return std::nullopt;
+        while (std::abs(other - same) > 1) {
+            const std::int64_t middle = same + (other - same) / 2;
+            (supports(static_cast<Key>(middle)) ? same : other) = middle;
+        }
+        return etlmon::float_of(static_cast<Key>(other));
+    }
+
+    static constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+    const Subject& subject_;
+    Status status_;
+    std::vector<std::string> expressions_;  ///< per atom
+    std::vector<Candidate> candidates_;
+};
+
+}  // namespace
+
+std::optional<Change> smallest_change(const Subject& subject, Status status,
+                                      const std::vector<Sample>& samples) {
+    return Search(subject, status).among(samples);
+}
+
+}  // namespace etlc::explain

@@ -1,0 +1,188 @@
+#include "explain/explain.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "etlmon/temporal/shift.hpp"
+#include "explain/support.hpp"
+
+namespace etlc::explain {
+
+namespace {
+
+using check::Formula;
+using Kind = Formula::Kind;
+
+/// Whether a formula holds its operand `n` as it is, or its negation, or both.
+struct Polarities {
+    bool plain = true;
+    bool negated = false;
+};
+Polarities polarities(const Formula& formula, std::size_t n) {
+    switch (formula.kind) {
+        case Kind::negation: return {false, true};
+        case Kind::implication: return {n == 1, n == 0};
+        case Kind::equivalence:
+        case Kind::rise:
+        case Kind::fall: return {true, true};
+        default: return {};
+    }
+}
+
+/// The positions at which a formula looks at an operand.
+struct Span {
+    std::uint64_t first = 0;
+    std::uint64_t last = 0;
+};
+Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t last) {
+    switch (formula.kind) {
+        case Kind::next:
+        case Kind::eventually:
+        case Kind::always:
+        case Kind::until:
+        case Kind::weak_until:
+        case Kind::release:
+            return {position, std::min<std::uint64_t>(last, position + formula.high)};
+        case Kind::previous:
+        case Kind::once:
+        case Kind::historically:
+        case Kind::since:
+        case Kind::rise:
+        case Kind::fall:
+        case Kind::held:
+            return {position - std::min<std::uint64_t>(position, formula.high), position};
+        default: return {position, position};
+    }
+}
+
+/// From the monitor's formula down, always to an operand that has the monitor's value: the sample
+/// is part of the value, so that is the one which the value is taken from.
+class Chain {
+public:
+    Chain(const ir::Program& program, const Subject& subject, const Judged& judged)
+        : program_(program), subject_(subject), judged_(judged) {}
+
+    std::vector<Link> from(Index formula) const {
+        std::vector<Link> chain;
+        std::optional<Place> place{{formula, false, subject_.position}};
+        for (; place; place = below(*place)) {
+            const etlmon::Key key = judged_.root.key;
+            chain.push_back(
+                {place->formula, place->position, etlmon::float_of(place->negated ? -key : key)});
+        }
+        return chain;
+    }
+
+private:
+    struct Place {
+        Index formula = 0;
+        bool negated = false;
+        std::uint64_t position = 0;
+    };
+
+    std::optional<Place> below(const Place& place) const {
+        const Formula& formula = subject_.graph.model().formulas[place.formula];
+        const Span span = looked_at(formula, place.position, subject_.last);
+        for (std::size_t n = 0; n < formula.operands.size(); ++n) {
+            const Polarities has = polarities(formula, n);
+            for (const bool flipped : {false, true}) {
+                if (!(flipped ? has.negated : has.plain)) continue;
+                const bool negated = place.negated != flipped;
+                const NodeId node = program_.formulas[negated ? 1 : 0][formula.operands[n]];
+                if (node == check::kNone || !judged_.values.has(node)) continue;
+                for (std::uint64_t k = span.first; k <= span.last; ++k)
+                    if (judged_.values.at(node, k) == judged_.root)
+                        return Place{formula.operands[n], negated, k};
+            }
+        }
+        return std::nullopt;
+    }
+
+    const ir::Program& program_;
+    const Subject& subject_;
+    const Judged& judged_;
+};
+
+/// Leaves samples out, the last ones first, the critical one at the very end.
+std::vector<Sample> irreducible(Support& support, const std::optional<Sample>& critical) {
+    std::vector<Sample> order = support.samples();
+    std::reverse(order.begin(), order.end());
+    std::stable_partition(order.begin(), order.end(),
+                          [&](const Sample& sample) { return sample != critical; });
+    std::vector<Sample> kept;
+    for (const Sample& sample : order)
+        if (!support.can_do_without(sample)) kept.push_back(sample);
+    return kept;
+}
+
+std::vector<Sample> in_order(std::vector<Sample> samples) {
+    std::sort(samples.begin(), samples.end(), [](const Sample& a, const Sample& b) {
+        return std::pair(a.step, a.atom) < std::pair(b.step, b.atom);
+    });
+    return samples;
+}
+
+std::vector<Sample> missing(const Subject& subject) {
+    const auto reached = reach(subject.graph, subject.root, subject.position, subject.last);
+    std::vector<Sample> result;
+    for (Index atom = 0; atom < subject.observations.atoms().size(); ++atom)
+        for (std::uint64_t step = 0; step <= subject.last; ++step) {
+            if (!subject.observations.is_looked_at(atom) ||
+                !subject.observations.is_missing({atom, step}))
+                continue;
+            bool seen = false;
+            for (NodeId id = 0; id <= subject.root && !seen; ++id) {
+                const ir::Node& node = subject.graph[id];
+                seen = (node.op == ir::Op::predicate || node.op == ir::Op::flag) &&
+                       reached[id][step] &&
+                       subject.observations.atom(node.op == ir::Op::predicate, node.index) == atom;
+            }
+            if (seen) result.push_back({atom, step});
+        }
+    return in_order(std::move(result));
+}
+
+/// The nodes of the formula and of all formulas in it.
+std::vector<bool> nodes_of(const ir::Program& program, Index formula) {
+    std::vector<bool> inside(formula + std::size_t{1});
+    inside[formula] = true;
+    std::vector<NodeId> nodes;
+    for (Index f = formula + 1; f-- > 0;) {
+        if (!inside[f]) continue;
+        for (const Index operand : program.graph.model().formulas[f].operands)
+            inside[operand] = true;
+        for (const auto& of_formula : program.formulas)
+            if (of_formula[f] != check::kNone) nodes.push_back(of_formula[f]);
+    }
+    return closure(program.graph, nodes);
+}
+
+}  // namespace
+
+Explanation explain(const ir::Program& program, const Observations& observations,
+                    const Question& question) {
+    const check::Monitor& monitor = observations.model().monitors[question.monitor];
+    const Subject subject{program.graph,
+                          observations,
+                          program.monitors[question.monitor],
+                          nodes_of(program, monitor.formula),
+                          question.position,
+                          question.step,
+                          monitor.calibration ? monitor.calibration->threshold.value : 0};
+    const Judged judged = judge(subject);
+    Explanation result;
+    result.status = judged.status;
+    if (judged.status == Status::unknown) {
+        result.missing = missing(subject);
+        return result;
+    }
+    result.robustness = etlmon::float_of(etlmon::shifted(judged.root.key, subject.shift));
+    result.critical = judged.values.source(judged.root);
+    result.chain = Chain(program, subject, judged).from(monitor.formula);
+    Support support(subject, judged, judged.root.key);
+    result.samples = in_order(irreducible(support, result.critical));
+    result.change = smallest_change(subject, judged.status, result.samples);
+    return result;
+}
+
+}  // namespace etlc::explain

@@ -1,0 +1,57 @@
+#include "explain/report.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+namespace etlc::explain {
+
+std::vector<Interval> intervals(const Observations& observations,
+                                const std::vector<Sample>& samples) {
+    std::vector<Sample> order = samples;
+    std::sort(order.begin(), order.end(), [](const Sample& a, const Sample& b) {
+        return std::tie(a.atom, a.step) < std::tie(b.atom, b.step);
+    });
+    std::vector<Interval> result;
+    for (const Sample& sample : order) {
+        const bool holds = observations.value(sample).low >= 0;
+        const bool goes_on = !result.empty() && result.back().atom == sample.atom &&
+                             result.back().last + 1 == sample.step && result.back().holds == holds;
+        if (!goes_on) {
+            result.push_back({sample.atom, sample.step, sample.step, holds, sample.step});
+            continue;
+        }
+        Interval& interval = result.back();
+        interval.last = sample.step;
+        if (margin(observations, sample) < margin(observations, {sample.atom, interval.closest}))
+            interval.closest = sample.step;
+    }
+    return result;
+}
+
+std::string name_of(const Observations& observations, Index atom) {
+    if (observations.atoms()[atom].is_predicate) return observations.predicate(atom).shown();
+    return observations.model().inputs[observations.atoms()[atom].index].name;
+}
+
+const char* word(Status status) {
+    return status == Status::satisfied  ? "satisfied"
+           : status == Status::violated ? "violated"
+                                        : "unknown";
+}
+
+float margin(const Observations& observations, Sample sample) {
+    if (!observations.atoms()[sample.atom].is_predicate) return 0;
+    return std::abs(observations.measured(sample) -
+                    observations.predicate(sample.atom).threshold.value);
+}
+
+bool has_nearest(const Observations& observations, Index atom) {
+    if (!observations.atoms()[atom].is_predicate) return false;
+    const check::Predicate& predicate = observations.predicate(atom);
+    if (!predicate.plain_distance()) return false;
+    const check::Index distance = predicate.expression.index;
+    return observations.model().distances[distance].aggregation == check::Aggregation::min;
+}
+
+}  // namespace etlc::explain

@@ -1,0 +1,67 @@
+// What formulas come to at every position of a prefix, with the sample that each value is that of.
+// Takes: the graph, which nodes, the observations, and which end of what missing samples leave
+// open. Gives: a value per node and position. Keeps true: the work is proportional to nodes times
+// steps, whatever the windows; equal formulas have equal values, sample included, however they are
+// written, since values are totally ordered and a min or a max is one of its operands.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "explain/observations.hpp"
+#include "ir/graph.hpp"
+
+namespace etlc::explain {
+
+using ir::NodeId;
+
+/// A robustness and the sample that it is that of. Of equal ones, the earlier sample counts as
+/// farther from 0; true and false themselves are farthest.
+struct Sourced {
+    etlmon::Key key = 0;
+    std::int64_t rank = 0;
+
+    auto operator<=>(const Sourced&) const = default;
+    Sourced operator-() const { return {-key, -rank}; }
+};
+inline constexpr Sourced kTrueItself{etlmon::kTop, INT64_MAX};
+inline constexpr Sourced kFalseItself{etlmon::kBottom, -INT64_MAX};
+
+/// Pessimistic or optimistic about what is missing.
+enum class End : std::uint8_t { low, high };
+
+/// Measurements of one step that are other than observed.
+struct Altered {
+    std::uint64_t step = 0;
+    std::vector<Index> atoms;
+    float measured = 0;
+};
+
+class Values {
+public:
+    /// On the prefix 0..last. `nodes`: which to evaluate, with each also its operands.
+    Values(const ir::Graph& graph, const std::vector<bool>& nodes, const Observations& observations,
+           std::uint64_t last, End end, const std::optional<Altered>& altered = std::nullopt);
+
+    bool has(NodeId node) const { return node < values_.size() && !values_[node].empty(); }
+    Sourced at(NodeId node, std::uint64_t position) const { return values_[node][position]; }
+    /// Nothing where a value is that of an empty window or a constant.
+    std::optional<Sample> source(Sourced value) const;
+
+private:
+    std::vector<Sourced> literal(const ir::Node& node, const Observations& observations, End end,
+                                 const std::optional<Altered>& altered) const;
+    std::vector<Sourced> combination(const ir::Node& node) const;
+    std::vector<Sourced> temporal(const ir::Node& node) const;
+
+    std::size_t atoms_;
+    std::size_t length_;
+    std::vector<std::vector<Sourced>> values_;  ///< [node][position]; empty: not evaluated
+};
+
+/// These nodes and all below them.
+std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roots);
+
+}  // namespace etlc::explain

@@ -1,0 +1,75 @@
+// The critical sample and the explanation of a verdict by brute force, as docs/explanations.md
+// defines them.
+// Takes: the typed spec and a trace. Gives: the status with only some samples known; the sample
+// whose value rho is; the set that the rule leaves. Keeps true: each is found by evaluating the
+// formula again, with other values of its literals.
+#pragma once
+
+#include <compare>
+#include <cstdint>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "check/model/model.hpp"
+#include "reference/prefix.hpp"
+#include "reference/reference.hpp"
+
+namespace etlc::reference {
+
+/// A predicate or a bool at a step; the order is that of steps, then of the spec.
+struct Sample {
+    std::uint64_t step = 0;
+    std::uint32_t place = 0;  ///< in the text of the spec
+    bool is_predicate = true;
+    Index index = 0;  ///< of the model's predicates, or of its inputs
+
+    auto operator<=>(const Sample&) const = default;
+};
+using SampleSet = std::set<Sample>;
+
+/// Another measurement: a delta, or the 0 or 1 of a bool.
+struct Alteration {
+    bool is_predicate = true;
+    Index index = 0;
+    std::uint64_t step = 0;
+    double measured = 0;
+};
+
+/// The literals of the whole trace, with some samples altered.
+Literals literals(const check::Model& model, const Trace& trace, check::Values values,
+                  const std::vector<Alteration>& alterations = {});
+
+/// One monitor's rho(f, position, step).
+class Explained {
+public:
+    Explained(const check::Model& model, const Trace& trace, check::Values values, Index monitor,
+              std::uint64_t position, std::uint64_t step);
+
+    /// Of the prefix, with all that the trace has.
+    Status status() const { return status_; }
+    Status status_with_only(const SampleSet& known) const;
+    Status status_with(const std::vector<Alteration>& alterations) const;
+
+    /// Nothing where rho is that of an empty window or a constant.
+    std::optional<Sample> critical() const;
+    /// The rule: from those samples that support the status as far as rho does, the last ones are
+    /// left out first, and the critical one at the very end, wherever the rest gives the status.
+    SampleSet explanation() const;
+
+private:
+    Value value(const Literals& literals) const;
+    Sample sample(const Node& literal, std::uint64_t step) const;
+
+    const check::Model& model_;
+    const Trace& trace_;
+    check::Values values_;
+    NormalForm form_;
+    Literals literals_;
+    Index root_;
+    std::uint64_t position_;
+    std::uint64_t step_;
+    Status status_;
+};
+
+}  // namespace etlc::reference

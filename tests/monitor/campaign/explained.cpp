@@ -1,0 +1,253 @@
+// The explaining half of the campaign: every explanation held to brute force.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numeric>
+
+#include "campaign.hpp"
+#include "explain/explain.hpp"
+#include "loading.hpp"
+#include "plan_runner.hpp"
+#include "reference/explanation.hpp"
+
+namespace etlc::tests {
+namespace {
+
+using reference::Alteration;
+using reference::Explained;
+using reference::SampleSet;
+using reference::Status;
+
+constexpr int kTracesPerFormula = 3;
+constexpr int kShrinkingTries = 3000;
+constexpr std::size_t kLongest = 40;
+
+const char* name_of(Status status) {
+    return status == Status::satisfied  ? "satisfied"
+           : status == Status::violated ? "violated"
+                                        : "unknown";
+}
+
+Status status_of(explain::Status status) {
+    return status == explain::Status::satisfied  ? Status::satisfied
+           : status == explain::Status::violated ? Status::violated
+                                                 : Status::unknown;
+}
+
+/// One explanation, and the judge of it.
+class Judge {
+public:
+    Judge(const check::Model& model, const ir::Program& program,
+          const explain::Observations& observations, const reference::Trace& trace,
+          check::Values values, std::uint64_t position)
+        : model_(model),
+          observations_(observations),
+          position_(position),
+          step_(observations.steps() - 1),
+          found_(explain::explain(program, observations, {0, position, step_})),
+          reference_(model, trace, values, 0, position, step_) {}
+
+    const explain::Explanation& found() const { return found_; }
+
+    std::optional<std::string> mismatch() const {
+        const auto bad = first_mismatch();
+        if (!bad) return {};
+        return fmt::format("position {} after step {}, {}: {}", position_, step_,
+                           name_of(reference_.status()), *bad);
+    }
+
+private:
+    std::optional<std::string> first_mismatch() const {
+        if (status_of(found_.status) != reference_.status())
+            return fmt::format("explained as {}", name_of(status_of(found_.status)));
+        if (found_.status == explain::Status::unknown) return {};
+        const SampleSet samples = set_of(found_.samples);
+        if (reference_.status_with_only(samples) != reference_.status())
+            return fmt::format("{} do not suffice", show(samples));
+        for (const reference::Sample& sample : samples) {
+            SampleSet rest = samples;
+            rest.erase(sample);
+            if (reference_.status_with_only(rest) == reference_.status())
+                return fmt::format("{} would do without {}", show(samples), show({sample}));
+        }
+        if (const SampleSet expected = reference_.explanation(); samples != expected)
+            return fmt::format("explained by {}, by the rule by {}", show(samples), show(expected));
+        const auto critical = reference_.critical();
+        const SampleSet expected = critical ? SampleSet{*critical} : SampleSet{};
+        const SampleSet found = found_.critical ? set_of({*found_.critical}) : SampleSet{};
+        if (found != expected)
+            return fmt::format("critical {}, expected {}", show(found), show(expected));
+        if (auto bad = chain()) return bad;
+        return change();
+    }
+
+    /// It leads from the monitor's formula to the atom.
+    std::optional<std::string> chain() const {
+        const explain::Link& first = found_.chain.front();
+        if (first.formula != model_.monitors[0].formula || first.position != position_)
+            return "the chain begins elsewhere";
+        for (const explain::Link& link : found_.chain)
+            if (std::abs(link.robustness) != std::abs(found_.robustness))
+                return "a formula of the chain has another value";
+        if (!found_.critical) return {};
+        const explain::Link& last = found_.chain.back();
+        const check::Formula& atom = model_.formulas[last.formula];
+        const explain::Atom& critical = observations_.atoms()[found_.critical->atom];
+        const bool is_predicate = atom.kind == check::Formula::Kind::predicate;
+        const bool is_flag = atom.kind == check::Formula::Kind::boolean_input;
+        if (last.position != found_.critical->step || atom.index != critical.index ||
+            !(critical.is_predicate ? is_predicate : is_flag))
+            return fmt::format("the chain ends at {} at {}", check::print(model_, last.formula),
+                               last.position);
+        return {};
+    }
+
+    /// It turns the verdict, and what is a little smaller does not.
+    std::optional<std::string> change() const {
+        if (found_.change) {
+            const explain::Change& change = *found_.change;
+            const Status then = reference_.status_with(altered(change.sample, change.measured));
+            if (then != status_of(change.status) || then == reference_.status() ||
+                then == Status::unknown)
+                return fmt::format("{} as {:.9g}: {}", show(set_of({change.sample})),
+                                   change.measured, name_of(then));
+        }
+        for (explain::Index atom = 0; atom < observations_.atoms().size(); ++atom)
+            for (std::uint64_t step = 0; step <= step_; ++step)
+                if (auto bad = smaller_change({atom, step})) return bad;
+        return {};
+    }
+
+    std::optional<std::string> smaller_change(const explain::Sample& sample) const {
+        if (observations_.is_missing(sample)) return {};
+        const float now = observations_.measured(sample);
+        std::vector<float> others;
+        if (!observations_.atoms()[sample.atom].is_predicate) {
+            if (!found_.change) others.push_back(now != 0 ? 0.0F : 1.0F);
+        } else {
+            const check::Range& range = observations_.predicate(sample.atom).delta;
+            for (const float end : {range.low, range.high}) {
+                const float most = std::clamp(end, -1e6F, 1e6F);
+                const float by = found_.change && is_predicate(*found_.change)
+                                     ? smaller(*found_.change)
+                                     : std::abs(most - now);
+                const float other = most < now ? now - by : now + by;
+                if (range.contains(other)) others.push_back(other);
+            }
+        }
+        for (const float other : others) {
+            const Status then = reference_.status_with(altered(sample, other));
+            if (then != reference_.status() && then != Status::unknown)
+                return fmt::format("{} as {:.9g} instead of {:.9g}: {}", show(set_of({sample})),
+                                   other, now, name_of(then));
+        }
+        return {};
+    }
+
+    bool is_predicate(const explain::Change& change) const {
+        return observations_.atoms()[change.sample.atom].is_predicate;
+    }
+    /// Just less than its size. Where the change is tiny, none.
+    float smaller(const explain::Change& change) const {
+        const float size = std::abs(change.measured - observations_.measured(change.sample));
+        return std::max(0.0F, size - 0.001F);
+    }
+
+    /// A measurement belongs to all predicates that compare the same expression.
+    std::vector<Alteration> altered(const explain::Sample& sample, float measured) const {
+        const explain::Atom& atom = observations_.atoms()[sample.atom];
+        if (!atom.is_predicate) return {{false, atom.index, sample.step, measured}};
+        const auto text = [&](explain::Index p) {
+            return check::print(model_, model_.predicates[p].expression);
+        };
+        std::vector<Alteration> result;
+        for (explain::Index p = 0; p < model_.predicates.size(); ++p)
+            if (text(p) == text(atom.index)) result.push_back({true, p, sample.step, measured});
+        return result;
+    }
+
+    SampleSet set_of(const std::vector<explain::Sample>& samples) const {
+        SampleSet result;
+        for (const explain::Sample& sample : samples) {
+            const auto [is_predicate, index] = observations_.atoms()[sample.atom];
+            const auto span =
+                is_predicate ? model_.predicates[index].span : model_.inputs[index].span;
+            result.insert({sample.step, span.begin, is_predicate, index});
+        }
+        return result;
+    }
+
+    std::string show(const SampleSet& samples) const {
+        std::string text = "{";
+        for (const reference::Sample& sample : samples)
+            text += fmt::format("{}{} at {}", text == "{" ? "" : ", ",
+                                sample.is_predicate ? model_.predicates[sample.index].shown()
+                                                    : model_.inputs[sample.index].name,
+                                sample.step);
+        return text + "}";
+    }
+
+    const check::Model& model_;
+    const explain::Observations& observations_;
+    std::uint64_t position_;
+    std::uint64_t step_;
+    explain::Explanation found_;
+    Explained reference_;
+};
+
+/// Of the monitor at its first position, and at another one.
+std::optional<std::string> mismatch_of(const check::Model& model, const reference::Trace& trace,
+                                       check::Values values, std::uint64_t seed, Tally* tally) {
+    const ir::Program program = ir::lower(model);
+    std::vector<check::Index> predicates(model.predicates.size());
+    std::iota(predicates.begin(), predicates.end(), 0);
+    std::vector<check::Index> inputs(model.inputs.size());
+    std::iota(inputs.begin(), inputs.end(), 0);
+    explain::Observations observations(model, values, predicates, inputs);
+    plan::Evaluator evaluator(observations.plan());
+    for (const reference::Step& step : trace) {
+        evaluator.step(samples_of(step));
+        observations.add(evaluator);
+    }
+    for (const std::uint64_t position : {std::uint64_t{0}, seed % trace.size()}) {
+        const Judge judge(model, program, observations, trace, values, position);
+        if (auto bad = judge.mismatch()) return bad;
+        if (tally == nullptr) continue;
+        ++tally->explained;
+        if (!judge.found().samples.empty()) ++tally->with_samples;
+        if (judge.found().change) ++tally->with_change;
+    }
+    return {};
+}
+
+Trial trial_on(check::Values values, std::uint64_t seed) {
+    return
+        [=](const std::string& spec, const reference::Trace& trace) -> std::optional<std::string> {
+            const auto model = load(spec);
+            if (!model || trace.empty()) return {};
+            return mismatch_of(*model, trace, values, seed, nullptr);
+        };
+}
+
+}  // namespace
+
+void try_explanations(const Effort& effort, Tally& tally) {
+    constexpr std::uint64_t kBeyondCompiled = 3'000'000;
+    for (std::uint64_t n = 0; tally.explained < effort.explained && !tally.enough(); ++n) {
+        const Subject tried = subject(effort.seed, kBeyondCompiled + n, 1);
+        const auto model = load(tried.spec());
+        for (int t = 0; model && t < kTracesPerFormula; ++t) {
+            const reference::Trace trace =
+                subject_trace(*model, tried, t, std::min(effort.longest, kLongest));
+            const std::uint64_t seed = tried.seed + static_cast<std::uint64_t>(t);
+            const auto mismatch = mismatch_of(*model, trace, tried.values, seed, &tally);
+            if (!mismatch) continue;
+            tally.findings.push_back(shrink({tried.spec(), trace, *mismatch},
+                                            trial_on(tried.values, seed), kShrinkingTries));
+            break;
+        }
+    }
+}
+
+}  // namespace etlc::tests
