@@ -62,6 +62,9 @@ std::vector<Member> own_members(const Context& context) {
         result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
     result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
                       "incomplete = 0;", ""});
+    if (plan.recorder)
+        result.push_back({"Recorder", "recorder", "the last steps, and incidents",
+                          "recorder.end_episode();", ""});
     return result;
 }
 
@@ -116,12 +119,14 @@ void print_types(Printer& out, const Context& context) {
     if (has_tables)
         types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
+    print_recorder_type(out, context);
     out.line();
     if (context.on_demand) return;
     print_doc(out, "What a step says about each predicate.");
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
     for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
+    if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
     out.close("};");
     out.line();
 }
@@ -158,6 +163,7 @@ void print_class_constants(Printer& out, const Context& context) {
         fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
         "target elements measured in a step");
     print_aligned(out, sizes, "///<");
+    print_recorder_constants(out, context);
     out.line();
 }
 
@@ -224,11 +230,17 @@ void declare_halves(Printer& out) {
     out.line();
 }
 
+std::string reset_words(const Context& context) {
+    std::string words = "A new episode";
+    if (!context.names.threshold_member.empty())
+        words += "; adaptive thresholds stay where they are";
+    if (context.plan.recorder) words += "; incidents stay, and those that wait for steps end here";
+    return words + ".";
+}
+
 void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
     print_constructors(out, context);
-    print_doc(out, context.names.threshold_member.empty()
-                       ? "A new episode."
-                       : "A new episode; adaptive thresholds stay where they are.");
+    print_doc(out, reset_words(context));
     out.open("void reset() noexcept {");
     for (const Member& member : all)
         if (!member.reset.empty()) out.line(member.reset);
@@ -257,6 +269,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
                           context.on_demand ? "that was asked for " : ""));
     out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
     out.line();
+    print_recorder_interface(out, context);
 }
 
 // ---- what is private

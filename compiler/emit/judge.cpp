@@ -90,6 +90,7 @@ void print_advance(Printer& out, const Context& context) {
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.line("bool missing = false;");
+    if (plan.recorder) out.line("{} row;", recorder_row(context));
     print_atoms_on_demand(out, context);
     out.gap();
     for (const auto& [m, open] : context.names.open_local)
@@ -102,6 +103,7 @@ void print_advance(Printer& out, const Context& context) {
     out.gap();
     print_open_verdicts(out, context);
     print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
+    print_record(out, context, "answers");
     if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return answers;");
     out.close();
@@ -110,7 +112,7 @@ void print_advance(Printer& out, const Context& context) {
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool reads_atoms =
-        !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
+        !context.names.predicate_atom.empty() || !context.names.flag_atom.empty() || plan.recorder;
     open_half(out, context, "Verdicts",
               fmt::format("judge({}const Atoms& now)", reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max_of;");
@@ -123,6 +125,7 @@ void print_judge(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out,
                       fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
+    print_record(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return verdicts;");
     out.close();

@@ -109,6 +109,11 @@ Row cost_row(Row row, const plan::Cost& cost, bool both_layouts) {
     return row;
 }
 
+std::string recorder_words(const plan::Recorder& recorder) {
+    return fmt::format("{} x ({} + 1 + {}) steps", recorder.incidents, recorder.before,
+                       recorder.after);
+}
+
 std::vector<Row> monitor_rows(const plan::Plan& plan) {
     const bool both_layouts = laid_out_by_machine(plan);
     std::vector<Row> rows{{"monitor", "about", "state B", "targets B"}};
@@ -120,6 +125,9 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
             monitor.sliding ? fmt::format("{} steps ago", monitor.horizon) : "the prefix";
         rows.push_back(cost_row({monitor.name, about}, plan.monitor_costs[m], both_layouts));
     }
+    if (plan.recorder)
+        rows.push_back(cost_row({"recorder", recorder_words(*plan.recorder)},
+                                {.state_bytes = plan::recorder_bytes(plan)}, both_layouts));
     rows.push_back(cost_row({"all together", ""}, plan.cost, both_layouts));
     return rows;
 }

@@ -65,6 +65,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
+        print_recorded_flag(out, context, i, "in." + input.name);
         out.line("return etlmon::truth_of(in.{});", input.name);
         out.close("});");
         return;
@@ -72,7 +73,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     if (input.hold == 0) {
         out.line("now.{} = etlmon::value_of(in.{});", context.names.flag_atom.at(i), input.name);
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
-        return;
+        return print_recorded_flag(out, context, i, "in." + input.name);
     }
     const std::string& word = context.names.input_buffer.at(i);
     out.line("const uint32_t {} = in.{}.value();", word, input.name);
@@ -83,6 +84,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(local + " == nullptr"));
+        print_recorded_flag(out, context, i, held_flag(local));
         print_wrapped(out, fmt::format("return etlmon::truth_of({});", held_flag(local)));
         out.close("});");
         return;
@@ -90,6 +92,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     print_wrapped(out, fmt::format("now.{} = etlmon::value_of({});", context.names.flag_atom.at(i),
                                    held_flag(local)));
     out.line(missed(local + " == nullptr"));
+    print_recorded_flag(out, context, i, held_flag(local));
 }
 
 void print_scalar(Printer& out, const Context& context, Index i) {
