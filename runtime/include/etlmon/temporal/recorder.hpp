@@ -81,7 +81,7 @@ class IncidentWriter {
     block_[count_++] = x;
     if (count_ < sizeof block_) return;
     checksum_.add(block_, sizeof block_);
-    sink_(static_cast<const uint8_t*>(block_), static_cast<size_t>(sizeof block_));
+    sink_(static_cast<const uint8_t*>(block_), sizeof block_);
     count_ = 0;
   }
   void word(uint32_t x) {
@@ -98,7 +98,7 @@ class IncidentWriter {
     const uint32_t halves[] = {static_cast<uint32_t>(sum), static_cast<uint32_t>(sum >> 32)};
     for (uint32_t i = 0; i < kIncidentChecksumBytes; ++i)
       block_[i] = static_cast<uint8_t>(halves[i / 4] >> (8 * (i % 4)));
-    sink_(static_cast<const uint8_t*>(block_), static_cast<size_t>(kIncidentChecksumBytes));
+    sink_(static_cast<const uint8_t*>(block_), size_t{kIncidentChecksumBytes});
   }
 
  private:
