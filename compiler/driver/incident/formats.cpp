@@ -216,11 +216,12 @@ std::string incident_spec(const plan::Plan& plan) {
         const check::Predicate& predicate = model.predicates[p];
         const std::string input = input_of(model, p, changes.size() + 1);
         inputs += fmt::format("input {} : f32;\n", input);
-        changes.emplace_back(
-            predicate.span,
-            fmt::format("{}{} {} {}",
-                        predicate.name.empty() ? "" : "predicate " + predicate.name + " = ", input,
-                        sign(predicate.comparison), predicate.threshold.value));
+        const std::string name =
+            predicate.name.empty() ? "" : "predicate " + predicate.name + " = ";
+        const source::Span rest{predicate.threshold.span.end, predicate.span.end};
+        changes.emplace_back(predicate.span,
+                             fmt::format("{}{} {} {}{}", name, input, sign(predicate.comparison),
+                                         predicate.threshold.value, model.file.text(rest)));
     }
     std::sort(changes.begin(), changes.end(),
               [](const auto& a, const auto& b) { return a.first.begin < b.first.begin; });
