@@ -96,16 +96,15 @@ public:
             incidents_.push_back({episode_, marks_.size() - 1, marks_, false});
     }
     void end_episode() {
-        close();
+        expect_closed();
         recorder_.end_episode();
         if (!marks_.empty()) ++episode_;
         marks_.clear();
         last_ = {false, false, false};
     }
     void close() {
-        update();
+        expect_closed();
         recorder_.close();
-        for (Incident& incident : incidents_) incident.closed = true;
     }
     void forget() {
         recorder_.forget();
@@ -137,6 +136,10 @@ private:
         bool closed;
     };
 
+    void expect_closed() {
+        update();
+        for (Incident& incident : incidents_) incident.closed = true;
+    }
     /// Open incidents see the steps that came since.
     void update() {
         for (Incident& incident : incidents_)
