@@ -1,5 +1,5 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
-#                  [INLINE_TARGETS bytes] [STANDALONE])
+#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -14,6 +14,7 @@
 #   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header; default:
 #                   262144. The program gives the monitor that file, which is empty where no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
+#   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that the spec loads, the thresholds or etlc itself change.
 # Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
@@ -23,7 +24,7 @@ cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
-    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS" "")
+    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -77,6 +78,9 @@ function(etlc_add_monitor target)
   endif()
   if(DEFINED arg_INLINE_TARGETS)
     list(APPEND options --inline-targets ${arg_INLINE_TARGETS})
+  endif()
+  if(arg_RECORDER)
+    list(APPEND options --recorder "${arg_RECORDER}")
   endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)

@@ -4,20 +4,21 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cctype>
 #include <filesystem>
 #include <new>
 #include <sstream>
 #include <stdexcept>
 
-#include "check/names/reserved.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
+#include "driver/compile_options.hpp"
 #include "driver/evaluate.hpp"
 #include "driver/explain/options.hpp"
+#include "driver/incident/incident.hpp"
+#include "driver/names.hpp"
 #include "driver/options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
@@ -48,6 +49,7 @@ struct Call {
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
     driver::ExplainRequest explain;
+    driver::IncidentRequest incident;
 };
 
 /// Prints the findings; the exit status that they mean.
@@ -92,8 +94,8 @@ int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
     return conclude(call, file, sink);
 }
 
-void add_spec_options(CLI::App& app, Call& call) {
-    app.add_option("spec", call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
+void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
+    app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
     app.add_option("-W", call.warnings, "-Werror: warnings are errors")
         ->type_name("error")
         ->check(driver::one_of({"error"}));
@@ -103,13 +105,8 @@ void add_spec_options(CLI::App& app, Call& call) {
         ->capture_default_str();
 }
 
-void add_limit(CLI::App& app, const std::string& name, std::uint64_t& limit,
-               const std::string& help) {
-    driver::add_number(app, name, limit, help)->default_str(std::to_string(limit));
-}
-
-void add_common_options(CLI::App& app, Call& call) {
-    add_spec_options(app, call);
+void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
+    add_spec_options(app, call, spec);
     app.add_option(
            "--thresholds", call.request.check.thresholds_path,
            "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
@@ -124,86 +121,11 @@ void add_common_options(CLI::App& app, Call& call) {
         {{"f32", plan::Storage::f32}, {"f16", plan::Storage::f16}, {"i8", plan::Storage::i8}},
         "how target sets are stored for measuring; what that leaves open is measured in float32 "
         "as well");
-    add_limit(app, "--max-state", call.request.limits.state_bytes, "most bytes of state");
-    add_limit(app, "--max-code", call.request.limits.code_bytes,
-              "most bytes of code, estimated, targets aside");
-    add_limit(app, "--max-work", call.request.limits.operations,
-              "most operations of the temporal part a step");
-}
-
-/// Why the generated code cannot be in this namespace, a or a::b; empty where it can.
-std::string mistake_in_namespace(const std::string& name) {
-    bool is_outermost = true;
-    for (std::size_t begin = 0; begin != std::string::npos; is_outermost = false) {
-        const std::size_t end = name.find("::", begin);
-        const std::string part = name.substr(begin, end - begin);
-        begin = end == std::string::npos ? end : end + 2;
-        const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
-        const bool is_name = !part.empty() &&
-                             std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
-                             std::all_of(part.begin(), part.end(), in_names);
-        if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
-        if (const auto why = check::why_forbidden(part, is_outermost))
-            return fmt::format("'{}' {}; another name would do, for example '{}'", part, *why,
-                               check::allowed_name(part, "monitors", is_outermost));
-    }
-    return "";
-}
-
-std::string emit_help() {
-    std::string text = "print a stage instead of the header:";
-    for (const auto& [name, summary] : driver::emittable())
-        text += fmt::format("\n{:>30} {}", name + ":", summary);
-    return text;
-}
-
-void add_compile_options(CLI::App& app, Call& call) {
-    std::vector<std::string> stages;
-    for (const auto& [name, summary] : driver::emittable()) stages.push_back(name);
-    app.add_option("-o,--output", call.output.result,
-                   "where to write the result; - is standard output")
-        ->type_name("FILE");
-    app.add_flag("--check", call.check_only, "diagnostics only");
-    app.add_option("--emit", call.request.emit, emit_help())
-        ->type_name("")
-        ->check(driver::one_of(stages));
-    app.add_flag("--standalone{portable}", call.request.standalone,
-                 "paste the runtime in: one file to copy into firmware, in standard C++ alone; "
-                 "--standalone=host: with vectors, chosen by the CPU where there is a choice")
-        ->check(driver::one_of({"portable", "host"}));
-    app.add_option("--namespace", call.request.name_space,
-                   "of the generated code (default: the spec's name)")
-        ->type_name("NAME")
-        ->check(
-            CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
-    add_limit(app, "--inline-targets", call.request.limits.inline_target_bytes,
-              "target sets of more bytes are not spelled out in the header, but go to a file "
-              "beside it");
-    app.add_option("--targets-file", call.output.targets,
-                   "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to "
-                   "it); named, it is always written, perhaps empty")
-        ->type_name("FILE");
-    app.add_option("--depfile", call.output.depfile,
-                   "also write what the output depends on, for make and ninja")
-        ->type_name("FILE");
-}
-
-/// The call's own mistakes that CLI11 cannot see; empty where there are none.
-std::string mistake_in(const Call& call, const CLI::App& app) {
-    const bool prints_stage = app.count("--emit") > 0;
-    if (call.check_only && (prints_stage || !call.output.result.empty()))
-        return "--check goes neither with --emit nor with -o";
-    if (!call.check_only && !prints_stage && call.output.result.empty())
-        return "say where to write the header with -o, or --check";
-    if (!call.output.depfile.empty() && (call.output.result.empty() || call.output.result == "-"))
-        return "--depfile needs -o FILE";
-    if (app.count("--targets-file") > 0 &&
-        (call.output.targets.empty() || call.output.targets == "-" ||
-         call.output.targets == call.output.result || call.output.targets == call.output.depfile))
-        return "--targets-file needs a file of its own";
-    if (app.count("--targets-file") > 0 && prints_stage && call.request.emit != "hpp")
-        return "--targets-file goes with the header, not with other stages";
-    return "";
+    driver::add_limit(app, "--max-state", call.request.limits.state_bytes, "most bytes of state");
+    driver::add_limit(app, "--max-code", call.request.limits.code_bytes,
+                      "most bytes of code, estimated, targets aside");
+    driver::add_limit(app, "--max-work", call.request.limits.operations,
+                      "most operations of the temporal part a step");
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
@@ -250,14 +172,17 @@ int compile_command(int argc, char** argv) {
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
         "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...,\n"
-        "etlc evaluate SPEC.etl --data FILE..., etlc explain SPEC.etl --trace FILE",
+        "etlc evaluate SPEC.etl --data FILE..., etlc explain SPEC.etl --trace FILE,\n"
+        "etlc incident FILE --spec SPEC.etl",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
-    add_compile_options(app, call);
+    driver::add_compile_options(app, call.request, call.output, call.check_only);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    if (const std::string mistake = mistake_in(call, app); !mistake.empty())
+    if (const std::string mistake =
+            driver::mistake_in_compile_call(app, call.request, call.output, call.check_only);
+        !mistake.empty())
         return complain(app, mistake);
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
@@ -363,11 +288,39 @@ int explain_command(int argc, char** argv) {
     });
 }
 
+int incident_command(int argc, char** argv) {
+    using driver::IncidentFormat;
+    Call call;
+    CLI::App app("Prints what the flight recorder of a monitor wrote: the steps around an alarm.",
+                 "etlc incident");
+    app.add_option("file", call.incident.file, "what write_incident() gave")
+        ->type_name("FILE")
+        ->required();
+    add_common_options(app, call, "--spec");
+    driver::add_choice<IncidentFormat>(
+        app, "--format", call.incident.format,
+        {{"table", IncidentFormat::table},
+         {"csv", IncidentFormat::csv},
+         {"trace", IncidentFormat::trace},
+         {"spec", IncidentFormat::spec}},
+        "trace: what was measured, as a .csv file for etlc run and etlc explain; spec: the spec "
+        "that reads that trace, with what was measured for inputs");
+    app.add_option("-o,--output", call.incident.output, "where to write it; - is standard output")
+        ->type_name("FILE")
+        ->capture_default_str();
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
+        const auto compiled = driver::compile(file, call.request, sink);
+        if (compiled && !sink.refused()) driver::incident(file, *compiled, call.incident, sink);
+    });
+}
+
 int execute(int argc, char** argv) {
     const std::string_view command = argc > 1 ? argv[1] : "";
     if (command == "run") return run_command(argc - 1, argv + 1);
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
+    if (command == "incident") return incident_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
 }

@@ -10,6 +10,8 @@
 #include <utility>
 #include <vector>
 
+#include "plan/recorder.hpp"
+
 namespace etlc::driver {
 
 /// A word that an option takes, and what it means.
@@ -24,6 +26,11 @@ std::string mistake_in_number(const std::string& found, std::uint64_t least, std
 
 /// Of a reason that is written into files: it has words and stands on one line.
 std::string mistake_in_reason(const std::string& found);
+
+/// Of BEFORE,AFTER,INCIDENTS: two numbers of steps or durations, and a number from 1 on.
+std::string mistake_in_recorder(const std::string& found);
+/// The same without a mistake.
+plan::RecorderRequest recorder(const std::string& text);
 
 /// Refuses other words.
 CLI::Validator one_of(std::vector<std::string> words);
@@ -63,6 +70,12 @@ CLI::Option* add_number(CLI::App& app, const std::string& name, Number& value,
         ->type_name("N")
         ->check(CLI::Validator(
             [=](const std::string& found) { return mistake_in_number(found, least, most); }, ""));
+}
+
+/// The same of a limit, whose default is what it is before.
+inline CLI::Option* add_limit(CLI::App& app, const std::string& name, std::uint64_t& limit,
+                              const std::string& help) {
+    return add_number(app, name, limit, help)->default_str(std::to_string(limit));
 }
 
 }  // namespace etlc::driver

@@ -75,6 +75,9 @@ std::vector<Member> own_members(const Context& context) {
         result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
     result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
                       "incomplete = 0;", ""});
+    if (plan.recorder)
+        result.push_back({"Recorder", "recorder", "the last steps, and incidents",
+                          "recorder.end_episode();", ""});
     return result;
 }
 
@@ -129,12 +132,14 @@ void print_types(Printer& out, const Context& context) {
     if (has_tables)
         types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
+    print_recorder_type(out, context);
     out.line();
     if (context.on_demand) return;
     print_doc(out, "What a step says about each predicate.");
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
     for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
+    if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
     out.close("};");
     out.line();
 }
@@ -171,6 +176,7 @@ void print_class_constants(Printer& out, const Context& context) {
         fmt::format("static constexpr uint32_t kDistanceElements = {};", cost.distance_operations),
         "target elements measured in a step");
     print_aligned(out, sizes, "///<");
+    print_recorder_constants(out, context);
     out.line();
 }
 
@@ -237,40 +243,17 @@ void declare_halves(Printer& out) {
     out.line();
 }
 
-/// restart_NAME() and what a monitor that repeats has counted.
-void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all) {
-    for (std::uint32_t m = 0; m < context.plan.monitors.size(); ++m) {
-        const plan::Monitor& monitor = context.plan.monitors[m];
-        if (monitor.restarts == check::Restarts::never) continue;
-        print_doc(out, fmt::format("From the next step on, {} is about that step; past operators "
-                                   "still see the whole trace.",
-                                   monitor.name));
-        out.open(fmt::format("void restart_{}() noexcept {{", monitor.name));
-        for (const Member& member : all)
-            if (member.begins_with == m) out.line(member.reset);
-        // What a repeating one has answered is returned before it is asked again.
-        if (context.on_demand && monitor.restarts == check::Restarts::on_request)
-            out.line("answers.{} = {}();", monitor.name, context.spelling.verdict);
-        out.close();
-        const auto alarms = context.names.alarms_member.find(m);
-        if (alarms != context.names.alarms_member.end()) {
-            print_doc(out,
-                      "How often it raised an alarm and was fulfilled, after which it goes on "
-                      "with the next step.");
-            out.line("uint32_t alarms_{}() const noexcept {{ return {}; }}", monitor.name,
-                     alarms->second);
-            out.line("uint32_t fulfilled_{}() const noexcept {{ return {}; }}", monitor.name,
-                     context.names.fulfilled_member.at(m));
-        }
-        out.line();
-    }
+std::string reset_words(const Context& context) {
+    std::string words = "A new episode";
+    if (!context.names.threshold_member.empty())
+        words += "; adaptive thresholds stay where they are";
+    if (context.plan.recorder) words += "; incidents stay, and those that wait for steps end here";
+    return words + ".";
 }
 
 void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
     print_constructors(out, context);
-    print_doc(out, context.names.threshold_member.empty()
-                       ? "A new episode."
-                       : "A new episode; adaptive thresholds stay where they are.");
+    print_doc(out, reset_words(context));
     out.open("void reset() noexcept {");
     for (const Member& member : all)
         if (!member.reset.empty() && member.begins_with == plan::kNone) out.line(member.reset);
@@ -302,6 +285,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
                           context.on_demand ? "that was asked for " : ""));
     out.line("uint32_t missing_steps() const noexcept { return incomplete; }");
     out.line();
+    print_recorder_interface(out, context);
 }
 
 // ---- what is private

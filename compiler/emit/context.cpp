@@ -74,7 +74,8 @@ std::map<plan::Key, std::string> unseen_ends(const plan::Plan& plan, const Names
 
 std::string_view Context::step_qualifier() const {
     constexpr std::uint64_t kFewOperations = 256;
-    const bool small = plan.cost.distance_operations == 0 && plan.cost.operations <= kFewOperations;
+    const bool small = plan.cost.distance_operations == 0 &&
+                       plan.cost.operations <= kFewOperations && !plan.recorder;
     return small ? "ETLMON_INLINE " : "";
 }
 

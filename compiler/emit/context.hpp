@@ -14,6 +14,7 @@
 #include "plan/program/budget.hpp"
 #include "plan/program/demand.hpp"
 #include "plan/program/dependents.hpp"
+#include "plan/recorder.hpp"
 
 namespace etlc::emit {
 
@@ -35,6 +36,7 @@ struct Context {
     plan::Dependents dependents;
     std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
     std::map<plan::Key, std::string> ends = unseen_ends(plan, names);
+    plan::RecorderColumns recorded = plan::recorder_columns(plan);
 
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
@@ -104,11 +106,30 @@ std::string reading_declaration(const Context& context, std::uint32_t reading);
 /// Boolean: always.
 std::string open_monitors(const Context& context, const std::vector<std::size_t>& monitors);
 
+/// At the end of a step: where monitors that restart stand. A repeating one goes on with the next
+/// step after a final verdict, which is a field of `verdicts`.
+void print_progress(Printer& out, const Context& context, std::string_view verdicts);
+
 /// The function of the runtime that decides the predicate: "is_at_most".
 const char* comparison_name(const check::Predicate& predicate);
 /// observe_P, set_threshold_P and what goes with them.
 void print_adaptive_interface(Printer& out, const Context& context);
 void print_adaptation_constants(Printer& out, const Context& context);
+
+// The flight recorder, where the plan has one; nothing else prints anything then.
+/// "etlmon::RecorderRow<6, 0, 4>"
+std::string recorder_row(const Context& context);
+void print_recorder_type(Printer& out, const Context& context);
+void print_recorder_constants(Printer& out, const Context& context);
+void print_recorder_interface(Printer& out, const Context& context);
+/// What this step's row holds of a predicate whose distance or expression is `delta`, and of a
+/// bool.
+void print_recorded(Printer& out, const Context& context, check::Index predicate,
+                    const std::string& delta);
+void print_recorded_flag(Printer& out, const Context& context, check::Index input,
+                         const std::string& flag);
+/// At the end of a step, with the verdicts in `verdicts`.
+void print_record(Printer& out, const Context& context, const std::string& verdicts);
 
 /// A data member of the class: its declaration and how reset() sets it.
 struct Member {
@@ -121,6 +142,8 @@ struct Member {
     std::uint32_t begins_with = plan::kNone;
 };
 std::vector<Member> members(const Context& context);
+/// restart_NAME(), and what a repeating monitor has counted.
+void print_restarts(Printer& out, const Context& context, const std::vector<Member>& all);
 /// Those of readings and streams: the plan says what they are.
 std::vector<Member> temporal_members(const Context& context);
 std::vector<Member> threshold_members(const Context& context);

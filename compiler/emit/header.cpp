@@ -61,6 +61,7 @@ std::set<std::string> runtime_headers(const Context& context) {
     if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
         headers.insert(words.windows);
     if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");
+    if (plan.recorder) headers.insert("temporal/recorder");
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
         if (!reading.count.empty()) headers.insert("temporal/pending");

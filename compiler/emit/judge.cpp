@@ -43,37 +43,6 @@ void print_reading_while_open(Printer& out, const Context& context, std::uint32_
     out.close();
 }
 
-/// Where a monitor that restarts stands: a repeating one goes on with the next step after a final
-/// verdict, which `verdict` names.
-void print_progress(Printer& out, const Context& context, std::size_t m,
-                    const std::string& verdict) {
-    const auto position = context.names.position_member.find(m);
-    const bool counts_steps = position != context.names.position_member.end();
-    const auto alarms = context.names.alarms_member.find(m);
-    if (alarms == context.names.alarms_member.end()) {
-        if (counts_steps) print_wrapped(out, counted(position->second));
-        return;
-    }
-    const auto open = context.names.open_local.find(m);
-    out.gap();
-    print_comment(out, "//",
-                  fmt::format("{} has decided: it goes on with the next step",
-                              context.plan.monitors[m].name));
-    out.open(fmt::format("if ({}{}.final()) {{",
-                         open == context.names.open_local.end() ? "" : open->second + " && ",
-                         verdict));
-    out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, alarms->second,
-             context.names.fulfilled_member.at(m));
-    print_wrapped(out, counted("count"));
-    out.line("restart_{}();", context.plan.monitors[m].name);
-    if (counts_steps) {
-        out.close(fmt::format("}} else if ({} != UINT32_MAX) {{", position->second));
-        out.indent();
-        out.line("++{};", position->second);
-    }
-    out.close();
-}
-
 void print_readings(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     if (plan.readings.empty()) return;
@@ -94,8 +63,6 @@ void print_readings(Printer& out, const Context& context) {
     for (const auto& [m, name] : context.names.verdict_member)
         print_wrapped(out,
                       fmt::format("{} = {};", name, prefix_verdict(context, plan.monitors[m])));
-    for (const auto& [m, name] : context.names.verdict_member)
-        print_progress(out, context, m, name);
     out.close();
 }
 
@@ -116,8 +83,6 @@ void print_open_verdicts(Printer& out, const Context& context) {
                 out, fmt::format("{}answers.{} = etlmon::prefix_verdict({});", if_open(context, m),
                                  monitor.name, context.names.readings[monitor.reading].local));
     }
-    for (std::size_t m = 0; m < context.plan.monitors.size(); ++m)
-        print_progress(out, context, m, "answers." + context.plan.monitors[m].name);
 }
 
 }  // namespace
@@ -130,6 +95,7 @@ void print_advance(Printer& out, const Context& context) {
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.line("bool missing = false;");
+    if (plan.recorder) out.line("{} row;", recorder_row(context));
     print_atoms_on_demand(out, context);
     out.gap();
     for (const auto& [m, open] : context.names.open_local) {
@@ -146,6 +112,8 @@ void print_advance(Printer& out, const Context& context) {
     out.gap();
     print_open_verdicts(out, context);
     print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
+    print_record(out, context, "answers");
+    print_progress(out, context, "answers");
     if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return answers;");
     out.close();
@@ -154,7 +122,7 @@ void print_advance(Printer& out, const Context& context) {
 void print_judge(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     const bool reads_atoms =
-        !context.names.predicate_atom.empty() || !context.names.flag_atom.empty();
+        !context.names.predicate_atom.empty() || !context.names.flag_atom.empty() || plan.recorder;
     open_half(out, context, "Verdicts",
               fmt::format("judge({}const Atoms& now)", reads_atoms ? "" : "[[maybe_unused]] "));
     out.line("using etlmon::max_of;");
@@ -167,9 +135,8 @@ void print_judge(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out,
                       fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
-    if (!plan.has_sliding)
-        for (std::size_t m = 0; m < plan.monitors.size(); ++m)
-            print_progress(out, context, m, "verdicts." + plan.monitors[m].name);
+    print_record(out, context, "verdicts");
+    print_progress(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position"));
     out.line("return verdicts;");
     out.close();

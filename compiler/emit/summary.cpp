@@ -61,6 +61,11 @@ std::string about(const plan::Monitor& monitor) {
     return "the prefix";
 }
 
+std::string recorder_words(const plan::Recorder& recorder) {
+    return fmt::format("{} x ({} + 1 + {}) steps", recorder.incidents, recorder.before,
+                       recorder.after);
+}
+
 std::vector<Row> monitor_rows(const plan::Plan& plan) {
     const bool both_layouts = laid_out_by_machine(plan);
     std::vector<Row> rows{{"monitor", "about", "state B", "targets B"}};
@@ -71,6 +76,9 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
         rows.push_back(
             cost_row({monitor.name, about(monitor)}, plan.monitor_costs[m], both_layouts));
     }
+    if (plan.recorder)
+        rows.push_back(cost_row({"recorder", recorder_words(*plan.recorder)},
+                                {.state_bytes = plan::recorder_bytes(plan)}, both_layouts));
     rows.push_back(cost_row({"all together", ""}, plan.cost, both_layouts));
     return rows;
 }

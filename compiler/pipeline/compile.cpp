@@ -11,7 +11,9 @@ std::optional<Compiled> compile(check::Model model, const Options& options, diag
     opt::optimise(*result.program);
     auto plan =
         plan::plan(*result.program, options.limits, sink, options.values, options.targets_as);
-    if (!plan) return std::nullopt;
+    if (plan && options.recorder)
+        plan::add_recorder(*plan, *options.recorder, options.limits, sink);
+    if (!plan || sink.has_errors()) return std::nullopt;
     result.plan = std::move(*plan);
     return result;
 }

@@ -11,6 +11,7 @@
 #include "diag/diag.hpp"
 #include "ir/lower.hpp"
 #include "plan/plan.hpp"
+#include "plan/recorder.hpp"
 
 namespace etlc::pipeline {
 
@@ -19,6 +20,7 @@ struct Options {
     plan::Limits limits;
     check::Values values = check::Values::robustness;
     plan::Storage targets_as = plan::Storage::f32;
+    std::optional<plan::RecorderRequest> recorder;  ///< of the class; nothing else has one
 };
 
 /// A spec through all stages. The model stays where it is: graph and plan point to it.

@@ -76,6 +76,13 @@ struct NarrowSet {
     std::vector<Cut> cuts;  ///< of the distance: where some predicate's comparison turns
 };
 
+/// The flight recorder of the class, in steps; see recorder.hpp.
+struct Recorder {
+    std::uint32_t before = 0;
+    std::uint32_t after = 0;
+    std::uint32_t incidents = 0;
+};
+
 struct Plan {
     const check::Model* model = nullptr;
     /// The program's graph, and what readings owe from one step to the next: what `node` means.
@@ -92,6 +99,7 @@ struct Plan {
     std::vector<Monitor> monitors;
     bool has_sliding = false;
     bool counts_steps = false;  ///< some part needs the number of the step
+    std::optional<Recorder> recorder;
     Cost cost;
     std::vector<Cost> monitor_costs;
 };

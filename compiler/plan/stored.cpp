@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "etlmon/distance/checksum.hpp"
+#include "etlmon/checksum.hpp"
 #include "etlmon/distance/layout.hpp"
 #include "etlmon/distance/search.hpp"
 #include "plan/kernels.hpp"

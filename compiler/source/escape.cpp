@@ -77,6 +77,13 @@ std::string json_string(std::string_view text) {
     return '"' + result + '"';
 }
 
+std::string csv_cell(std::string_view text) {
+    if (text.find_first_of(",\"\n") == text.npos) return std::string(text);
+    std::string quoted = "\"";
+    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+    return quoted + "\"";
+}
+
 std::string dot_string(std::string_view text) {
     std::string result;
     for (const char c : visible(text)) {

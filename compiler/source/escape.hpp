@@ -24,6 +24,9 @@ std::string code_line(std::string_view text);
 /// For JSON: in double quotes; bytes that are not UTF-8 become U+FFFD.
 std::string json_string(std::string_view text);
 
+/// A cell of a CSV row: in quotes where it has to be.
+std::string csv_cell(std::string_view text);
+
 /// For DOT: in double quotes.
 std::string dot_string(std::string_view text);
 

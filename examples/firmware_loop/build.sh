@@ -1,5 +1,5 @@
 #!/bin/sh
-# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and both programs for
+# build.sh ETLC RUNTIME OUT BOARD...: compiles the specs to headers and the programs for
 # each board, into the folder OUT. RUNTIME: the folder that holds etlmon/, unless ETLC_OPTIONS is
 # --standalone. BOARD: cortex_m4, rv32 (QEMU's mps2-an386 and virt machines), host.
 set -eu
@@ -10,6 +10,8 @@ mkdir -p "$out"
 for spec in grasp dock hover belt gauge; do
     "$etlc" "$here/$spec.etl" ${ETLC_OPTIONS:-} -o "$out/$spec.hpp"
 done
+"$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --recorder 5,3,4 --namespace dock_recorded \
+    -o "$out/dock_recorded.hpp"
 includes="-I$here -I$out -I$runtime"
 firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti
   -fno-math-errno -fno-threadsafe-statics -fno-asynchronous-unwind-tables -fstack-usage"
@@ -19,7 +21,7 @@ rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp3
   $firmware $includes"
 for board in "$@"; do
     source=$here/boards/$board
-    for program in loop interrupts; do
+    for program in loop interrupts recorder; do
         sources="$here/$program.cpp $source.cpp" image=$out/${board}_$program
         case $board in
         host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror \

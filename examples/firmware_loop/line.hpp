@@ -1,8 +1,10 @@
 // Lines of text that need no library.
-// Takes: a name, numbers, verdicts. Gives: one line to the board: the name, numbers in hexadecimal,
-// of a verdict its status, lower bound, robustness and upper bound, as the bits of the floats.
+// Takes: a name, numbers, verdicts, bytes. Gives: one line to the board: the name, numbers in
+// hexadecimal, of a verdict its status, lower bound, robustness and upper bound, as the bits of the
+// floats.
 #pragma once
 
+#include <stddef.h>
 #include <stdint.h>
 
 #include "board.hpp"
@@ -14,7 +16,11 @@ public:
     }
     void number(uint32_t x) noexcept {
         put(' ');
-        for (int shift = 28; shift >= 0; shift -= 4) put("0123456789abcdef"[(x >> shift) & 15]);
+        for (int shift = 28; shift >= 0; shift -= 4) digit(x >> shift);
+    }
+    void bytes(const uint8_t* x, size_t size) noexcept {
+        put(' ');
+        for (size_t i = 0; i < size; ++i) digit(x[i] >> 4), digit(x[i]);
     }
     template <class Verdict>
     void verdict(const Verdict& verdict) noexcept {
@@ -30,6 +36,7 @@ public:
     }
 
 private:
+    void digit(uint32_t x) noexcept { put("0123456789abcdef"[x & 15]); }
     void put(char c) noexcept { text_[length_++] = c; }
     static uint32_t bits(const float& x) noexcept {
         uint32_t b = 0;

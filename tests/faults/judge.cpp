@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <cstdlib>
 
-#include "etlmon/distance/checksum.hpp"
+#include "etlmon/checksum.hpp"
 
 namespace etlc::faults {
 

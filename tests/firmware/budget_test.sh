@@ -159,4 +159,6 @@ done
 budget narrow --targets-as f16
 budget narrow --targets-as i8
 budget searched --inline-targets 1000
-[ "$checks" -ge 26 ] || fail "only $checks objects were looked at"
+budget adaptive --recorder 3,2,2
+budget scalars --values boolean --recorder 0,0,1
+[ "$checks" -ge 30 ] || fail "only $checks objects were looked at"

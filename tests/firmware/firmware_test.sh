@@ -52,6 +52,24 @@ for board in cortex_m4 rv32; do
         fail "$board: interrupts change verdicts, or hardly any came during a step"
 done
 
+# What a flight recorder writes: the same bytes everywhere, which etlc incident reads.
+for board in cortex_m4 rv32; do
+    timeout 120 sh "$loop/run.sh" "$box" "$board" recorder >/dev/null
+done
+cmp "$box/cortex_m4_recorder.txt" "$box/rv32_recorder.txt" || fail "the boards record otherwise"
+if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then
+    sh "$loop/run.sh" "$box" host recorder >/dev/null
+    cmp "$box/cortex_m4_recorder.txt" "$box/host_recorder.txt" || fail "the host records otherwise"
+fi
+for incident in 0 1 2 3; do
+    awk -v n="0000000$incident" '$1 == "incident" && $2 == n { print $3 }' \
+        "$box/rv32_recorder.txt" | sed 's/../\\x&/g' | tr -d '\n' >"$box/bytes"
+    printf "$(cat "$box/bytes")" >"$box/incident"
+    "$etlc" incident "$box/incident" --spec "$loop/dock.etl" >"$box/incident.txt"
+    grep -q "^incident $incident of dock, episode [0-7]: alarm of " "$box/incident.txt" ||
+        fail "incident $incident is about something else"
+done
+
 # Each monitor alone, as a program would compile it.
 objects() {  # PREFIX FLAG...: what the object of a monitor refers to and holds
     local prefix=$1

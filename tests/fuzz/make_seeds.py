@@ -54,6 +54,22 @@ for name, text in {
 }.items():
     seed("fuzz_csv", name, text.encode())
 
+def incident(words, row_bytes, rows, alarm, size):
+    """The head of an incident, and `size` bytes of rows; the target makes the checksum."""
+    length = 96 + size + 8
+    return (b"\x89ETLINC\n" + struct.pack("<II4Q12I", 1, length, 1, 2, 3, 4, words, row_bytes, 4, 0,
+                                            0, 0, 0, rows, alarm, 0, 0, 0)
+            + bytes(range(size)) + bytes(8))
+
+for name, data in {
+    "whole": incident(3, 2, 3, 2, 64),  # rows of 16 bytes, and what fills 32
+    "long": incident(3, 2, 1000, 2, 64),
+    "wide": incident(0xffffffff, 0xffffffff, 1, 0, 32),
+    "late": incident(3, 2, 3, 3, 64),
+    "empty": incident(1, 1, 0, 0, 0),
+}.items():
+    seed("fuzz_incident", name, data)
+
 ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, \
 "scores": [0.1, "inf"],
  "predicate": "min l2(z, goal) <= ", "truth": "array", "targets": {"goal": "0123456789abcdef"}"""

@@ -42,8 +42,8 @@ for x in 0.5 0.75 1; do printf 'x,y\n%s,0\n' $x >demonstration_$x.csv; done
 "$etlc" calibrate base.etl --data demonstration_*.csv -o thresholds.json >report.txt 2>&1 ||
   { cat report.txt >&2; exit 1; }
 header() {
-    "$etlc" "$1" --thresholds thresholds.json "${limits[@]}" -o "$2" "${@:3}" 2>words.txt ||
-      { head -20 words.txt >&2; exit 1; }
+    "$etlc" "$1" --thresholds thresholds.json "${limits[@]}" --recorder 1,1,1 -o "$2" "${@:3}" \
+        2>words.txt || { head -20 words.txt >&2; exit 1; }
 }
 
 # ---- the identifiers

@@ -32,18 +32,18 @@ silent() {  # COMPILER WARNING...
         -o "$box/use.o" || fail "$1 warns of $spec, values $values, targets as $targets"
 }
 
-while read -r spec targets; do
+while read -r spec targets options; do
     for values in robustness boolean; do
         "$etlc" "$source/$spec" --values "$values" --targets-as "$targets" --namespace used \
-            -o "$box/monitor.hpp" 2>/dev/null
+            $options -o "$box/monitor.hpp" 2>/dev/null
         silent "$gxx" "${gcc_warnings[@]}"
         silent "$clangxx" "${clang_warnings[@]}"
     done
 done <<'END'
 examples/dubins/dubins.etl f32
 examples/firmware_loop/grasp.etl i8
-tests/monitor/demand.etl f32
-tests/spec/ok/adaptive.etl f32
+tests/monitor/demand.etl f32 --recorder 4,2,2
+tests/spec/ok/adaptive.etl f32 --recorder 0,0,1
 tests/spec/ok/inputs.etl i8
 tests/monitor/cases/pending.etl f32
 tests/monitor/cases/shared.etl f32

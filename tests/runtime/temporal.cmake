@@ -1,7 +1,8 @@
 # The temporal operators, and thresholds that move: under sanitizers, then where flags or another
 # compiler could change what floats mean. Windows and formulas work on integers alone: what the
 # sanitizers find no fault in is the same everywhere.
-set(float_sources test_adaptation.cpp test_temporal_truth.cpp test_temporal_values.cpp)
+set(float_sources
+  test_adaptation.cpp test_recorder.cpp test_temporal_truth.cpp test_temporal_values.cpp)
 set(integer_sources test_temporal_costs.cpp test_temporal_formulas.cpp test_temporal_windows.cpp)
 set(temporal_warnings -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror)
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "data/arrays/array.hpp"
-#include "etlmon/distance/checksum.hpp"
+#include "etlmon/checksum.hpp"
 
 namespace etlc::data {
 namespace {

@@ -12,6 +12,8 @@
 #include "driver/progress.hpp"
 #include "driver/run/summary.hpp"
 #include "episodes/replay.hpp"
+#include "plan/recorder.hpp"
+#include "source/escape.hpp"
 
 namespace etlc::driver {
 
@@ -21,14 +23,6 @@ using etlmon::Verdict;
 
 constexpr std::size_t kBufferBytes = 1U << 16U;
 constexpr std::uint64_t kStepsPerReport = 4096;
-
-/// A cell of a CSV row: in quotes where it has to be.
-std::string cell(const std::string& text) {
-    if (text.find_first_of(",\"\n") == std::string::npos) return text;
-    std::string quoted = "\"";
-    for (const char c : text) quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-    return quoted + "\"";
-}
 
 class Run {
 public:
@@ -67,16 +61,9 @@ private:
         text_ = "step,monitor,lower,robustness,upper,status,final,position";
         if (plan_.model->step_seconds > 0) text_ += ",time";
         if (request_.distances)
-            for (const check::Index p : plan_.predicates) text_ += "," + cell(column_of(p));
+            for (const check::Index p : plan_.predicates)
+                text_ += "," + source::csv_cell("distance_" + plan::column_name(*plan_.model, p));
         text_ += "\n";
-    }
-
-    /// "distance_near"; of a comparison without a name, "distance_x - y".
-    std::string column_of(check::Index p) const {
-        const check::Predicate& predicate = plan_.model->predicates[p];
-        return "distance_" + (predicate.name.empty()
-                                  ? check::print(*plan_.model, predicate.expression)
-                                  : predicate.name);
     }
 
     bool step_through_trace() {

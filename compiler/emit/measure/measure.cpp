@@ -115,6 +115,7 @@ private:
             const std::string range =
                 context_.literal(plan::missing_value(predicate, context_.plan.values));
             out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
+            print_recorded(out_, context_, p, delta);
             const std::string otherwise = range == "etlmon::kPerhaps" ? "" : ", " + range;
             print_wrapped(
                 out_, fmt::format("return etlmon::{}({}, {}{});", comparison_name(predicate), delta,
@@ -130,6 +131,7 @@ private:
                                         predicate.upper_bound() ? "at_most" : "at_least", known,
                                         threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
+        print_recorded(out_, context_, p, delta);
     }
 
     /// What stands for a predicate whose sample is not there.

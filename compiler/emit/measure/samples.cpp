@@ -68,6 +68,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
+        print_recorded_flag(out, context, i, "in." + input.name);
         out.line("return etlmon::truth_of(in.{}{});", input.name, missing);
         out.close("});");
         return;
@@ -76,7 +77,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.line("now.{} = etlmon::value_of(in.{}{});", context.names.flag_atom.at(i), input.name,
                  missing);
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
-        return;
+        return print_recorded_flag(out, context, i, "in." + input.name);
     }
     const std::string& word = context.names.input_buffer.at(i);
     out.line("const uint32_t {} = in.{}.value();", word, input.name);
@@ -87,6 +88,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(local + " == nullptr"));
+        print_recorded_flag(out, context, i, held_flag(local));
         print_wrapped(out,
                       fmt::format("return etlmon::truth_of({}{});", held_flag(local), missing));
         out.close("});");
@@ -95,6 +97,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     print_wrapped(out, fmt::format("now.{} = etlmon::value_of({}{});",
                                    context.names.flag_atom.at(i), held_flag(local), missing));
     out.line(missed(local + " == nullptr"));
+    print_recorded_flag(out, context, i, held_flag(local));
 }
 
 void print_scalar(Printer& out, const Context& context, Index i) {

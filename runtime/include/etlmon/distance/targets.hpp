@@ -6,7 +6,7 @@
 // than that of any other.
 #pragma once
 
-#include "etlmon/distance/checksum.hpp"
+#include "etlmon/checksum.hpp"
 #include "etlmon/distance/kernel.hpp"
 
 namespace etlmon {

@@ -1,0 +1,95 @@
+#include "driver/compile_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+
+#include "check/names/reserved.hpp"
+#include "driver/options.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+/// Why the generated code cannot be in this namespace, a or a::b; empty where it can.
+std::string mistake_in_namespace(const std::string& name) {
+    bool is_outermost = true;
+    for (std::size_t begin = 0; begin != std::string::npos; is_outermost = false) {
+        const std::size_t end = name.find("::", begin);
+        const std::string part = name.substr(begin, end - begin);
+        begin = end == std::string::npos ? end : end + 2;
+        const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+        const bool is_name = !part.empty() &&
+                             std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
+                             std::all_of(part.begin(), part.end(), in_names);
+        if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
+        if (const auto why = check::why_forbidden(part, is_outermost))
+            return fmt::format("'{}' {}; another name would do, for example '{}'", part, *why,
+                               check::allowed_name(part, "monitors", is_outermost));
+    }
+    return "";
+}
+
+std::string emit_help() {
+    std::string text = "print a stage instead of the header:";
+    for (const auto& [name, summary] : emittable())
+        text += fmt::format("\n{:>30} {}", name + ":", summary);
+    return text;
+}
+
+}  // namespace
+
+void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, bool& check_only) {
+    std::vector<std::string> stages;
+    for (const auto& [name, summary] : emittable()) stages.push_back(name);
+    app.add_option("-o,--output", output.result, "where to write the result; - is standard output")
+        ->type_name("FILE");
+    app.add_flag("--check", check_only, "diagnostics only");
+    app.add_option("--emit", request.emit, emit_help())->type_name("")->check(one_of(stages));
+    app.add_flag("--standalone{portable}", request.standalone,
+                 "paste the runtime in: one file to copy into firmware, in standard C++ alone; "
+                 "--standalone=host: with vectors, chosen by the CPU where there is a choice")
+        ->check(one_of({"portable", "host"}));
+    app.add_option("--namespace", request.name_space,
+                   "of the generated code (default: the spec's name)")
+        ->type_name("NAME")
+        ->check(
+            CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
+    app.add_option_function<std::string>(
+           "--recorder", [&request](const std::string& text) { request.recorder = recorder(text); },
+           "keep the steps around each alarm: BEFORE,AFTER,INCIDENTS, as 2s,1s,4 or 40,20,4; "
+           "etlc incident prints what the class writes")
+        ->type_name("B,A,N")
+        ->check(CLI::Validator(mistake_in_recorder, ""));
+    add_limit(app, "--inline-targets", request.limits.inline_target_bytes,
+              "target sets of more bytes are not spelled out in the header, but go to a file "
+              "beside it");
+    app.add_option("--targets-file", output.targets,
+                   "that file (default: STEM.targets.bin beside STEM.hpp, where something goes to "
+                   "it); named, it is always written, perhaps empty")
+        ->type_name("FILE");
+    app.add_option("--depfile", output.depfile,
+                   "also write what the output depends on, for make and ninja")
+        ->type_name("FILE");
+}
+
+std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
+                                    const OutputPaths& output, bool check_only) {
+    const bool prints_stage = app.count("--emit") > 0;
+    if (check_only && (prints_stage || !output.result.empty()))
+        return "--check goes neither with --emit nor with -o";
+    if (!check_only && !prints_stage && output.result.empty())
+        return "say where to write the header with -o, or --check";
+    if (!output.depfile.empty() && (output.result.empty() || output.result == "-"))
+        return "--depfile needs -o FILE";
+    if (app.count("--targets-file") > 0 &&
+        (output.targets.empty() || output.targets == "-" || output.targets == output.result ||
+         output.targets == output.depfile))
+        return "--targets-file needs a file of its own";
+    if (app.count("--targets-file") > 0 && prints_stage && request.emit != "hpp")
+        return "--targets-file goes with the header, not with other stages";
+    return "";
+}
+
+}  // namespace etlc::driver

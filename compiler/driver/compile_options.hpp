@@ -1,0 +1,20 @@
+// The options of `etlc SPEC.etl -o FILE`: what is made of the spec, and where it goes.
+// Gives: a request and paths. Keeps true: a call that contradicts itself is refused with what is
+// wrong about it.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <string>
+
+#include "driver/compile.hpp"
+#include "driver/output.hpp"
+
+namespace etlc::driver {
+
+void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, bool& check_only);
+
+/// The call's own mistakes that CLI11 cannot see; empty where there are none.
+std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
+                                    const OutputPaths& output, bool check_only);
+
+}  // namespace etlc::driver

@@ -1,0 +1,123 @@
+// The flight recorder in the class: its type, its calls, and what a step puts into it.
+#include <fmt/ranges.h>
+
+#include <algorithm>
+
+#include "emit/context.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+
+/// The row that this step fills.
+const char* row_of(const Context& context) {
+    return context.on_demand ? "row" : "now.row_";
+}
+
+std::string steps(std::uint32_t n) {
+    return diag::counted(n, "step");
+}
+
+}  // namespace
+
+std::string recorder_row(const Context& context) {
+    return fmt::format("etlmon::RecorderRow<{}, {}, {}>", context.recorded.figures,
+                       context.recorded.bools.size(), context.recorded.monitors);
+}
+
+void print_recorder_type(Printer& out, const Context& context) {
+    if (!context.plan.recorder) return;
+    const plan::Recorder& recorder = *context.plan.recorder;
+    print_doc(out, fmt::format("Of each step {}, {}, {}; {} before an alarm, {} after it, {}.",
+                               diag::counted(context.recorded.figures, "figure"),
+                               diag::counted(context.recorded.bools.size(), "bool"),
+                               diag::counted(context.recorded.monitors, "verdict"),
+                               steps(recorder.before), steps(recorder.after),
+                               diag::counted(recorder.incidents, "incident")));
+    print_wrapped(out, fmt::format("using Recorder = etlmon::Recorder<{}, {}, {}, {}>;",
+                                   recorder_row(context), recorder.before, recorder.after,
+                                   recorder.incidents));
+}
+
+void print_recorder_constants(Printer& out, const Context& context) {
+    if (!context.plan.recorder) return;
+    print_doc(out, "Incidents: what their rows hold, as XXH64, and the most bytes of one.");
+    out.line("static constexpr uint64_t kColumnsHash = 0x{:016x}u;",
+             plan::columns_hash(context.plan));
+    out.line("static constexpr size_t kIncidentBytes = {};", plan::incident_bytes(context.plan));
+}
+
+void print_recorder_interface(Printer& out, const Context& context) {
+    if (!context.plan.recorder) return;
+    const plan::Recorder& recorder = *context.plan.recorder;
+    print_doc(out, fmt::format("Incidents that are complete: an alarm that began, the {} before it "
+                               "and the {} after it. One is complete {} after its alarm, and does "
+                               "not change from then on.",
+                               steps(recorder.before), steps(recorder.after),
+                               steps(recorder.before + 1 + recorder.after)));
+    out.line("uint32_t incidents() const noexcept { return recorder.complete(); }");
+    print_doc(out, "Alarms that began while there was no room for another incident; saturates.");
+    out.line("uint32_t lost_incidents() const noexcept { return recorder.lost(); }");
+    print_doc(out, "Completes those that wait for steps, with the steps that there are.");
+    out.line("void close_incidents() noexcept { recorder.close(); }");
+    print_doc(out, "Makes room for new ones.");
+    out.line("void forget_incidents() noexcept { recorder.forget(); }");
+    print_doc(out,
+              "Calls sink(const uint8_t* bytes, size_t size) for all bytes of incident n, for "
+              "a file that `etlc incident` reads; false where there is no such incident.");
+    out.line("template <class Sink>");
+    out.open("bool write_incident(uint32_t n, Sink&& sink) const {");
+    print_wrapped(out,
+                  "return recorder.write(n, {kSpecHash, kDataHash, kThresholdsHash, "
+                  "kColumnsHash}, sink);");
+    out.close();
+    out.line();
+}
+
+void print_recorded(Printer& out, const Context& context, Index predicate,
+                    const std::string& delta) {
+    if (!context.plan.recorder) return;
+    const auto column =
+        std::find_if(context.recorded.predicates.begin(), context.recorded.predicates.end(),
+                     [&](const auto& of) { return of.predicate == predicate; });
+    constexpr std::string_view kDelta = ".delta";
+    if (column->nearest) {
+        const std::string measured = delta.substr(0, delta.size() - kDelta.size());
+        print_wrapped(out, fmt::format("{}.figures({}, {}, {}.nearest);", row_of(context),
+                                       column->figure, delta, measured));
+    } else {
+        print_wrapped(out,
+                      fmt::format("{}.figure({}, {});", row_of(context), column->figure, delta));
+    }
+    if (column->threshold)
+        print_wrapped(out, fmt::format("{}.figure({}, threshold_{}());", row_of(context),
+                                       column->figure + (column->nearest ? 2 : 1),
+                                       context.model.predicates[predicate].name));
+}
+
+void print_recorded_flag(Printer& out, const Context& context, Index input,
+                         const std::string& flag) {
+    if (!context.plan.recorder) return;
+    const std::vector<Index>& bools = context.recorded.bools;
+    const auto at = std::find(bools.begin(), bools.end(), input) - bools.begin();
+    print_wrapped(out, fmt::format("{}.flag({}, {});", row_of(context), at, flag));
+}
+
+void print_record(Printer& out, const Context& context, const std::string& verdicts) {
+    if (!context.plan.recorder) return;
+    std::vector<std::string> statuses;
+    for (const plan::Monitor& monitor : context.plan.monitors) {
+        // After the trace a verdict that finish() repeats is no alarm of another cycle.
+        const bool repeated =
+            context.plan.has_sliding && monitor.restarts != check::Restarts::never;
+        statuses.push_back(fmt::format("{}{}.{}.status{}", repeated ? "finishes == 0 ? " : "",
+                                       verdicts, monitor.name, repeated ? " : 0u" : ""));
+    }
+    print_wrapped(out,
+                  fmt::format("const uint32_t statuses[] = {{{}}};", fmt::join(statuses, ", ")));
+    out.line("recorder.record({}, statuses);", row_of(context));
+}
+
+}  // namespace etlc::emit

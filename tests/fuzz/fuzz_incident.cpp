@@ -1,0 +1,30 @@
+// Files of incidents: any bytes are an incident whose rows have one shape, or a message. The
+// checksum is made right, since hardly any other bytes come further than it.
+#include "data/files/hash.hpp"
+#include "data/incident.hpp"
+#include "fuzz_target.hpp"
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* found, std::size_t size) {
+    using namespace etlc;
+    std::string bytes(fuzz::text(found, size));
+    constexpr std::size_t kSum = 8;
+    if (size > kSum) {
+        const std::size_t content = size - kSum;
+        const std::uint64_t sum = data::xxh64(std::string_view(bytes).substr(0, content));
+        for (std::size_t i = 0; i < kSum; ++i)
+            bytes[content + i] = static_cast<char>(sum >> (8 * i));
+    }
+    const auto incident = data::parse_incident(bytes);
+    if (!incident) {
+        fuzz::require_printable(incident.failure().message);
+        return 0;
+    }
+    fuzz::require(incident->alarm < incident->rows.size(), "the alarm is one of the rows");
+    for (const data::Incident::Row& row : incident->rows) {
+        fuzz::require(row.figures.size() == incident->rows.front().figures.size(),
+                      "rows have one shape");
+        fuzz::require(row.bytes.size() == incident->rows.front().bytes.size(),
+                      "rows have one shape");
+    }
+    return 0;
+}

@@ -1,0 +1,156 @@
+#!/usr/bin/env bash
+# recorder_test.sh ETLC VALUES CXX FLAG...: a class with a flight recorder, stepped over a trace;
+# `etlc incident` prints of what it wrote the distances and the verdicts that `etlc run` has of the
+# same steps. Its trace and its spec give the same distances again. Damaged files are refused.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+runtime=$here/../../runtime/include
+etlc=$1 values=$2 cxx=$3
+shift 3
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+cat >drive.etl <<'END'
+spec drive;
+rate 10 Hz;
+input z : f32[3];
+input x : f32;
+input held : bool;
+input armed : bool hold 2;
+target goal = [[1, 0, 0], [0, 1, 0]];
+target wall = [[0, 0, 1]];
+predicate at_goal = min l2(z, goal) <= 0.4;
+predicate at_wall = l2(z, wall) <= 0.35;
+predicate fast = x * x > 0.81;
+monitor safe = G !at_wall;
+monitor calm = G (x <= 0.97 || held);
+monitor reach = F (at_goal && armed);
+sliding monitor slow = G[0, 0.2 s] !fast;
+END
+"$etlc" drive.etl --values "$values" --recorder 0.45s,3,6 -o drive.hpp
+grep -q 'etlmon::Recorder<etlmon::RecorderRow<6, 2, 4>, 5, 3, 6>' drive.hpp  # 0.45 s are 5 steps
+
+awk 'BEGIN {
+  srand(5)
+  print "z[0],z[1],z[2],x,held,armed"
+  for (step = 0; step < 120; ++step) {
+    print gap(rand(), 9) "," rand() "," rand() "," gap(rand(), 8) "," gap(int(2 * rand()), 7) "," \
+          gap(int(2 * rand()), 3)
+  }
+}
+function gap(x, n) { return rand() < 1 / n ? "" : x }' >drive.csv
+
+cat >drive.cpp <<'END'
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "drive.hpp"
+
+namespace {
+
+/// The next cell of a line; empty: missing.
+std::string next(const char*& at) {
+    const char* begin = at;
+    at += std::strcspn(at, ",\n");
+    const std::string cell(begin, at);
+    if (*at == ',') ++at;
+    return cell;
+}
+
+}  // namespace
+
+int main() {
+    static drive::Monitor monitor;
+    char line[256];
+    if (!std::fgets(line, sizeof line, stdin)) return 1;
+    while (std::fgets(line, sizeof line, stdin)) {
+        const char* at = line;
+        float z[3];
+        bool there = true;
+        for (float& element : z) {
+            const std::string cell = next(at);
+            there = there && !cell.empty();
+            element = std::strtof(cell.c_str(), nullptr);
+        }
+        drive::Inputs in;
+        if (there) in.z = z;
+        if (const std::string x = next(at); !x.empty()) in.x = std::strtof(x.c_str(), nullptr);
+        if (const std::string held = next(at); !held.empty()) in.held = held == "1";
+        if (const std::string armed = next(at); !armed.empty()) in.armed = armed == "1";
+        monitor.step(in);
+    }
+    monitor.reset();  // the episode is over: no incident waits any more
+    std::printf("%u %u\n", monitor.incidents(), monitor.lost_incidents());
+    for (uint32_t n = 0; n < monitor.incidents(); ++n) {
+        std::FILE* file = std::fopen(("incident" + std::to_string(n)).c_str(), "wb");
+        size_t bytes = 0;
+        monitor.write_incident(n, [&](const uint8_t* data, size_t size) {
+            std::fwrite(data, 1, size, file);
+            bytes += size;
+        });
+        std::fclose(file);
+        if (bytes > drive::Monitor::kIncidentBytes) return 2;
+    }
+    return 0;
+}
+END
+"$cxx" -std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wpedantic -Werror "$@" -I . -I "$runtime" \
+  drive.cpp -o drive
+read -r incidents lost < <(./drive <drive.csv)
+[ "$incidents" = 6 ] && [ "$lost" -gt 0 ] || fail "$incidents incidents, $lost lost"
+
+# What `etlc run` says of each step, in the form of an incident without its nearest rows.
+"$etlc" run drive.etl --values "$values" --trace drive.csv --distances >run.csv
+awk -F, '
+  BEGIN { final["violated"] = "alarm"; final["satisfied"] = "fulfilled" }
+  NR == 1 { next }
+  { step = $1; word[$2] = $7 && $6 in final ? final[$6] : $6
+    distances[step] = $9 "," $10 "," $11 "," $12 "," $13
+    verdicts[step] = word["safe"] "," word["calm"] "," word["reach"] "," word["slow"] }
+  END { for (s = 0; s <= step; ++s) print s "," distances[s] "," verdicts[s] }' run.csv >expected
+for n in 0 1 2 3 4 5; do
+  read_it() { "$etlc" incident "incident$n" --spec drive.etl --values "$values" "$@"; }
+  read_it --format csv >incident.csv
+  cut -d, -f1-3,5,7,8,11-14 incident.csv | tail -n +2 >found
+  first=$(head -1 found | cut -d, -f1)
+  last=$(tail -1 found | cut -d, -f1)
+  # A class of truth values measures what it asks for, etlc run everything.
+  sed -n "$((first + 1)),$((last + 1))p" expected | paste -d, - found | awk -F, '
+    { for (c = 1; c <= 10; ++c) if ($(c + 10) != "unasked" && $c != $(c + 10)) bad = 1 }
+    END { exit bad }' || fail "incident $n is not what etlc run says"
+  ! grep -q unasked found || [ "$values" = boolean ] || fail "incident $n did not ask for all"
+  alarm=$(awk -F, 'NR > 1 && $15 != "" { print $1 }' incident.csv)
+  grep -qx "$first\|$((first + 5))" <<<"$alarm" || fail "incident $n has its alarm elsewhere"
+  read_it | grep -q "^incident $n of drive, episode 0: alarm of " || fail "no table"
+
+  # The same distances, of a spec that has them for inputs.
+  read_it --format trace >again.csv
+  read_it --format spec >again.etl
+  "$etlc" run again.etl --trace again.csv --distances 2>warnings |
+    awk -F, 'NR > 1 && $2 == "safe" { print $10 "," $11 "," $12 "," $13 }' >again
+  cut -d, -f3-6 found | sed 's/unasked//g' | diff - again ||
+    fail "the trace of incident $n has other distances"
+done
+
+# Cut, longer, changed, of another spec.
+refused() {
+  ! "$etlc" incident damaged --spec "${2:-drive.etl}" --values "$values" >out 2>message ||
+    fail "$1 is taken"
+  [ ! -s out ] && grep -q "$1" message || fail "expected $1: $(cat message)"
+}
+head -c 200 incident0 >damaged; refused E0832
+{ cat incident0; echo; } >damaged; refused E0832
+size=$(wc -c <incident0)
+for at in 20 70 99 150 $((size - 20)) $((size - 1)); do
+  cp incident0 damaged
+  byte=$(od -An -tu1 -j "$at" -N1 incident0)
+  printf "\\$(printf %03o $((byte ^ 16)))" | dd of=damaged bs=1 seek="$at" conv=notrunc 2>/dev/null
+  refused E0832
+done
+cp incident0 damaged
+sed 's/0.35/0.36/' drive.etl >other.etl
+refused E0833 other.etl
