@@ -10,6 +10,7 @@ lexer grammar EtlLexer;
 SPEC      : 'spec' ;
 RATE      : 'rate' ;
 PERIOD    : 'period' ;
+CONST     : 'const' ;
 INPUT     : 'input' ;
 TARGET    : 'target' ;
 PREDICATE : 'predicate' ;
@@ -99,6 +100,8 @@ LESS_EQUAL    : '<=' ;
 LESS          : '<' ;
 GREATER_EQUAL : '>=' ;
 GREATER       : '>' ;
+EQUAL         : '==' ;
+NOT_EQUAL     : '!=' ;
 ASSIGN        : '=' ;
 PLUS          : '+' ;
 MINUS         : '-' ;
@@ -133,7 +136,7 @@ MALFORMED_NUMBER
     ;
 
 FOREIGN_OPERATOR
-    : '==' | '===' | '!=' | '!==' | '<>' | '=>' | '<=>' | '=<' | '<-->' | '-->'
+    : '===' | '!==' | '<>' | '=>' | '<=>' | '=<' | '<-->' | '-->'
     | '&' | '|' | '^' | '~' | '%' | '**' | '/\\' | '\\/' | ':='
     ;
 

@@ -15,8 +15,9 @@ spec
 
 declaration
     : SPEC name SEMICOLON                                                 # SpecDeclaration
-    | RATE NUMBER HERTZ rounding? SEMICOLON                               # RateDeclaration
-    | PERIOD NUMBER timeUnit rounding? SEMICOLON                          # PeriodDeclaration
+    | RATE amount HERTZ rounding? SEMICOLON                               # RateDeclaration
+    | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
+    | CONST name ASSIGN MINUS? NUMBER timeUnit? SEMICOLON                 # ConstDeclaration
     | INPUT name (COMMA name)* COLON type range? hold? SEMICOLON          # InputDeclaration
     | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
     | PREDICATE name ASSIGN sum comparisonOperator threshold SEMICOLON    # PredicateDeclaration
@@ -89,7 +90,7 @@ primary
     ;
 
 comparisonOperator
-    : LESS_EQUAL | LESS | GREATER_EQUAL | GREATER
+    : LESS_EQUAL | LESS | GREATER_EQUAL | GREATER | EQUAL | NOT_EQUAL
     ;
 
 interval
@@ -101,7 +102,7 @@ duration
     ;
 
 bound
-    : NUMBER timeUnit?      # FiniteBound
+    : amount timeUnit?      # FiniteBound
     | INF                   # InfiniteBound
     ;
 
@@ -113,7 +114,7 @@ distance
 
 aggregation
     : op=(MIN | MAX | MEAN)         # PlainAggregation
-    | KTH LPAREN NUMBER RPAREN      # KthAggregation
+    | KTH LPAREN amount RPAREN      # KthAggregation
     ;
 
 metric
@@ -135,7 +136,7 @@ point
 // ---- thresholds
 
 threshold
-    : number        # NumberThreshold
+    : sum           # GivenThreshold
     | calibrated    # CalibratedThreshold
     ;
 
@@ -144,7 +145,7 @@ calibrated
     ;
 
 argument
-    : name ASSIGN (number | name)
+    : name ASSIGN number
     ;
 
 // ---- inputs
@@ -157,7 +158,7 @@ type
     ;
 
 dimension
-    : LBRACKET NUMBER RBRACKET
+    : LBRACKET amount RBRACKET
     ;
 
 range
@@ -165,11 +166,11 @@ range
     ;
 
 limit
-    : MINUS? (NUMBER | INF)
+    : MINUS? (amount | INF)
     ;
 
 hold
-    : HOLD NUMBER
+    : HOLD amount
     ;
 
 // ---- data
@@ -188,7 +189,12 @@ row
     ;
 
 number
-    : MINUS? NUMBER
+    : MINUS? amount
+    ;
+
+// A name is that of a constant.
+amount
+    : NUMBER | name
     ;
 
 timeUnit

@@ -1,5 +1,6 @@
 #include "plan/program/predicate_values.hpp"
 
+#include "etlmon/temporal/equality.hpp"
 #include "etlmon/temporal/predicate.hpp"
 #include "etlmon/temporal/truth.hpp"
 
@@ -16,22 +17,16 @@ etlmon::Truth comparison(const check::Predicate& predicate, float delta, float e
         case check::Comparison::less_equal: return etlmon::is_at_most(delta, epsilon, range);
         case check::Comparison::less: return etlmon::is_below(delta, epsilon, range);
         case check::Comparison::greater_equal: return etlmon::is_at_least(delta, epsilon, range);
-        case check::Comparison::greater: break;
+        case check::Comparison::greater: return etlmon::is_above(delta, epsilon, range);
+        case check::Comparison::equal: return etlmon::is_equal(delta, epsilon, range);
+        case check::Comparison::not_equal: break;
     }
-    return etlmon::is_above(delta, epsilon, range);
+    return etlmon::is_unequal(delta, epsilon, range);
 }
 
-/// A comparison changes its answer at most once on the way from the least delta to the greatest,
-/// and on the way from the least epsilon to the greatest: the corners have all answers.
 etlmon::Truth truth_range(const check::Predicate& predicate) {
-    const check::Range thresholds = predicate.threshold.range();
-    etlmon::Truth range{true, false};
-    for (const float delta : {predicate.delta.low, predicate.delta.high})
-        for (const float epsilon : {thresholds.low, thresholds.high}) {
-            const etlmon::Truth at = comparison(predicate, delta, epsilon, etlmon::kPerhaps);
-            range = {range.low && at.low, range.high || at.high};
-        }
-    return range;
+    const auto answer = predicate.constant_answer();
+    return answer ? etlmon::truth_of(*answer) : etlmon::kPerhaps;
 }
 
 Value value_of(etlmon::Truth truth) {
@@ -48,7 +43,7 @@ Value unseen_range(const check::Predicate& predicate, Values values) {
 }
 
 Value value_of(const check::Predicate& predicate, float delta, float epsilon, Values values) {
-    if (values == Values::boolean)
+    if (values == Values::boolean || predicate.equality())
         return value_of(comparison(predicate, delta, epsilon, truth_range(predicate)));
     const Value range = unseen_range(predicate, values);
     return predicate.upper_bound() ? etlmon::at_most(delta, epsilon, range)
