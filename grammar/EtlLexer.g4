@@ -10,6 +10,7 @@ lexer grammar EtlLexer;
 SPEC      : 'spec' ;
 RATE      : 'rate' ;
 PERIOD    : 'period' ;
+CONST     : 'const' ;
 INPUT     : 'input' ;
 TARGET    : 'target' ;
 PREDICATE : 'predicate' ;
@@ -105,6 +106,8 @@ LESS_EQUAL    : '<=' ;
 LESS          : '<' ;
 GREATER_EQUAL : '>=' ;
 GREATER       : '>' ;
+EQUAL         : '==' ;
+NOT_EQUAL     : '!=' ;
 ASSIGN        : '=' ;
 PLUS          : '+' ;
 MINUS         : '-' ;
@@ -139,7 +142,7 @@ MALFORMED_NUMBER
     ;
 
 FOREIGN_OPERATOR
-    : '==' | '===' | '!=' | '!==' | '<>' | '=>' | '<=>' | '=<' | '<-->' | '-->'
+    : '===' | '!==' | '<>' | '=>' | '<=>' | '=<' | '<-->' | '-->'
     | '&' | '|' | '^' | '~' | '%' | '**' | '/\\' | '\\/' | ':='
     ;
 

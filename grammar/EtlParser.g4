@@ -15,8 +15,9 @@ spec
 
 declaration
     : SPEC name SEMICOLON                                                 # SpecDeclaration
-    | RATE NUMBER HERTZ rounding? SEMICOLON                               # RateDeclaration
-    | PERIOD NUMBER timeUnit rounding? SEMICOLON                          # PeriodDeclaration
+    | RATE amount HERTZ rounding? SEMICOLON                               # RateDeclaration
+    | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
+    | CONST name ASSIGN MINUS? NUMBER timeUnit? SEMICOLON                 # ConstDeclaration
     | INPUT name (COMMA name)* COLON type range? hold? missing? SEMICOLON # InputDeclaration
     | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
     | PREDICATE name ASSIGN sum comparisonOperator threshold missing? SEMICOLON
@@ -91,7 +92,7 @@ primary
     ;
 
 comparisonOperator
-    : LESS_EQUAL | LESS | GREATER_EQUAL | GREATER
+    : LESS_EQUAL | LESS | GREATER_EQUAL | GREATER | EQUAL | NOT_EQUAL
     ;
 
 interval
@@ -103,7 +104,7 @@ duration
     ;
 
 bound
-    : NUMBER timeUnit?      # FiniteBound
+    : amount timeUnit?      # FiniteBound
     | INF                   # InfiniteBound
     ;
 
@@ -115,7 +116,7 @@ distance
 
 aggregation
     : op=(MIN | MAX | MEAN)         # PlainAggregation
-    | KTH LPAREN NUMBER RPAREN      # KthAggregation
+    | KTH LPAREN amount RPAREN      # KthAggregation
     ;
 
 metric
@@ -137,7 +138,7 @@ point
 // ---- thresholds
 
 threshold
-    : number        # NumberThreshold
+    : sum           # GivenThreshold
     | calibrated    # CalibratedThreshold
     ;
 
@@ -146,7 +147,7 @@ calibrated
     ;
 
 argument
-    : name ASSIGN (number | name)
+    : name ASSIGN number
     ;
 
 // ---- inputs
@@ -159,7 +160,7 @@ type
     ;
 
 dimension
-    : LBRACKET NUMBER RBRACKET
+    : LBRACKET amount RBRACKET
     ;
 
 range
@@ -167,11 +168,11 @@ range
     ;
 
 limit
-    : MINUS? (NUMBER | INF)
+    : MINUS? (amount | INF)
     ;
 
 hold
-    : HOLD NUMBER
+    : HOLD amount
     ;
 
 missing
@@ -194,7 +195,12 @@ row
     ;
 
 number
-    : MINUS? NUMBER
+    : MINUS? amount
+    ;
+
+// A name is that of a constant.
+amount
+    : NUMBER | name
     ;
 
 timeUnit

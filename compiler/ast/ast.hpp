@@ -28,6 +28,8 @@ struct Number {
     std::string text;  ///< with a leading '-' where it was negated; or "inf", "-inf" (bounds and
                        ///< ranges only)
     Span span;
+    std::string constant{};  ///< the constant that stands for it; until check/ puts its value into
+                             ///< `text`, that is the name as well
 };
 
 // ---- expressions: EXPR --------------------------------------------------------------------------
@@ -93,7 +95,8 @@ struct Expr {
         max
     };
     Kind kind = Kind::number;
-    std::string text;                    ///< number: its digits; name: the input
+    std::string text;                    ///< number: its digits; name: the input or constant
+    std::string constant;                ///< number: the name that stood for it, as in Number
     std::unique_ptr<Distance> distance;  ///< kind distance
     /// Operands, in order; add and multiply etc. are binary, left-associated.
     std::vector<ExprPtr> arguments;
@@ -102,7 +105,14 @@ struct Expr {
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
+enum class Comparison : std::uint8_t {
+    less_equal,
+    less,
+    greater_equal,
+    greater,
+    equal,
+    not_equal,
+};
 
 /// One bound of an interval: steps, a duration, or inf.
 struct Bound {
@@ -150,9 +160,9 @@ struct Formula {
     /// Conjunction and disjunction: two or more; implication etc.: left, right.
     std::vector<FormulaPtr> operands;
     std::optional<Interval> interval;  ///< of held[D]: [0, D]
-    ExprPtr left;                      ///< comparison: EXPR CMP NUMBER
+    ExprPtr left;                      ///< comparison: EXPR CMP EXPR
     Comparison comparison = Comparison::less_equal;
-    Number right;
+    ExprPtr right;
     Span operator_span;  ///< of the operator's own word or symbol
     Span span;
 };
@@ -165,12 +175,20 @@ enum class Rounding : std::uint8_t { exact, up, down, nearest };
 struct Rate {
     Number number;
     bool is_period = false;  ///< period N ms; else rate N Hz
-    std::string unit;        ///< "Hz", or "us", "ms", "s", "min"
+    std::string unit;        ///< "Hz", or "us", "ms", "s", "min"; "": that of a constant
     Rounding durations = Rounding::exact;
     Span span;
 };
 
 std::string_view word(Rounding rounding);  ///< "up"
+
+/// const NAME = NUMBER UNIT
+struct Constant {
+    Name name;
+    Number value;
+    std::string unit;  ///< "", "us", "ms", "s", "min"
+    Span span;
+};
 
 struct Type {
     enum class Kind : std::uint8_t { f32, f16, i8, boolean };
@@ -217,7 +235,7 @@ struct Predicate {
     Name name;
     ExprPtr expression;
     Comparison comparison = Comparison::less_equal;
-    std::variant<Number, Calibrated> threshold;
+    std::variant<ExprPtr, Calibrated> threshold;
     std::optional<bool> missing;  ///< what it counts as where it is unknown
     Span span;
 };
@@ -243,7 +261,7 @@ struct Monitor {
     Span span;
 };
 
-using Declaration = std::variant<Rate, Input, Target, Predicate, Truth, Let, Monitor>;
+using Declaration = std::variant<Rate, Constant, Input, Target, Predicate, Truth, Let, Monitor>;
 
 struct Spec {
     Name name;  ///< empty text: missing or unreadable, already reported

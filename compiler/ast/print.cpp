@@ -11,7 +11,7 @@ namespace etlc::ast {
 namespace {
 
 std::string_view symbol(Comparison comparison) {
-    constexpr std::array<std::string_view, 4> kSymbols{"<=", "<", ">=", ">"};
+    constexpr std::array<std::string_view, 6> kSymbols{"<=", "<", ">=", ">", "==", "!="};
     return kSymbols[static_cast<std::size_t>(comparison)];
 }
 
@@ -50,6 +50,10 @@ std::string text_of(const Load& load) {
 }
 
 std::string text_of(const Calibrated& calibrated);
+
+std::string text_of(const ExprPtr& expression) {
+    return print(*expression);
+}
 
 template <class... Alternatives>
 std::string text_of(const std::variant<Alternatives...>& value) {
@@ -194,7 +198,8 @@ Operator operator_of(Formula::Kind kind) {
 }
 
 std::string text_of(const Bound& bound) {
-    return bound.number.text + bound.unit;
+    const bool apart = !bound.number.constant.empty() && !bound.unit.empty();
+    return fmt::format("{}{}{}", bound.number.text, apart ? " " : "", bound.unit);
 }
 
 std::string text_of(const Interval& interval) {
@@ -231,7 +236,8 @@ private:
 
     void comparison(const Formula& f) {
         ExprPrinter(text_).print(*f.left, kSum);
-        text_ += fmt::format(" {} {}", symbol(f.comparison), f.right.text);
+        text_ += fmt::format(" {} ", symbol(f.comparison));
+        ExprPrinter(text_).print(*f.right, kSum);
     }
 
     void prefix(const Formula& f, const Operator& op) {
@@ -281,8 +287,13 @@ std::string text_of(const Rate& rate) {
     const std::string rounding = rate.durations == Rounding::exact
                                      ? ""
                                      : fmt::format(", durations {}", word(rate.durations));
-    return fmt::format("{} {} {}{}", rate.is_period ? "period" : "rate", rate.number.text,
-                       rate.unit, rounding);
+    return fmt::format("{} {}{}{}{}", rate.is_period ? "period" : "rate", rate.number.text,
+                       rate.unit.empty() ? "" : " ", rate.unit, rounding);
+}
+
+std::string text_of(const Constant& constant) {
+    return fmt::format("const {} = {}{}{}", constant.name.text, constant.value.text,
+                       constant.unit.empty() ? "" : " ", constant.unit);
 }
 
 std::string text_of_missing(std::optional<bool> missing) {

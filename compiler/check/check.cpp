@@ -4,12 +4,13 @@
 
 namespace etlc::check {
 
-std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options,
+std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
                            diag::Sink& sink) {
     Context context{spec, file, options, sink};
     context.incomplete = sink.has_errors();
     context.model.file = file;
 
+    set_constants(context, spec);
     declare_names(context);
     check_rate(context);
     check_inputs(context);
@@ -22,7 +23,7 @@ std::optional<Model> check(const ast::Spec& spec, const source::File& file, cons
     set_robustness(context);
     warn(context);
 
-    if (sink.has_errors()) return std::nullopt;
+    if (sink.has_errors() || context.lacks_data) return std::nullopt;
     context.model.dependencies.assign(context.dependencies.begin(), context.dependencies.end());
     return std::move(context.model);
 }

@@ -6,12 +6,20 @@
 
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "ast/ast.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::check {
+
+/// --set NAME=VALUE: another value for a constant.
+struct Setting {
+    std::string name;
+    std::string number;  ///< decimal text, with a leading '-' where it is negative
+    std::string unit;    ///< of a duration: "us", "ms", "s", "min"
+};
 
 struct Options {
     /// Thresholds file; empty: SPEC.thresholds.json beside the spec where it exists.
@@ -21,12 +29,17 @@ struct Options {
     bool allow_uncalibrated = false;
     /// Or before it has those of its monitors: their shift is then NaN.
     bool allow_uncalibrated_monitors = false;
+    /// `--check` takes a spec before its files are there: a target file, a thresholds file or an
+    /// entry of it that is missing is a note, and what builds on it is not checked.
+    bool allow_missing = false;
+    std::vector<Setting> settings;
 };
 
 /// Where the thresholds of a spec are looked for: SPEC.thresholds.json beside SPEC.etl.
 std::string default_thresholds_path(const std::string& spec_path);
 
-std::optional<Model> check(const ast::Spec& spec, const source::File& file, const Options& options,
+/// Nothing where there was an error, or where a target is allowed to be missing and is.
+std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
                            diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -36,6 +36,8 @@ struct Context {
 
     /// parse/ had errors: what is missing may stand in what it could not read.
     bool incomplete = false;
+    /// A target is missing, and may be.
+    bool lacks_data = false;
     Model model{};
     Scope scope{};
     StepLength step{};
@@ -49,6 +51,7 @@ struct Context {
     std::unordered_map<std::string, Index> predicate_of_text{};
 
     std::unordered_set<std::string> unknown_names{};
+    std::unordered_set<std::string> used_constants{};
     /// Files read so far, by path and key; nothing for one that had an error.
     std::map<std::pair<std::string, std::string>, std::optional<Matrix>> matrices{};
     std::set<std::string> dependencies{};
@@ -66,6 +69,22 @@ void for_each_declaration(const ast::Spec& spec, Visit visit) {
         if (const auto* found = std::get_if<T>(&declaration)) visit(*found, index++);
 }
 
+/// The names that a declaration declares, with the kind of each.
+template <class Visit>
+void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
+    if (const auto* constant = std::get_if<ast::Constant>(&declaration))
+        visit(NameKind::constant, constant->name);
+    if (const auto* input = std::get_if<ast::Input>(&declaration))
+        for (const ast::Name& name : input->names) visit(NameKind::input, name);
+    if (const auto* target = std::get_if<ast::Target>(&declaration))
+        visit(NameKind::target, target->name);
+    if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))
+        visit(NameKind::predicate, predicate->name);
+    if (const auto* let = std::get_if<ast::Let>(&declaration)) visit(NameKind::let, let->name);
+    if (const auto* monitor = std::get_if<ast::Monitor>(&declaration))
+        visit(NameKind::monitor, monitor->name);
+}
+
 /// What `name` means; null, with a diagnostic at the first such use, where nothing declares it.
 /// `wanted` is what would fit here, in words ("a predicate, a let or a bool input"), `kinds` the
 /// kinds among which a near name is looked for.
@@ -74,6 +93,9 @@ const Reference* find(Context& context, const ast::Name& name, const std::vector
 /// The same, and an error where the name is of another kind than `kind`. kNone: reported, or the
 /// declaration is broken.
 Index resolve(Context& context, const ast::Name& name, NameKind kind);
+
+/// The number for messages, with the name that stands for it: "limit = 0.5".
+std::string shown(const ast::Number& number);
 
 /// The number rounded once to float32; overflow and underflow are reported, with 1 in its place.
 float number32(Context& context, const ast::Number& number);

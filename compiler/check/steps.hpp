@@ -7,6 +7,7 @@
 
 namespace etlc::check {
 
+void set_constants(Context& context, ast::Spec& spec);
 void declare_names(Context& context);
 void check_rate(Context& context);
 void check_inputs(Context& context);

@@ -27,6 +27,7 @@ Diagnostic& Sink::report(Code code, source::Span span, std::string message) {
 
 Diagnostic& Sink::report(Diagnostic diagnostic) {
     if (diagnostic.severity() == Severity::error) ++errors_;
+    if (diagnostic.severity() == Severity::warning) ++warnings_;
     return diagnostics_.emplace_back(std::move(diagnostic));
 }
 
@@ -34,6 +35,9 @@ void Sink::drop_warnings_of_spec() {
     std::erase_if(diagnostics_, [this](const Diagnostic& found) {
         return severity(found) == Severity::warning && found.file.empty();
     });
+    warnings_ = static_cast<std::size_t>(std::count_if(
+        diagnostics_.begin(), diagnostics_.end(),
+        [](const Diagnostic& found) { return found.severity() == Severity::warning; }));
 }
 
 std::vector<Diagnostic> Sink::sorted() const {
@@ -50,6 +54,15 @@ std::vector<Diagnostic> Sink::sorted() const {
         return place(a) < place(b);
     });
     return result;
+}
+
+std::string_view word(Severity severity) {
+    switch (severity) {
+        case Severity::error: return "error";
+        case Severity::warning: return "warning";
+        case Severity::note: break;
+    }
+    return "note";
 }
 
 std::string counted(std::uint64_t n, const std::string& noun) {

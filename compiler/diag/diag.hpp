@@ -16,7 +16,9 @@
 
 namespace etlc::diag {
 
-enum class Severity : std::uint8_t { error, warning };
+enum class Severity : std::uint8_t { error, warning, note };
+
+std::string_view word(Severity severity);  ///< "error"
 
 enum class Code : std::uint16_t {
 #define DIAGNOSTIC(code, severity, name, summary) name,
@@ -49,8 +51,10 @@ struct Diagnostic {
     std::uint32_t line = 0;            ///< of `file`, from 1; 0: unknown
     std::uint32_t column = 0;
     std::vector<Note> notes;
+    /// What would be an error elsewhere, and is allowed here: something that is not there yet.
+    bool is_allowed = false;
 
-    Severity severity() const { return info(code).severity; }
+    Severity severity() const { return is_allowed ? Severity::note : info(code).severity; }
     Diagnostic& note(std::string text) { return note({}, std::move(text)); }
     Diagnostic& note(std::optional<source::Span> where, std::string text) {
         notes.push_back({where, std::move(text)});
@@ -75,19 +79,21 @@ public:
     bool has_errors() const { return errors_ > 0; }
     /// Warnings count as what -Werror makes of them.
     Severity severity(const Diagnostic& found) const {
-        return warnings_are_errors_ ? Severity::error : found.severity();
+        const Severity severity = found.severity();
+        return warnings_are_errors_ && severity == Severity::warning ? Severity::error : severity;
     }
     /// Whether nothing may come of the spec. Stages stop at errors, so that the warnings of all of
     /// them are told.
     bool refused() const { return has_errors() || (warnings_are_errors_ && warnings() > 0); }
     std::size_t errors() const { return errors_; }
-    std::size_t warnings() const { return diagnostics_.size() - errors_; }
+    std::size_t warnings() const { return warnings_; }
     /// In the order of their places in the spec; those of other files last.
     std::vector<Diagnostic> sorted() const;
 
 private:
     std::vector<Diagnostic> diagnostics_;
     std::size_t errors_ = 0;
+    std::size_t warnings_ = 0;
     bool warnings_are_errors_;
 };
 

@@ -27,11 +27,11 @@ public:
         : spec_(spec), palette_(colour == Colour::ansi ? kColours : kPlain) {}
 
     void add(const Diagnostic& diagnostic, Severity severity) {
-        const bool is_error = severity == Severity::error;
-        const std::string_view colour = is_error ? palette_.error : palette_.warning;
+        const std::string_view colour = severity == Severity::error     ? palette_.error
+                                        : severity == Severity::warning ? palette_.warning
+                                                                        : palette_.note;
         const bool in_spec = diagnostic.file.empty();
-        headline(in_spec ? place(diagnostic.span) : place(diagnostic),
-                 is_error ? "error" : "warning", colour,
+        headline(in_spec ? place(diagnostic.span) : place(diagnostic), word(severity), colour,
                  fmt::format("{} [{}]", source::visible(diagnostic.message),
                              info(diagnostic.code).code));
         if (in_spec && diagnostic.span) source_lines(*diagnostic.span);
@@ -39,12 +39,15 @@ public:
         for (const Note& n : diagnostic.notes) note(n);
     }
 
-    void add_summary(std::size_t errors, std::size_t warnings, std::size_t left_out) {
+    void add_summary(const std::vector<Severity>& all, std::size_t left_out) {
         if (left_out > 0) text_ += fmt::format("({} more not shown)\n", left_out);
-        if (errors > 0) text_ += counted(errors, "error");
-        if (errors > 0 && warnings > 0) text_ += ", ";
-        if (warnings > 0) text_ += counted(warnings, "warning");
-        text_ += '\n';
+        std::string counts;
+        for (const Severity severity : {Severity::error, Severity::warning, Severity::note}) {
+            const auto n = static_cast<std::uint64_t>(std::count(all.begin(), all.end(), severity));
+            if (n > 0)
+                counts += (counts.empty() ? "" : ", ") + counted(n, std::string(word(severity)));
+        }
+        text_ += counts + '\n';
     }
 
     std::string take() { return std::move(text_); }
@@ -101,11 +104,10 @@ std::string render_text(const source::File& spec, const Sink& sink, Colour colou
     if (all.empty()) return {};
     TextRenderer renderer(spec, colour);
     const std::size_t shown = std::min(all.size(), kMaxShown);
-    for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i], sink.severity(all[i]));
-    const auto errors = static_cast<std::size_t>(std::count_if(
-        all.begin(), all.end(),
-        [&](const Diagnostic& found) { return sink.severity(found) == Severity::error; }));
-    renderer.add_summary(errors, all.size() - errors, all.size() - shown);
+    std::vector<Severity> severities;
+    for (const Diagnostic& found : all) severities.push_back(sink.severity(found));
+    for (std::size_t i = 0; i < shown; ++i) renderer.add(all[i], severities[i]);
+    renderer.add_summary(severities, all.size() - shown);
     return renderer.take();
 }
 

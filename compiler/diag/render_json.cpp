@@ -41,7 +41,7 @@ Json diagnostic_of(const source::File& spec, const Diagnostic& diagnostic, Sever
     Json result;
     result["code"] = info(diagnostic.code).code;
     result["name"] = info(diagnostic.code).name;
-    result["severity"] = severity == Severity::error ? "error" : "warning";
+    result["severity"] = word(severity);
     result["message"] = diagnostic.message;
     const bool in_spec = diagnostic.file.empty();
     if (in_spec)

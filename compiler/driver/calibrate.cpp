@@ -63,12 +63,13 @@ std::vector<std::string> inputs(const check::Model& model, const source::File& f
 }  // namespace
 
 bool calibrate(const source::File& file, const CalibrateRequest& request, diag::Sink& sink) {
-    const ast::Spec spec = parse::parse(file, sink);
+    ast::Spec spec = parse::parse(file, sink);
     check::Options options;
+    options.settings = request.settings;
     options.thresholds_path = request.thresholds;
     options.allow_uncalibrated = request.thresholds.empty();
     options.allow_uncalibrated_monitors = true;
-    const auto model = check::check(spec, file, options, sink);
+    const auto model = check::check(std::move(spec), file, options, sink);
     if (!model || sink.refused()) return false;
 
     calibrate::Request calibration = request.calibration;

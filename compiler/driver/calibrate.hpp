@@ -4,8 +4,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "calibrate/calibrate.hpp"
+#include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "source/source.hpp"
 
@@ -14,7 +16,8 @@ namespace etlc::driver {
 struct CalibrateRequest {
     calibrate::Request calibration;  ///< its version and progress are set here
     std::string output;              ///< empty: beside the spec
-    std::string thresholds;          ///< those of the predicates; empty: they are calibrated now
+    std::vector<check::Setting> settings;
+    std::string thresholds;  ///< those of the predicates; empty: they are calibrated now
 };
 
 /// False where the sink now says why not.

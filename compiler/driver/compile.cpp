@@ -13,8 +13,8 @@ namespace etlc::driver {
 
 std::optional<Compiled> compile(const source::File& file, const Request& request,
                                 diag::Sink& sink) {
-    const ast::Spec spec = parse::parse(file, sink);
-    auto model = check::check(spec, file, request.check, sink);
+    ast::Spec spec = parse::parse(file, sink);
+    auto model = check::check(std::move(spec), file, request.check, sink);
     if (!model || sink.has_errors()) return std::nullopt;
     return pipeline::compile(std::move(*model), request, sink);
 }

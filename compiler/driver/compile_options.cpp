@@ -45,7 +45,8 @@ void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, b
     for (const auto& [name, summary] : emittable()) stages.push_back(name);
     app.add_option("-o,--output", output.result, "where to write the result; - is standard output")
         ->type_name("FILE");
-    app.add_flag("--check", check_only, "diagnostics only");
+    app.add_flag("--check", check_only,
+                 "diagnostics only; files that are not there yet are no errors");
     app.add_option("--emit", request.emit, emit_help())->type_name("")->check(one_of(stages));
     app.add_flag("--standalone{portable}", request.standalone,
                  "paste the runtime in: one file to copy into firmware, in standard C++ alone; "

@@ -25,6 +25,7 @@
 #include "driver/process.hpp"
 #include "driver/recording_options.hpp"
 #include "driver/run/run.hpp"
+#include "driver/settings.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
@@ -94,6 +95,19 @@ int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
     return conclude(call, file, sink);
 }
 
+void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
+    const auto read = [&settings](const std::vector<std::string>& words) {
+        std::string mistake;
+        auto parsed = driver::parse_settings(words, mistake);
+        if (!parsed) throw CLI::ValidationError(mistake);
+        settings = std::move(*parsed);
+    };
+    app.add_option_function<std::vector<std::string>>(
+           "--set", read, "another value for a constant: --set limit=0.25, --set deadline=2s")
+        ->type_name("NAME=VALUE")
+        ->allow_extra_args(false);
+}
+
 void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
     app.add_option("-W", call.warnings, "-Werror: warnings are errors")
@@ -107,6 +121,7 @@ void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec
 
 void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     add_spec_options(app, call, spec);
+    add_set_option(app, call.request.check.settings);
     app.add_option(
            "--thresholds", call.request.check.thresholds_path,
            "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
@@ -156,11 +171,10 @@ std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
     return std::nullopt;
 }
 
-/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output. A check
-/// writes nothing, so any name does.
+/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output.
 void name_targets_file(Call& call) {
     call.output.targets_named = !call.output.targets.empty();
-    const std::filesystem::path header = call.check_only ? call.spec : call.output.result;
+    const std::filesystem::path header = call.output.result;
     if (!call.output.targets_named && header != "-")
         call.output.targets =
             (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
@@ -186,10 +200,14 @@ int compile_command(int argc, char** argv) {
         return complain(app, mistake);
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
+    call.request.check.allow_missing = call.check_only;
     return with_spec(call, SpecWarnings::told, [&](const source::File& file, diag::Sink& sink) {
+        if (call.check_only) {
+            driver::compile(file, call.request, sink);
+            return;
+        }
         const auto output = driver::emit(file, call.request, sink);
-        if (output && !sink.refused() && !call.check_only)
-            driver::write_output(call.output, file, *output, sink);
+        if (output && !sink.refused()) driver::write_output(call.output, file, *output, sink);
     });
 }
 
@@ -233,6 +251,7 @@ int calibrate_command(int argc, char** argv) {
         "file.",
         "etlc calibrate");
     add_spec_options(app, call);
+    add_set_option(app, call.calibrate.settings);
     driver::add_episode_options(app, calibration.data, calibration.groups,
                                 calibration.allow_overlap, calibration.jobs);
     driver::add_map_option(app, calibration.names);

@@ -45,8 +45,10 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert(header_of(context, d));
         if (context.enclosed(d)) headers.insert("distance/enclosed");
     }
-    for (Index p : plan.predicates)
+    for (Index p : plan.predicates) {
+        if (context.model.predicates[p].equality()) headers.insert("temporal/equality");
         if (!context.model.predicates[p].plain_distance()) headers.insert("temporal/expression");
+    }
     if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
     for (Index i : plan.inputs) {
         const check::Input& input = context.model.inputs[i];

@@ -265,6 +265,17 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
     print_table(out, prefix, rows, 1);
 }
 
+/// What the constants of the spec are worth here.
+void print_settings(Printer& out, const std::string& prefix, const check::Model& model) {
+    if (model.constants.empty()) return;
+    std::string list;
+    for (const check::Constant& constant : model.constants)
+        list += fmt::format("{}{} = {}{}", list.empty() ? "" : ", ", constant.name, constant.text,
+                            constant.is_set ? " (by --set)" : "");
+    out.line(blank(prefix));
+    print_sentences(out, prefix, fmt::format("Constants: {}.", list));
+}
+
 /// What became of durations that are not whole numbers of steps.
 void print_rounded(Printer& out, const std::string& prefix, const check::Model& model) {
     if (model.rounded.empty()) return;
@@ -311,6 +322,7 @@ void print_summary(Printer& out, const Context& context) {
     print_made_from(out, "//   ", context);
     print_tables(out, "//   ", context.plan);
     print_stored(out, "//   ", context.plan, context.targets_file);
+    print_settings(out, "//", context.model);
     print_rounded(out, "//", context.model);
     out.line("//");
     print_sentences(out, "//",
@@ -328,6 +340,7 @@ std::string report(const plan::Plan& plan, const Options& options) {
     print_tables(out, "  ", plan);
     print_stored(out, "  ", plan,
                  options.targets_file.empty() ? "the file of targets" : options.targets_file);
+    print_settings(out, "  ", *plan.model);
     print_rounded(out, "  ", *plan.model);
     print_gaps(out, plan);
     out.line();

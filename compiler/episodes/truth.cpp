@@ -159,6 +159,10 @@ Label TruthEvaluator::compare(const check::Predicate& predicate) const {
                                       [&](Index input) { return values_[input].empty(); });
     const double delta = present ? expression(predicate.expression) : kUnknown;
     if (std::isnan(delta)) return Label::unknown;
+    // Samples are float32, and so is what a monitor takes as equal.
+    if (predicate.equality())
+        return label_of(check::holds(predicate.comparison, static_cast<float>(delta),
+                                     predicate.threshold.value));
     return label_of(check::holds(predicate.comparison, delta, predicate.threshold.value64));
 }
 

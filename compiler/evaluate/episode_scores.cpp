@@ -102,7 +102,10 @@ void EpisodeScorer::count_predicates(const episodes::Recording& recording,
         const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
         result.predicates[i].add(holds ? Label::yes : Label::no, is);
         if (is == Label::unknown) continue;
-        result.scored[i].push_back({predicate.upper_bound() ? -delta : delta, 0, is == Label::yes});
+        const float score = predicate.equality()      ? static_cast<float>(holds)
+                            : predicate.upper_bound() ? -delta
+                                                      : delta;
+        result.scored[i].push_back({score, 0, is == Label::yes});
     }
 }
 

@@ -36,6 +36,8 @@ private:
 
     // declarations.cpp
     static ast::Rounding rounding(Grammar::RoundingContext* context);  ///< null: none is written
+    ast::Rate period(Grammar::PeriodDeclarationContext& context, source::Span span) const;
+    ast::Constant constant(Grammar::ConstDeclarationContext& context, source::Span span) const;
     ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
     ast::Type type(Grammar::TypeContext& context) const;
     ast::Range range(Grammar::RangeContext& context) const;
@@ -50,10 +52,9 @@ private:
         Grammar::LiteralContext& context) const;
     ast::Name name(const Grammar::NameContext& context) const;
     ast::Number number(const Token& token) const;
-    ast::Number number(Grammar::NumberContext& context) const;
-    /// Of a rule that is a number with or without '-': the text of both, blanks between them left
+    /// Of a rule that is an amount with or without '-': the text of both, blanks between them left
     /// out.
-    std::string signed_text(const ParserRuleContext& context) const;
+    ast::Number number(const ParserRuleContext& context) const;
 
     // expressions.cpp
     Expression expression(Grammar::FormulaContext& context) const;
@@ -86,9 +87,6 @@ private:
     Formula prefix(const Token& op, Grammar::PrefixedContext& operand,
                    const ParserRuleContext& whole) const;
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
-    /// The number that an expression consists of, with its sign; nothing where it is more than
-    /// that.
-    std::optional<ast::Number> lone_number(Grammar::SumContext& context) const;
     ast::Interval interval(Grammar::IntervalContext& context) const;
     ast::Bound bound(Grammar::BoundContext& context) const;
     static ast::Comparison comparison(Grammar::ComparisonOperatorContext& context);

@@ -28,11 +28,11 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
     if (auto* const d = dynamic_cast<Grammar::SpecDeclarationContext*>(&context))
         return name(*d->name());
     if (auto* const d = dynamic_cast<Grammar::RateDeclarationContext*>(&context))
-        return ast::Rate{number(*d->NUMBER()->getSymbol()), false, "Hz", rounding(d->rounding()),
-                         span};
+        return ast::Rate{number(*d->amount()), false, "Hz", rounding(d->rounding()), span};
     if (auto* const d = dynamic_cast<Grammar::PeriodDeclarationContext*>(&context))
-        return ast::Rate{number(*d->NUMBER()->getSymbol()), true, text(*d->timeUnit()),
-                         rounding(d->rounding()), span};
+        return period(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::ConstDeclarationContext*>(&context))
+        return constant(*d, span);
     if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context))
         return input(*d, span);
     if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context))
@@ -55,12 +55,30 @@ ast::Rounding Builder::rounding(Grammar::RoundingContext* context) {
     }
 }
 
+ast::Rate Builder::period(Grammar::PeriodDeclarationContext& context, source::Span span) const {
+    auto* const unit = context.timeUnit();
+    return {
+        number(context.name() != nullptr ? *context.name()->start : *context.NUMBER()->getSymbol()),
+        true, unit != nullptr ? text(*unit) : "", rounding(context.rounding()), span};
+}
+
+ast::Constant Builder::constant(Grammar::ConstDeclarationContext& context,
+                                source::Span span) const {
+    ast::Constant result{name(*context.name()), number(*context.NUMBER()->getSymbol()), "", span};
+    if (context.MINUS() != nullptr) {
+        result.value.text.insert(0, "-");
+        result.value.span.begin = span_of(*context.MINUS()->getSymbol()).begin;
+    }
+    if (auto* const unit = context.timeUnit()) result.unit = text(*unit);
+    return result;
+}
+
 ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Span span) const {
     ast::Input result;
     for (const Grammar::NameContext* const n : context.name()) result.names.push_back(name(*n));
     result.type = type(*context.type());
     if (auto* const limits = context.range()) result.range = range(*limits);
-    if (auto* const hold = context.hold()) result.hold = number(*hold->NUMBER()->getSymbol());
+    if (auto* const hold = context.hold()) result.hold = number(*hold->amount());
     result.missing = missing(context.missing());
     result.span = span;
     return result;
@@ -82,15 +100,12 @@ ast::Type Builder::type(Grammar::TypeContext& context) const {
     } else {
         result.kind = ast::Type::Kind::boolean;
     }
-    if (dimension != nullptr) result.dimension = number(*dimension->NUMBER()->getSymbol());
+    if (dimension != nullptr) result.dimension = number(*dimension->amount());
     return result;
 }
 
 ast::Range Builder::range(Grammar::RangeContext& context) const {
-    const auto limit = [this](const Grammar::LimitContext& l) {
-        return ast::Number{signed_text(l), span_of(l)};
-    };
-    return {limit(*context.limit(0)), limit(*context.limit(1)), span_of(context)};
+    return {number(*context.limit(0)), number(*context.limit(1)), span_of(context)};
 }
 
 ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::Span span) const {
@@ -117,7 +132,8 @@ ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context,
         result.threshold = calibrated(*calibration->calibrated());
     else
         result.threshold =
-            number(*dynamic_cast<Grammar::NumberThresholdContext&>(*context.threshold()).number());
+            expression(*dynamic_cast<Grammar::GivenThresholdContext&>(*context.threshold()).sum())
+                .root;
     result.missing = missing(context.missing());
     result.span = span;
     return result;
@@ -160,11 +176,12 @@ ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
     result.span = span_of(context);
     for (Grammar::ArgumentContext* const argument : context.argument()) {
         ast::Calibrated::Argument& added = result.arguments.emplace_back();
-        added.key = name(*argument->name(0));
-        if (auto* const value = argument->number())
-            added.value = number(*value);
+        added.key = name(*argument->name());
+        const ast::Number value = number(*argument->number());
+        if (value.text == value.constant)  // a word, or a constant
+            added.value = ast::Name{value.text, value.span};
         else
-            added.value = name(*argument->name(1));
+            added.value = value;
     }
     return result;
 }
@@ -208,16 +225,14 @@ ast::Name Builder::name(const Grammar::NameContext& context) const {
 }
 
 ast::Number Builder::number(const Token& token) const {
-    return {text(token), span_of(token)};
+    return {text(token), span_of(token), is_name(token) ? text(token) : ""};
 }
 
-ast::Number Builder::number(Grammar::NumberContext& context) const {
-    return {signed_text(context), span_of(context)};
-}
-
-std::string Builder::signed_text(const ParserRuleContext& context) const {
-    const std::string digits = text(*context.stop);
-    return context.start == context.stop ? digits : fmt::format("-{}", digits);
+ast::Number Builder::number(const ParserRuleContext& context) const {
+    ast::Number result = number(*context.stop);
+    result.span = span_of(context);
+    if (context.start != context.stop) result.text.insert(0, "-");
+    return result;
 }
 
 void Builder::fail(diag::Code code, source::Span span, std::string message, std::string note) {

@@ -36,11 +36,10 @@ const std::vector<std::string>& distance_words() {
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all{
-        {{EtlParser::NUMBER, EtlParser::CALIBRATED},
-         "a threshold (a number or calibrated(...))",
-         false},
         {{EtlParser::NUMBER, EtlParser::INF}, "a number or inf", false},
-        {{EtlParser::LESS_EQUAL, EtlParser::GREATER}, "a comparison (<=, <, >= or >)", false},
+        {{EtlParser::LESS_EQUAL, EtlParser::NOT_EQUAL},
+         "a comparison (<=, <, >=, >, == or !=)",
+         false},
         {{EtlParser::F32, EtlParser::BOOL}, "a type (f32, f32[D], f16[D], i8[D] or bool)", true},
         {{EtlParser::DISTANCE, EtlParser::MAHALANOBIS},
          fmt::format("a distance ({})", distances_in_words(" or ")),
@@ -83,8 +82,10 @@ bool expects_operand(const Stuck& stuck) {
 /// begun.
 std::string operand_words(const Stuck& stuck) {
     if (is_one_of(stuck.previous, {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL,
-                                   EtlParser::GREATER}))
-        return "a number";
+                                   EtlParser::GREATER, EtlParser::EQUAL, EtlParser::NOT_EQUAL}))
+        return has(stuck, EtlParser::CALIBRATED) && stuck.declaration == EtlParser::PREDICATE
+                   ? "a threshold (a number, an expression or calibrated(...))"
+                   : "a number or an expression";
     const bool in_call = is_one_of(stuck.previous, {EtlParser::COMMA}) ||
                          (is_one_of(stuck.previous, {EtlParser::LPAREN}) &&
                           is_one_of(stuck.before_previous, {EtlParser::ABS, EtlParser::SQRT,
@@ -106,8 +107,7 @@ std::string name_words(const Stuck& stuck) {
             return "load(\"FILE\"), a matrix, a diagonal [...] or the name of a target";
         case EtlParser::RuleCalibrated:
             return "a method of calibration (f1, conformal or class_conditional)";
-        case EtlParser::RuleArgument:
-            return has(stuck, EtlParser::NUMBER) ? "a number or a word" : "a word";
+        case EtlParser::RuleArgument: return "a word";
         default: return "a name";
     }
 }
@@ -165,6 +165,9 @@ bool contains(const std::vector<std::size_t>& types, std::size_t type) {
 std::vector<std::string> listed(const Stuck& stuck) {
     std::vector<std::string> words;
     Types covered{EtlParser::MINUS};  // begins a number
+    if (expects_name(stuck))
+        for (std::size_t type = EtlParser::IN; type <= EtlParser::IDENTIFIER; ++type)
+            covered.push_back(type);
     for (const Group& group : groups()) {
         const bool fresh = std::none_of(group.types.begin(), group.types.end(),
                                         [&covered](auto t) { return contains(covered, t); });
@@ -187,7 +190,11 @@ std::string expected_words(const Stuck& stuck) {
         return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers"
                                                     : "an operator";
     if (expects_operand(stuck)) return operand_words(stuck);
-    if (expects_name(stuck)) return name_words(stuck);
+    // A name that stands where a number can is that of a constant, or a word of an argument.
+    const bool in_argument =
+        is_one_of(stuck.previous, {EtlParser::ASSIGN}) && stuck.rule != EtlParser::RuleDeclaration;
+    if (in_argument && has(stuck, EtlParser::NUMBER)) return "a number or a word";
+    if (expects_name(stuck) && !has(stuck, EtlParser::NUMBER)) return name_words(stuck);
     std::vector<std::string> words = listed(stuck);
     if (operators_could_follow(stuck)) words.insert(words.begin(), "an operator");
     if (another_item_could_follow(stuck)) words.emplace_back("','");

@@ -162,7 +162,7 @@ ast::Aggregation Builder::aggregation(Grammar::AggregationContext& context) cons
     result.span = span_of(context);
     if (auto* const kth = dynamic_cast<Grammar::KthAggregationContext*>(&context)) {
         result.kind = Aggregation::kth;
-        result.n = number(*kth->NUMBER()->getSymbol());
+        result.n = number(*kth->amount());
         return result;
     }
     switch (context.start->getType()) {

@@ -159,40 +159,22 @@ Builder::Formula Builder::compared(Grammar::SumContext& left,
         fail(diag::Code::comparison_form,
              span_of(dynamic_cast<ParserRuleContext&>(*context.children[3])),
              "comparisons do not chain", "write two of them: 'x > 0 && x < 1'");
-    auto* const right = dynamic_cast<Grammar::SumContext*>(context.children[2]);
-    if (right == nullptr)
+    auto* const written = dynamic_cast<Grammar::SumContext*>(context.children[2]);
+    if (written == nullptr)
         fail(diag::Code::comparison_form,
              span_of(dynamic_cast<ParserRuleContext&>(*context.children[2])),
              "a calibrated threshold stands only in a predicate",
              "declare 'predicate NAME = ... calibrated(...);' and use its name here");
-    const std::optional<ast::Number> threshold = lone_number(*right);
-    if (!threshold)
-        fail(diag::Code::comparison_form, span_of(*right),
-             fmt::format("expected a number on the right of '{}', found an expression", text(op)),
-             "what is compared stands on the left, a number on the right: x - y <= 0.5");
     Expression value = expression(left);
-    Formula result{node(Kind::comparison, span_of(context)), value.height + 1};
+    Expression right = expression(*written);
+    Formula result{node(Kind::comparison, span_of(context)),
+                   std::max(value.height, right.height) + 1};
     result.root->left = std::move(value.root);
     result.root->comparison = comparison(op);
-    result.root->right = *threshold;
+    result.root->right = std::move(right.root);
     result.root->operator_span = span_of(op);
     if (result.height > kMaxHeight) too_high(span_of(op));
     return result;
-}
-
-std::optional<ast::Number> Builder::lone_number(Grammar::SumContext& context) const {
-    if (context.children.size() != 1) return std::nullopt;
-    auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);
-    if (product.children.size() != 1) return std::nullopt;
-    auto* factor = dynamic_cast<Grammar::FactorContext*>(product.children[0]);
-    auto* const negation = dynamic_cast<Grammar::NegationContext*>(factor);
-    if (negation != nullptr) factor = negation->factor();
-    auto* const plain = dynamic_cast<Grammar::UnsignedContext*>(factor);
-    if (plain == nullptr ||
-        dynamic_cast<Grammar::NumberPrimaryContext*>(plain->primary()) == nullptr)
-        return std::nullopt;
-    return ast::Number{fmt::format("{}{}", negation != nullptr ? "-" : "", text(*plain->start)),
-                       span_of(context)};
 }
 
 Builder::Formula Builder::formula(Grammar::PrimaryContext& context) const {
@@ -230,7 +212,9 @@ ast::Comparison Builder::comparison(Grammar::ComparisonOperatorContext& context)
         case Grammar::LESS_EQUAL: return ast::Comparison::less_equal;
         case Grammar::LESS: return ast::Comparison::less;
         case Grammar::GREATER_EQUAL: return ast::Comparison::greater_equal;
-        default: return ast::Comparison::greater;
+        case Grammar::GREATER: return ast::Comparison::greater;
+        case Grammar::EQUAL: return ast::Comparison::equal;
+        default: return ast::Comparison::not_equal;
     }
 }
 

@@ -67,7 +67,9 @@ void operator_seen(Level& level, std::size_t type, bool after_operand) {
         case EtlLexer::LESS_EQUAL:
         case EtlLexer::LESS:
         case EtlLexer::GREATER_EQUAL:
-        case EtlLexer::GREATER: level.signs = 0; break;
+        case EtlLexer::GREATER:
+        case EtlLexer::EQUAL:
+        case EtlLexer::NOT_EQUAL: level.signs = 0; break;
         case EtlLexer::NOT:
         case EtlLexer::NEXT:
         case EtlLexer::EVENTUALLY:

@@ -20,13 +20,14 @@ bool begins_declaration(const Tokens& tokens, std::size_t i) {
     switch (type(i)) {
         case EtlLexer::SPEC: return name_follows && type(i + 2) == EtlLexer::SEMICOLON;
         case EtlLexer::RATE:
-        case EtlLexer::PERIOD: return type(i + 1) == EtlLexer::NUMBER;
+        case EtlLexer::PERIOD: return type(i + 1) == EtlLexer::NUMBER || name_follows;
         case EtlLexer::INPUT:
             return name_follows &&
                    (type(i + 2) == EtlLexer::COMMA || type(i + 2) == EtlLexer::COLON);
         case EtlLexer::SLIDING:
         case EtlLexer::RESTARTABLE:
         case EtlLexer::REPEATING: return type(i + 1) == EtlLexer::MONITOR;
+        case EtlLexer::CONST:
         case EtlLexer::TARGET:
         case EtlLexer::PREDICATE:
         case EtlLexer::TRUTH:

@@ -75,8 +75,8 @@ private:
 
     Diagnostic no_declaration() const {
         static const std::vector<std::string> kWords{
-            "spec",  "rate", "period",  "input",   "target",      "predicate",
-            "truth", "let",  "monitor", "sliding", "restartable", "repeating"};
+            "spec", "rate",    "period",  "input",       "target",    "predicate", "truth",
+            "let",  "monitor", "sliding", "restartable", "repeating", "const"};
         const bool word = found_is_word();
         Diagnostic result =
             at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
@@ -84,8 +84,9 @@ private:
         if (word) add_nearest(result, found_, kWords);
         if (result.notes.empty())
             result.note(
-                "a declaration begins with spec, rate, period, input, target, predicate, truth, "
-                "let, or with monitor, before which sliding, restartable or repeating may stand");
+                "a declaration begins with spec, rate, period, const, input, target, predicate, "
+                "truth, let, or with monitor, before which sliding, restartable or repeating may "
+                "stand");
         return result;
     }
 
@@ -150,10 +151,11 @@ private:
     /// A word after a bound is a unit where the interval goes on behind it, or where it is close to
     /// one; else the interval should have ended before it, as in "F[0, 5 q".
     bool unknown_unit() const {
-        const bool after_bound = stuck_.rule == EtlParser::RuleInterval &&
-                                 is(stuck_.previous, {EtlParser::NUMBER}) && found_is_word();
-        return after_bound && (is(stuck_.following, {EtlParser::COMMA, EtlParser::RBRACKET}) ||
-                               diag::nearest_name(text(found_), units()));
+        if (!is(stuck_.previous, {EtlParser::NUMBER}) || !found_is_word()) return false;
+        if (stuck_.declaration == EtlParser::CONST) return true;
+        return stuck_.rule == EtlParser::RuleInterval &&
+               (is(stuck_.following, {EtlParser::COMMA, EtlParser::RBRACKET}) ||
+                diag::nearest_name(text(found_), units()));
     }
 
     Diagnostic no_such_unit() const {
@@ -187,7 +189,7 @@ private:
         if (found == EtlParser::INF)
             to.note("inf stands only in the bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
-            to.note("a comparison is '<=', '<', '>=' or '>'");
+            to.note("a comparison is '<=', '<', '>=', '>', '==' or '!='");
         else if (found == EtlParser::RPAREN && in_brackets)
             to.note(
                 "min(...) and max(...) of expressions take two or more; over a target set it is "

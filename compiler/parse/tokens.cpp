@@ -24,11 +24,9 @@ struct Hint {
 };
 
 constexpr std::array kHints{
-    Hint{"==", "a comparison is '<=', '<', '>=' or '>'; formulas are compared with '<->'"},
-    Hint{"===", "a comparison is '<=', '<', '>=' or '>'; formulas are compared with '<->'"},
-    Hint{"!=", "a comparison is '<=', '<', '>=' or '>'; 'not' is '!'"},
-    Hint{"!==", "a comparison is '<=', '<', '>=' or '>'; 'not' is '!'"},
-    Hint{"<>", "a comparison is '<=', '<', '>=' or '>'"},
+    Hint{"===", "'equal' is '=='; formulas are compared with '<->'"},
+    Hint{"!==", "'not equal' is '!='; 'not' is '!'"},
+    Hint{"<>", "'not equal' is '!='"},
     Hint{"=>", "'implies' is '->', 'greater or equal' is '>='"},
     Hint{"<=>", "'if and only if' is '<->'"},
     Hint{"=<", "'less or equal' is '<='"},

@@ -24,6 +24,8 @@ bool holds(const check::Predicate& predicate, double delta, double epsilon) {
         case check::Comparison::less: return delta < epsilon;
         case check::Comparison::greater_equal: return delta >= epsilon;
         case check::Comparison::greater: return delta > epsilon;
+        case check::Comparison::equal: return delta == epsilon;
+        case check::Comparison::not_equal: return delta != epsilon;
     }
     return false;
 }
@@ -38,8 +40,9 @@ Unseen range_of(const check::Model& model, const Node& atom, Values values) {
     if (atom.kind == Node::Kind::predicate) {
         const check::Predicate& predicate = model.predicates[atom.index];
         range = {predicate.robustness.low, predicate.robustness.high};
-        if (values ==
-            Values::boolean) {  // a comparison is true on one side only, of delta and of epsilon
+        if (values == Values::boolean &&
+            !predicate
+                 .equality()) {  // a comparison is true on one side only, of delta and of epsilon
             bool always = true;
             bool ever = false;
             const check::Range thresholds = predicate.threshold.range();
@@ -72,7 +75,9 @@ std::optional<double> rho_of(const check::Model& model, const Node& atom, const 
     const bool moved = predicate.threshold.adaptation && !thresholds.empty();
     const double epsilon = moved ? thresholds[atom.index] : predicate.threshold.value;
     if (delta != delta) return {};
-    if (values == Values::boolean) return truth(holds(predicate, delta, epsilon));
+    // "== and != are +inf or -inf"
+    if (values == Values::boolean || predicate.equality())
+        return truth(holds(predicate, delta, epsilon));
     return predicate.upper_bound() ? epsilon - delta : delta - epsilon;
 }
 

@@ -25,9 +25,9 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
                                  const check::Options& options) {
     const source::File file(path, text);
     diag::Sink sink;
-    const ast::Spec spec = parse::parse(file, sink);
+    ast::Spec spec = parse::parse(file, sink);
     std::optional<check::Model> model;
-    if (!sink.has_errors()) model = check::check(spec, file, options, sink);
+    if (!sink.has_errors()) model = check::check(std::move(spec), file, options, sink);
     if (!model) ADD_FAILURE() << "the spec was refused:\n" << diag::render_text(file, sink) << text;
     return model;
 }

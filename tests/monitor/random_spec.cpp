@@ -19,7 +19,7 @@ public:
         : random_(random), exact_(shape.exact), missing_share_(shape.missing) {}
 
     std::string text() {
-        std::string result;
+        std::string result = fmt::format("const c = {};\n", number(-3, 3));
         for (const char* name : {"x", "y"}) result += scalar(name);
         result += fmt::format("input on : bool{}{};\n", hold(), missing());
         dimension_ = random_.between(1, 5);
@@ -39,6 +39,7 @@ public:
 
     /// A comparison that stands in a formula.
     std::string comparison() {
+        if (random_.chance(0.3)) return comparison_of_scalars();
         return fmt::format("{} {} {}", expression(1), compare(), number(-3, 3));
     }
 
@@ -61,6 +62,16 @@ private:
         return fmt::format("{}", random_.grid(low, high, 0.25));
     }
     std::string compare() { return random_.word({"<=", "<", ">=", ">"}); }
+
+    /// By order or equality, of what is exact: inputs, numbers and a constant, on either side.
+    std::string comparison_of_scalars() {
+        const auto side = [this] { return random_.chance(0.3) ? "c" : number(-3, 3); };
+        const std::string op = random_.chance(0.5) ? random_.word({"==", "!="}) : compare();
+        const std::string input = random_.word({"x", "y"});
+        if (random_.chance(0.3)) return fmt::format("x {} y", op);
+        if (random_.chance(0.3)) return fmt::format("{} {} {}", side(), op, input);
+        return fmt::format("{} {} {}", input, op, side());
+    }
 
     std::string scalar(const char* name) {
         const char* range = random_.chance(0.6)   ? " in [-4, 4]"
@@ -153,6 +164,7 @@ private:
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
         if (kind < 7)
             return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
+        if (random_.chance(0.3)) return comparison_of_scalars();
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };

@@ -21,7 +21,7 @@ struct Checked {
                      std::string path = "t.etl")
         : file(std::move(path), std::move(text)),
           spec(parse::parse(file, sink)),
-          model(check::check(spec, file, options, sink)) {}
+          model(check::check(std::move(spec), file, options, sink)) {}
 
     std::string diagnostics() const { return diag::render_text(file, sink); }
     /// "E0204 W0201": codes of all findings, in the order of their places.

@@ -60,6 +60,18 @@ TEST(Fingerprint, SaysWhatIsAnother) {
     EXPECT_EQ(of(changed("> 3", "> 4")).thresholds, one.thresholds) << "it stands in the spec";
 }
 
+TEST(Fingerprint, KnowsWhatWasSet) {
+    const std::string text =
+        "spec t; const n = 3 s; const limit = 0.25; rate 1 Hz; input x : f32;"
+        "monitor m = G[0, n] x > limit;";
+    Options options;
+    options.settings = {{"limit", "0.5", ""}, {"n", "2", "min"}};
+    const Checked set(text, options);
+    ASSERT_TRUE(set.model) << set.diagnostics();
+    EXPECT_EQ(fingerprint(*set.model).spec, data::xxh64(text + "--set n=2 min\n--set limit=0.5\n"));
+    EXPECT_EQ(of(text).spec, data::xxh64(text));
+}
+
 TEST(Fingerprint, IsZeroOfNothing) {
     const Fingerprint made_from = of("spec t; input on : bool; monitor m = G on;");
     EXPECT_NE(made_from.spec, 0U);

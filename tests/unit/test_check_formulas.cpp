@@ -246,5 +246,98 @@ TEST(Constancy, FindsConstantsThatNoInputEnters) {
         EXPECT_EQ(monitor(formula).codes().find("W0503"), std::string::npos) << formula;
 }
 
+// ---- comparisons and constants
+
+TEST(Comparisons, OfTwoExpressionsAreOfTheirDifference) {
+    EXPECT_EQ(canonical("x >= 2 * x"), "x - 2 * x >= 0");
+    EXPECT_EQ(canonical("x - 1 < abs(x)"), "x - 1 - abs(x) < 0");
+    EXPECT_EQ(canonical("x > -2"), "x > -2");
+    EXPECT_EQ(canonical("0.5 >= x"), "x <= 0.5");
+    EXPECT_EQ(canonical("-1 != -x"), "-x != -1");
+    EXPECT_EQ(canonical("x == x + 1"), "x - (x + 1) == 0");
+    EXPECT_EQ(canonical("1 < 2"), "1 < 2");
+}
+
+/// At the threshold itself all others are 0, and satisfied plain and negated.
+TEST(Comparisons, EqualityIsYesOrNo) {
+    const std::vector<double> samples{-1, 0, 0.5, 1, NAN};
+    const auto robustness = [&](const std::string& formula) {
+        const Checked checked = monitor(formula, true);
+        EXPECT_TRUE(checked.model) << checked.diagnostics();
+        reference::Trace trace;
+        for (const double x : samples) trace.push_back({{x}, {1}});
+        std::vector<double> result;
+        for (const auto& verdicts : reference::evaluate(*checked.model, trace).verdicts)
+            result.push_back(verdicts[0].robustness);
+        return result;
+    };
+    constexpr double kNo = -INFINITY;
+    constexpr double kYes = INFINITY;
+    EXPECT_EQ(robustness("x == 0.5"), (std::vector{kNo, kNo, kYes, kNo, kNo}));
+    EXPECT_EQ(robustness("x != 0.5"), (std::vector{kYes, kYes, kNo, kYes, kNo}));
+    EXPECT_EQ(robustness("!(x == 0.5)"), (std::vector{kYes, kYes, kNo, kYes, kNo}));
+    EXPECT_EQ(robustness("x == abs(x)"), (std::vector{kNo, kYes, kYes, kYes, kNo}));
+    EXPECT_EQ(robustness("x == 0.5 -> x > 2"), (std::vector{kYes, kYes, -1.5, kYes, kNo}));
+}
+
+TEST(Comparisons, EqualityThatNothingChanges) {
+    const auto codes = [](const std::string& comparison) {
+        return Checked("spec t; input x : f32 in [0, 2]; monitor m = G " + comparison + ";")
+            .codes();
+    };
+    EXPECT_EQ(codes("x == 3"), "W0301");
+    EXPECT_EQ(codes("x != 3"), "W0301");
+    EXPECT_EQ(codes("x == 1"), "");
+    EXPECT_EQ(codes("x != 2"), "");
+}
+
+/// The spec with `%` before a constant; without, it has their values.
+std::string with_constants(const std::string& text, bool named) {
+    const std::vector<std::pair<char, std::string>> values{
+        {'D', "2"}, {'n', "3"}, {'k', "0.5"}, {'T', "0.3 s"}, {'r', "10"}};
+    std::string result = "spec t;";
+    for (const auto& [name, value] : values)
+        if (named) result += fmt::format("const {} = {};", name, value);
+    for (std::size_t i = 0; i < text.size(); ++i) {
+        if (text[i] != '%') {
+            result += text[i];
+            continue;
+        }
+        const char name = text[++i];
+        for (const auto& [constant, value] : values)
+            if (constant == name) result += named ? std::string(1, name) : value;
+    }
+    return result;
+}
+
+TEST(Constants, StandForTheirNumbers) {
+    const std::string text =
+        "rate %r Hz; input z : f32[%D] hold %n; input b : i8[%D] scale %k;"
+        "input x : f32 in [-%n, %n]; target s = [[%k, -%k], [%n, %D]];"
+        "predicate near = kth(%D) mahalanobis([%n, %D])(z, s) <= %k;"
+        "predicate far = min l2(b, s) >= calibrated(conformal, alpha = %k);"
+        "monitor m = G[0, %n min] near -> F[%T, inf] (far && x * %n > -%k && -%k <= x);";
+    Options options;
+    options.allow_uncalibrated = true;
+    const Checked named(with_constants(text, true), options);
+    const Checked plain(with_constants(text, false), options);
+    ASSERT_TRUE(named.model) << named.diagnostics();
+    ASSERT_TRUE(plain.model) << plain.diagnostics();
+    EXPECT_EQ(named.codes(), "");
+    EXPECT_EQ(named.formula("m"), plain.formula("m"));
+    for (std::size_t i = 0; i < plain.model->inputs.size(); ++i) {
+        EXPECT_EQ(named.model->inputs[i].dimension, plain.model->inputs[i].dimension);
+        EXPECT_EQ(named.model->inputs[i].scale, plain.model->inputs[i].scale);
+        EXPECT_EQ(named.model->inputs[i].hold, plain.model->inputs[i].hold);
+        EXPECT_EQ(named.model->inputs[i].range.low, plain.model->inputs[i].range.low);
+    }
+    EXPECT_EQ(named.model->targets[0].hash, plain.model->targets[0].hash);
+    ASSERT_EQ(named.model->predicates.size(), plain.model->predicates.size());
+    for (std::size_t i = 0; i < plain.model->predicates.size(); ++i)
+        EXPECT_EQ(named.model->predicates[i].text + named.model->predicates[i].threshold.text,
+                  plain.model->predicates[i].text + plain.model->predicates[i].threshold.text);
+    EXPECT_EQ(named.model->step_seconds, 0.1);
+}
+
 }  // namespace
 }  // namespace etlc::check

@@ -21,6 +21,12 @@ TEST(Print, CanonicalForm) {
     const std::vector<std::pair<std::string, std::string>> cases{
         {"rate 20Hz;", "rate 20 Hz;"},
         {"period 2.50ms;", "period 2.50 ms;"},
+        {"rate fps Hz,durations up;", "rate fps Hz, durations up;"},
+        {"period step;", "period step;"},
+        {"const d=- 2s;", "const d = -2 s;"},
+        {"input z:f32[D]hold n;", "input z : f32[D] hold n;"},
+        {"input x:f32 in[-top,top];", "input x : f32 in [-top, top];"},
+        {"let f=F[a,b s]x>-limit and y==z;", "let f = F[a, b s] (x > -limit) && y == z;"},
         {"input a,b:i8[4]scale 0.1 hold 2;", "input a, b : i8[4] scale 0.1 hold 2;"},
         {"input x:f32 in[- 1,inf];", "input x : f32 in [-1, inf];"},
         {"target t=load(\"a.npz\",\"k\");", "target t = load(\"a.npz\", \"k\");"},
@@ -85,9 +91,8 @@ public:
             case Kind::name: f->name = name(); break;
             case Kind::comparison:
                 f->left = expression(depth == 0 ? 1 : depth);
-                f->comparison = static_cast<ast::Comparison>(below(4));
-                f->right.text = below(2) != 0 ? "-" : "";
-                f->right.text += number();
+                f->comparison = static_cast<ast::Comparison>(below(6));
+                f->right = expression(below(2) != 0 ? 0 : depth);
                 break;
             case Kind::conjunction:
             case Kind::disjunction: operands(2 + below(3)); break;
@@ -164,6 +169,9 @@ private:
         if (below(2) == 0) return;
         const auto bound = [this] {
             const std::string unit = pick({"", "us", "ms", "s", "min", "inf"});
+            const std::string constant = name();
+            if (below(4) == 0)
+                return ast::Bound{{constant, {}, constant}, unit == "inf" ? "" : unit, {}};
             return unit == "inf" ? ast::Bound{{"inf", {}}, "", {}}
                                  : ast::Bound{{number(), {}}, unit, {}};
         };
@@ -212,6 +220,7 @@ TEST(Print, NoBracketCouldBeLeftOut) {
             open > 0 && (text[open - 1] == '!' || text[open - 1] == ' ' || text[open - 1] == ']');
         return prefixed &&
                (inner.find('<') != std::string::npos || inner.find('>') != std::string::npos ||
+                inner.find('=') != std::string::npos ||
                 inner.find_first_of("+-*/(", 1) != std::string::npos);
     };
     int tried = 0;

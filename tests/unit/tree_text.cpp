@@ -20,10 +20,6 @@ std::string word(const Name& name) {
     return name.text;
 }
 
-std::string word(const Number& number) {
-    return number.text;
-}
-
 std::string word(const VectorLiteral& vector) {
     std::vector<std::string> items;
     for (const Number& n : vector.values) items.push_back(n.text);
@@ -48,8 +44,8 @@ std::string word(const Calibrated& calibrated) {
     return list("calibrated", items);
 }
 
-std::string word(const std::variant<Number, Calibrated>& threshold) {
-    return std::visit([](const auto& t) { return word(t); }, threshold);
+std::string word(const ExprPtr& threshold) {
+    return of(*threshold);
 }
 
 std::string word(Comparison comparison) {
@@ -58,6 +54,8 @@ std::string word(Comparison comparison) {
         case Comparison::less: return "<";
         case Comparison::greater_equal: return ">=";
         case Comparison::greater: return ">";
+        case Comparison::equal: return "==";
+        case Comparison::not_equal: return "!=";
     }
     return "?";
 }
@@ -132,6 +130,10 @@ std::string word(const Rate& d) {
     return list(d.is_period ? "period" : "rate", items);
 }
 
+std::string word(const Constant& d) {
+    return list("const", {d.name.text, d.value.text, d.unit});
+}
+
 std::string word(const Input& d) {
     const char* const types[] = {"f32", "f16", "i8", "bool"};
     std::vector<std::string> items;
@@ -150,8 +152,8 @@ std::string word(const Target& d) {
 }
 
 std::string word(const Predicate& d) {
-    return list("predicate",
-                {d.name.text, word(d.comparison), of(*d.expression), word(d.threshold)});
+    return list("predicate", {d.name.text, word(d.comparison), of(*d.expression),
+                              std::visit([](const auto& t) { return word(t); }, d.threshold)});
 }
 
 std::string word(const Truth& d) {
@@ -181,7 +183,7 @@ std::string of(const Expr& e) {
 std::string of(const Formula& f) {
     if (f.kind == Formula::Kind::name) return f.name;
     if (f.kind == Formula::Kind::comparison)
-        return list(word(f.comparison), {of(*f.left), f.right.text});
+        return list(word(f.comparison), {of(*f.left), of(*f.right)});
     if (f.operands.empty()) return head(f.kind);
     std::vector<std::string> items;
     if (f.interval) {

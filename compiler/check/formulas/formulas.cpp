@@ -140,6 +140,7 @@ private:
                 return entity.broken ? kNone : leaf(Kind::predicate, found->index, written);
             case NameKind::let: return entity.broken ? kNone : c_.model.lets[found->index].formula;
             case NameKind::input: return entity.broken ? kNone : input(found->index, written);
+            case NameKind::constant:
             case NameKind::target:
             case NameKind::monitor:
             case NameKind::unreadable: break;

@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "check/context.hpp"
+#include "check/model/model.hpp"
 
 namespace etlc::check {
 

@@ -15,6 +15,10 @@ std::string_view rate_word(const ast::Rate& rate) {
     return rate.is_period ? "period" : "rate";
 }
 
+std::string_view written(const ast::Number& number) {
+    return number.constant.empty() ? number.text : number.constant;
+}
+
 Quantity quantity(const ast::Rate& rate) {
     return {Decimal::parse(rate.number.text), rate.unit};
 }
@@ -43,7 +47,7 @@ bool is_usable(Context& c, const ast::Rate& rate) {
     if (!Decimal::parse(rate.number.text).is_positive()) {
         c.report(Code::rate_out_of_range, rate.number.span,
                  fmt::format("the {} is {}; expected a positive number", rate_word(rate),
-                             rate.number.text));
+                             shown(rate.number)));
         return false;
     }
     return has_usable_length(c, rate);
@@ -66,7 +70,7 @@ bool has_no_unit_of_its_own(const ast::Bound& bound) {
 }
 
 std::string bound_text(const ast::Bound& bound) {
-    return bound.unit.empty() ? bound.number.text : bound.number.text + " " + bound.unit;
+    return with_unit(shown(bound.number), bound.unit);
 }
 
 void report_too_large(Context& c, const ast::Bound& bound) {
@@ -104,7 +108,7 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
               fmt::format("the {} is {} {}", rate_word(rate), rate.number.text, rate.unit))
         .note(
             fmt::format("to round durations, write '{} {} {}, durations up;', or down, or nearest",
-                        rate_word(rate), rate.number.text, rate.unit));
+                        rate_word(rate), written(rate.number), rate.unit));
 }
 
 /// The whole number of steps that a duration between two of them stands for.

@@ -16,32 +16,21 @@ namespace {
 using diag::Code;
 
 void warn_of_unused(Context& c) {
-    for (const NameKind kind :
-         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let}) {
+    for (const NameKind kind : {NameKind::constant, NameKind::input, NameKind::target,
+                                NameKind::predicate, NameKind::let}) {
         for (const Entity& entity : c.scope.all(kind)) {
-            if (entity.used) continue;
+            if (entity.used || c.used_constants.contains(entity.name)) continue;
             c.report(Code::unused_declaration, entity.span,
                      fmt::format("{} '{}' is not used", word(kind), entity.name));
         }
     }
 }
 
-/// What the comparison says of every value that its left side and its threshold can have; nothing
-/// where it says both. It changes its answer at most once along a range: the ends have all answers.
-std::optional<bool> constant_answer(const Predicate& predicate) {
-    const Range epsilon = predicate.threshold.range();
-    const bool answer = holds(predicate.comparison, predicate.delta.low, epsilon.low);
-    for (const float delta : {predicate.delta.low, predicate.delta.high})
-        for (const float at : {epsilon.low, epsilon.high})
-            if (holds(predicate.comparison, delta, at) != answer) return std::nullopt;
-    return answer;
-}
-
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || std::isnan(predicate.threshold.value))
             continue;  // broken, or not yet calibrated
-        const auto answer = constant_answer(predicate);
+        const auto answer = predicate.constant_answer();
         if (!answer) continue;
         const Range& delta = predicate.delta;
         const std::string values = delta.low == delta.high
@@ -56,7 +45,7 @@ void warn_of_constant_predicates(Context& c) {
 /// cosine(z, t) >= 0.9: near, were it a similarity.
 void warn_of_similarities(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
-        if (predicate.text.empty() || !predicate.plain_distance() || predicate.upper_bound())
+        if (predicate.text.empty() || !predicate.plain_distance() || !predicate.lower_bound())
             continue;
         const bool is_cosine =
             c.model.distances[predicate.expression.index].metric == Metric::cosine;

@@ -51,7 +51,7 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
                            Decimal::parse(number->text) < Decimal::parse("1");
     if (open_unit) return true;
     const auto [text, span] = number != nullptr
-                                  ? std::pair(number->text, number->span)
+                                  ? std::pair(shown(*number), number->span)
                                   : std::pair(std::get<ast::Name>(argument.value).text,
                                               std::get<ast::Name>(argument.value).span);
     c.report(Code::calibration_argument, span,

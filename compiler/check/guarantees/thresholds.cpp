@@ -32,6 +32,13 @@ std::vector<Index> calibrated_predicates(Context& c) {
     return found;
 }
 
+/// What calibration has not made yet: until then the threshold is NaN.
+diag::Diagnostic& report_missing(Context& c, Code code, Span span, std::string message) {
+    diag::Diagnostic found{code, std::move(message), span, {}, 0, 0, {}};
+    found.is_allowed = c.options.allow_missing;
+    return c.sink.report(std::move(found));
+}
+
 /// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
 std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
                                                 const Threshold& first) {
@@ -40,9 +47,10 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
         is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;
     std::error_code error;
     if (is_default && !std::filesystem::exists(path, error)) {
-        c.report(Code::thresholds_missing, first.span,
-                 fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}",
-                             name, path))
+        report_missing(
+            c, Code::thresholds_missing, first.span,
+            fmt::format("'{}' has a calibrated threshold, and there is no thresholds file {}", name,
+                        path))
             .note(
                 "'etlc calibrate' makes one from labelled demonstrations; --thresholds names "
                 "another");
@@ -50,7 +58,9 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
     }
     auto file = thresholds::read(path);
     if (!file) {
-        c.sink.report(data::in_file(file.failure(), path))
+        diag::Diagnostic found = data::in_file(file.failure(), path);
+        found.is_allowed = c.options.allow_missing && !std::filesystem::exists(path, error);
+        c.sink.report(std::move(found))
             .note(first.span, fmt::format("the threshold of '{}' is calibrated", name));
         return std::nullopt;
     }
@@ -156,8 +166,8 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
                                     Compare differences) {
     const auto found = entries.find(name);
     if (found == entries.end()) {
-        c.report(Code::threshold_missing, threshold.span,
-                 fmt::format("{} has no threshold for '{}'", path, name))
+        report_missing(c, Code::threshold_missing, threshold.span,
+                       fmt::format("{} has no threshold for '{}'", path, name))
             .note(std::string(kAgain));
         return nullptr;
     }

@@ -38,6 +38,14 @@ std::string threshold_lines(const Model& model) {
     return lines;
 }
 
+/// The bytes of the file, and a line for each constant that was set from outside.
+std::string spec_text(const Model& model) {
+    std::string text(model.file.text());
+    for (const Constant& constant : model.constants)
+        if (constant.is_set) text += fmt::format("--set {}={}\n", constant.name, constant.text);
+    return text;
+}
+
 }  // namespace
 
 std::string weights_hash(const Distance& distance) {
@@ -45,7 +53,7 @@ std::string weights_hash(const Distance& distance) {
 }
 
 Fingerprint fingerprint(const Model& model) {
-    return {data::xxh64(model.file.text()), hash_of(data_lines(model)),
+    return {data::xxh64(spec_text(model)), hash_of(data_lines(model)),
             hash_of(threshold_lines(model))};
 }
 

@@ -141,7 +141,14 @@ void for_each_distance(const Expr& expression, const Visit& visit) {
     });
 }
 
-enum class Comparison : std::uint8_t { less_equal, less, greater_equal, greater };
+enum class Comparison : std::uint8_t {
+    less_equal,
+    less,
+    greater_equal,
+    greater,
+    equal,
+    not_equal,
+};
 
 /// delta CMP epsilon
 template <class Number>
@@ -150,9 +157,11 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
         case Comparison::less_equal: return delta <= epsilon;
         case Comparison::less: return delta < epsilon;
         case Comparison::greater_equal: return delta >= epsilon;
-        case Comparison::greater: break;
+        case Comparison::greater: return delta > epsilon;
+        case Comparison::equal: return delta == epsilon;
+        case Comparison::not_equal: break;
     }
-    return delta > epsilon;
+    return delta != epsilon;
 }
 
 /// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
@@ -193,7 +202,7 @@ struct Threshold {
 
 /// Definition "Embedding Predicate": (Z_target, d, epsilon, CMP, a), or EXPR CMP epsilon in
 /// general. Robustness is epsilon - delta for <= and <, delta - epsilon for >= and >, one float32
-/// subtraction, with the epsilon of that step.
+/// subtraction, with the epsilon of that step. == and != have no margin: they are +inf or -inf.
 struct Predicate {
     std::string name;  ///< empty for a comparison that stands in a formula
     std::string text;  ///< canonical text without the threshold: "min l2(z, goal_a) <= "
@@ -210,6 +219,13 @@ struct Predicate {
     bool upper_bound() const {
         return comparison == Comparison::less_equal || comparison == Comparison::less;
     }
+    bool equality() const {
+        return comparison == Comparison::equal || comparison == Comparison::not_equal;
+    }
+    bool lower_bound() const { return !upper_bound() && !equality(); }
+    /// What the comparison says of every value that its left side and its threshold can have;
+    /// nothing where it says both.
+    std::optional<bool> constant_answer() const;
     bool strict() const {
         return comparison == Comparison::less || comparison == Comparison::greater;
     }
@@ -304,8 +320,15 @@ struct Let {
     Span span;
 };
 
+struct Constant {
+    std::string name;
+    std::string text;     ///< its value, "0.5" or "2 s"
+    bool is_set = false;  ///< from outside, by --set
+};
+
 struct Model {
-    std::string name;         ///< of the spec
+    std::string name;  ///< of the spec
+    std::vector<Constant> constants;
     source::File file;        ///< for the lines that comments quote
     double step_seconds = 0;  ///< 0: no rate was given
     /// Durations that are not whole numbers of steps, as written, and what they were rounded to.

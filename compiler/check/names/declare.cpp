@@ -33,16 +33,8 @@ void declare(Context& c, NameKind kind, const ast::Name& name) {
 
 void declare_all(Context& c) {
     for (const ast::Declaration& declaration : c.spec.declarations) {
-        if (const auto* input = std::get_if<ast::Input>(&declaration))
-            for (const ast::Name& name : input->names) declare(c, NameKind::input, name);
-        if (const auto* target = std::get_if<ast::Target>(&declaration))
-            declare(c, NameKind::target, target->name);
-        if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))
-            declare(c, NameKind::predicate, predicate->name);
-        if (const auto* let = std::get_if<ast::Let>(&declaration))
-            declare(c, NameKind::let, let->name);
-        if (const auto* monitor = std::get_if<ast::Monitor>(&declaration))
-            declare(c, NameKind::monitor, monitor->name);
+        for_each_name(declaration,
+                      [&](NameKind kind, const ast::Name& name) { declare(c, kind, name); });
     }
     for (const ast::Name& name : c.spec.unreadable)
         if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
@@ -54,8 +46,8 @@ void declare_names(Context& c) {
     declare_all(c);
     c.model.name = c.spec.name.text;
     check_spelling(c, c.spec.name, "spec", true);
-    for (const NameKind kind :
-         {NameKind::input, NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor})
+    for (const NameKind kind : {NameKind::constant, NameKind::input, NameKind::target,
+                                NameKind::predicate, NameKind::let, NameKind::monitor})
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)

@@ -36,6 +36,11 @@ Index resolve(Context& c, const ast::Name& name, NameKind kind) {
     return kNone;
 }
 
+std::string shown(const ast::Number& number) {
+    if (number.constant.empty()) return number.text;
+    return fmt::format("{} = {}", number.constant, number.text);
+}
+
 float number32(Context& c, const ast::Number& number) {
     float value = 1;
     const Fit fit = to_float(number.text, value);
@@ -44,10 +49,10 @@ float number32(Context& c, const ast::Number& number) {
     c.report(
         overflow ? Code::number_overflow : Code::number_underflow, number.span,
         overflow
-            ? fmt::format("{} is beyond the largest float32, 3.40282347e+38", number.text)
+            ? fmt::format("{} is beyond the largest float32, 3.40282347e+38", shown(number))
             : fmt::format(
                   "{} is not zero, but its nearest float32 is (the least above zero is 1.4e-45)",
-                  number.text));
+                  shown(number)));
     return 1;
 }
 

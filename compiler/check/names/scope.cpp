@@ -12,6 +12,7 @@ struct Words {
 };
 
 constexpr std::array<Words, kNameKinds> kWords{{
+    {"const", "a constant"},
     {"input", "an input"},
     {"target", "a target"},
     {"predicate", "a predicate"},

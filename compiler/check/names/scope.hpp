@@ -1,4 +1,4 @@
-// The names of a spec: one namespace for inputs, targets, predicates, lets and monitors.
+// The names of a spec: one namespace for constants, inputs, targets, predicates, lets and monitors.
 // Takes: declarations, in file order. Gives: what a name means, and what was never used.
 // Keeps true: every declaration has an entity, also one that repeats a name; a name means its first
 // declaration.
@@ -18,8 +18,16 @@ namespace etlc::check {
 
 /// `unreadable`: parse/ saw a declaration of the name but could not read it; it fits wherever it is
 /// used.
-enum class NameKind : std::uint8_t { input, target, predicate, let, monitor, unreadable };
-inline constexpr std::size_t kNameKinds = 6;
+enum class NameKind : std::uint8_t {
+    constant,
+    input,
+    target,
+    predicate,
+    let,
+    monitor,
+    unreadable,
+};
+inline constexpr std::size_t kNameKinds = 7;
 
 std::string_view word(NameKind kind);               ///< "input"
 std::string_view word_with_article(NameKind kind);  ///< "an input"
@@ -34,7 +42,7 @@ struct Entity {
 
 struct Reference {
     NameKind kind = NameKind::unreadable;
-    Index index = 0;  ///< of the model's inputs, targets, predicates, lets or monitors
+    Index index = 0;  ///< of the model's constants, inputs, targets, predicates, lets or monitors
 };
 
 class Scope {

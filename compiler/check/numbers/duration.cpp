@@ -123,6 +123,10 @@ StepCount count_steps(const Quantity& duration, const Quantity& step) {
             .upper_half = rest >= x.denominator - rest};
 }
 
+std::string with_unit(std::string_view number, std::string_view unit) {
+    return fmt::format("{}{}{}", number, unit.empty() ? "" : " ", unit);
+}
+
 std::string duration_text(std::uint64_t steps, const Quantity& step, std::string_view unit) {
     // steps x step / unit = steps / (one unit / step)
     const Fraction per_unit = quotient({Decimal::parse("1"), unit}, step);

@@ -29,6 +29,9 @@ struct StepCount {
 
 StepCount count_steps(const Quantity& duration, const Quantity& step);
 
+/// "0.5 s"; the number alone where there is no unit.
+std::string with_unit(std::string_view number, std::string_view unit);
+
 /// `steps` steps as a duration in `unit`: "0.15 s", or "100/3 ms" where no decimal is equal to it.
 std::string duration_text(std::uint64_t steps, const Quantity& step, std::string_view unit);
 

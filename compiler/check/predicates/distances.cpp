@@ -141,15 +141,15 @@ private:
     }
 
     bool set_kth() {
-        const std::string& text = written_.aggregation->n->text;
-        const auto n = Decimal::parse(text).whole(target().rows);
+        const ast::Number& rank = *written_.aggregation->n;
+        const auto n = Decimal::parse(rank.text).whole(target().rows);
         if (n && *n > 0) {
             distance_.kth = static_cast<std::uint32_t>(*n);
             return true;
         }
         c_.report(Code::kth_out_of_range, written_.aggregation->span,
                   fmt::format("kth({}) of target '{}'; expected a whole number from 1 to its {}",
-                              text, target().name, diag::counted(target().rows, "row")));
+                              shown(rank), target().name, diag::counted(target().rows, "row")));
         return false;
     }
 

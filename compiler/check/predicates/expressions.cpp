@@ -36,12 +36,15 @@ bool set_number(Context& c, Expr& result, const ast::Expr& written) {
     const std::size_t errors = c.sink.errors();
     result.text = written.text;
     result.number = to_double(written.text);
-    result.number32 = number32(c, {written.text, written.span});
+    result.number32 = number32(c, {written.text, written.span, written.constant});
     return c.sink.errors() == errors;
 }
 
 bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
-    result.index = resolve(c, {written.text, written.span}, NameKind::input);
+    const ast::Name name{written.text, written.span};
+    if (find(c, name, {NameKind::input, NameKind::constant}, "an input or a constant") == nullptr)
+        return false;
+    result.index = resolve(c, name, NameKind::input);
     if (result.index == kNone) return false;
     const Input& input = c.model.inputs[result.index];
     if (input.type == InputType::scalar) return true;
@@ -51,7 +54,8 @@ bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
     if (input.is_embedding())
         error.note(
             fmt::format("a distance makes a number of it: min l2({}, TARGET)", written.text));
-    if (!input.is_embedding()) error.note("a bool stands in formulas as it is");
+    if (!input.is_embedding())
+        error.note("a bool stands in formulas as it is; two are compared by '<->'");
     return false;
 }
 

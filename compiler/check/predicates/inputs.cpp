@@ -61,7 +61,7 @@ private:
         const auto value = Decimal::parse(number.text).whole(kMaxDimension);
         if (value && *value > 0) return static_cast<std::uint32_t>(*value);
         report(Code::dimension_out_of_range, number.span,
-               fmt::format("the dimension {} is not a whole number from 1 to {}", number.text,
+               fmt::format("the dimension {} is not a whole number from 1 to {}", shown(number),
                            kMaxDimension));
         return 1;
     }
@@ -79,7 +79,7 @@ private:
     float positive_scale(const ast::Number& number) {
         if (!Decimal::parse(number.text).is_positive()) {
             report(Code::scale_form, number.span,
-                   fmt::format("the scale is {}; expected a positive number", number.text));
+                   fmt::format("the scale is {}; expected a positive number", shown(number)));
             return 1.0F;
         }
         const std::size_t errors = c_.sink.errors();
@@ -87,7 +87,7 @@ private:
         if (c_.sink.errors() > errors) broken_ = true;
         if (std::isfinite(value * 128.0F)) return value;
         report(Code::scale_form, number.span,
-               fmt::format("128 times the scale {} is beyond float32", number.text));
+               fmt::format("128 times the scale {} is beyond float32", shown(number)));
         return 1.0F;
     }
 
@@ -107,9 +107,9 @@ private:
                               (!low_is_infinite && !high_is_infinite &&
                                Decimal::parse(range.low.text) > Decimal::parse(range.high.text));
         if (reversed) {
-            report(
-                Code::range_form, range.span,
-                fmt::format("the range [{}, {}] holds no number", range.low.text, range.high.text));
+            report(Code::range_form, range.span,
+                   fmt::format("the range [{}, {}] holds no number", shown(range.low),
+                               shown(range.high)));
             return;
         }
         if (!low_is_infinite) check_size(range.low);
@@ -122,7 +122,7 @@ private:
         if (to_float(number.text, value) != Fit::overflow) return;
         report(Code::number_overflow, number.span,
                fmt::format("{} is beyond the largest float32; an open end is written {}inf",
-                           number.text, number.text.starts_with('-') ? "-" : ""));
+                           shown(number), number.text.starts_with('-') ? "-" : ""));
     }
 
     /// A comparison may be false where a sample is missing; a number has no such value.
@@ -140,7 +140,7 @@ private:
         if (const auto steps = Decimal::parse(number.text).whole(kMaxHold))
             return static_cast<std::uint32_t>(*steps);
         report(Code::hold_out_of_range, number.span,
-               fmt::format("hold {} is not a whole number of steps from 0 to {}", number.text,
+               fmt::format("hold {} is not a whole number of steps from 0 to {}", shown(number),
                            kMaxHold));
         return 0;
     }

@@ -78,6 +78,11 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     if (!array) {
         diag::Diagnostic diagnostic = data::in_file(array.failure(), path);
         diagnostic.span = load.span;
+        std::error_code unknown;
+        diagnostic.is_allowed = c.options.allow_missing &&
+                                diagnostic.code == Code::unreadable_data_file &&
+                                !std::filesystem::exists(path, unknown) && !unknown;
+        c.lacks_data = c.lacks_data || diagnostic.is_allowed;
         c.sink.report(std::move(diagnostic));
         return std::nullopt;
     }

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <limits>
 
 #include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
@@ -22,6 +23,8 @@ Comparison comparison_of(ast::Comparison comparison) {
         case ast::Comparison::less: return Comparison::less;
         case ast::Comparison::greater_equal: return Comparison::greater_equal;
         case ast::Comparison::greater: return Comparison::greater;
+        case ast::Comparison::equal: return Comparison::equal;
+        case ast::Comparison::not_equal: return Comparison::not_equal;
     }
     return Comparison::less_equal;
 }
@@ -51,14 +54,74 @@ bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
     return false;
 }
 
+/// A number, with its sign where it has one.
+std::optional<ast::Number> lone_number(const ast::Expr& written) {
+    if (written.kind == ast::Expr::Kind::number)
+        return ast::Number{written.text, written.span, written.constant};
+    if (written.kind != ast::Expr::Kind::negate) return std::nullopt;
+    auto number = lone_number(*written.arguments[0]);
+    if (!number || number->text.starts_with('-')) return std::nullopt;
+    number->text.insert(0, "-");
+    number->span = written.span;
+    if (!number->constant.empty()) number->constant.insert(0, "-");
+    return number;
+}
+
+/// What stands for "x CMP y" where both are numbers that change: x - y CMP 0.
+struct Sides {
+    std::optional<Expr> expression;  ///< nothing where a side had an error
+    Comparison comparison;
+    std::optional<Threshold> threshold;
+};
+
+Comparison mirrored(Comparison comparison) {
+    switch (comparison) {
+        case Comparison::less_equal: return Comparison::greater_equal;
+        case Comparison::less: return Comparison::greater;
+        case Comparison::greater_equal: return Comparison::less_equal;
+        case Comparison::greater: return Comparison::less;
+        case Comparison::equal:
+        case Comparison::not_equal: break;
+    }
+    return comparison;
+}
+
+Sides sides(Context& c, const ast::Expr& left, Comparison comparison, const ast::Expr& right) {
+    if (const auto number = lone_number(right))
+        return {check_expression(c, left), comparison, literal_threshold(c, *number)};
+    if (const auto number = lone_number(left))
+        return {check_expression(c, right), mirrored(comparison), literal_threshold(c, *number)};
+    auto x = check_expression(c, left);
+    auto y = check_expression(c, right);
+    const Span span = source::join(left.span, right.span);
+    Sides result{std::nullopt, comparison, literal_threshold(c, {"0", span})};
+    if (!x || !y) return result;
+    result.expression.emplace();
+    result.expression->kind = Expr::Kind::subtract;
+    result.expression->arguments = {std::move(*x), std::move(*y)};
+    result.expression->span = span;
+    return result;
+}
+
+/// A distance is hardly ever exactly equal to anything, and the rounding of its kernel decides.
+bool can_be_equal(Context& c, const Predicate& predicate) {
+    bool measures = false;
+    for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
+    if (!predicate.equality() || !measures) return true;
+    c.report(Code::equality_of_distances, predicate.span,
+             fmt::format("'{}' compares distances, which are rounded; expected '<=', '<', '>=' or "
+                         "'>'",
+                         symbol(predicate.comparison)));
+    return false;
+}
+
 /// The predicate, or nothing where it had an error. `threshold` is absent where that had one.
-std::optional<Predicate> make_predicate(Context& c, const ast::Expr& written,
-                                        ast::Comparison comparison,
-                                        std::optional<Threshold> threshold, Span span) {
-    auto expression = check_expression(c, written);
+std::optional<Predicate> make_predicate(Context& c, Sides sides, Span span) {
+    auto& expression = sides.expression;
+    auto& threshold = sides.threshold;
     if (!expression || !threshold || !sign_fits(c, *expression, *threshold)) return std::nullopt;
     Predicate predicate;
-    predicate.comparison = comparison_of(comparison);
+    predicate.comparison = sides.comparison;
     predicate.text =
         fmt::format("{} {} ", print(c.model, *expression), symbol(predicate.comparison));
     predicate.inputs = inputs_of(c.model, *expression);
@@ -73,18 +136,34 @@ std::optional<Predicate> make_predicate(Context& c, const ast::Expr& written,
     predicate.expression = std::move(*expression);
     predicate.threshold = std::move(*threshold);
     predicate.span = span;
+    if (!can_be_equal(c, predicate)) return std::nullopt;
     return predicate;
 }
 
-std::optional<Threshold> declared_threshold(Context& c, const ast::Predicate& declaration) {
-    if (const auto* number = std::get_if<ast::Number>(&declaration.threshold))
-        return literal_threshold(c, *number);
-    return check_calibrated(c, std::get<ast::Calibrated>(declaration.threshold));
+Sides declared_sides(Context& c, const ast::Predicate& declaration) {
+    const Comparison comparison = comparison_of(declaration.comparison);
+    if (const auto* right = std::get_if<ast::ExprPtr>(&declaration.threshold))
+        return sides(c, *declaration.expression, comparison, **right);
+    const auto& calibrated = std::get<ast::Calibrated>(declaration.threshold);
+    if (comparison == Comparison::equal || comparison == Comparison::not_equal) {
+        c.report(Code::comparison_form, calibrated.span,
+                 fmt::format("a calibrated threshold stands behind '<=', '<', '>=' or '>', not "
+                             "behind '{}'",
+                             symbol(comparison)));
+        return {std::nullopt, comparison, std::nullopt};
+    }
+    return {check_expression(c, *declaration.expression), comparison,
+            check_calibrated(c, calibrated)};
 }
 
 /// epsilon - delta or delta - epsilon; and -inf or +inf, where a missing sample counts as that.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
+    if (predicate.equality()) {
+        const auto answer = predicate.constant_answer();
+        const float infinity = std::numeric_limits<float>::infinity();
+        return {answer == true ? infinity : -infinity, answer == false ? -infinity : infinity};
+    }
     const Range epsilon = predicate.threshold.range();
     Range range = predicate.upper_bound() ? subtract(epsilon, predicate.delta)
                                           : subtract(predicate.delta, epsilon);
@@ -96,22 +175,40 @@ Range robustness_of(const Predicate& predicate) {
 
 }  // namespace
 
+/// A comparison by order changes its answer at most once along a range: the ends have all answers.
+std::optional<bool> Predicate::constant_answer() const {
+    const Range epsilon = threshold.range();
+    if (equality()) {
+        const bool one_value = delta.low == delta.high && delta.low == epsilon.low;
+        if (!one_value && delta.contains(epsilon.low)) return std::nullopt;
+        return one_value == (comparison == Comparison::equal);
+    }
+    const bool answer = holds(comparison, delta.low, epsilon.low);
+    for (const float value : {delta.low, delta.high})
+        for (const float at : {epsilon.low, epsilon.high})
+            if (holds(comparison, value, at) != answer) return std::nullopt;
+    return answer;
+}
+
 std::string_view symbol(Comparison comparison) {
     switch (comparison) {
         case Comparison::less_equal: return "<=";
         case Comparison::less: return "<";
         case Comparison::greater_equal: return ">=";
         case Comparison::greater: return ">";
+        case Comparison::equal: return "==";
+        case Comparison::not_equal: return "!=";
     }
     return "";
 }
 
 Index comparison_predicate(Context& c, const ast::Formula& comparison) {
-    auto predicate = make_predicate(c, *comparison.left, comparison.comparison,
-                                    literal_threshold(c, comparison.right), comparison.span);
+    auto predicate = make_predicate(
+        c, sides(c, *comparison.left, comparison_of(comparison.comparison), *comparison.right),
+        comparison.span);
     if (!predicate) return kNone;
     // Equal numbers may be written differently, and the text of the threshold is as written.
-    const std::string key = predicate->text + Decimal::parse(comparison.right.text).text();
+    const std::string key = predicate->text + Decimal::parse(predicate->threshold.text).text();
     const auto [at, is_new] =
         c.predicate_of_text.try_emplace(key, static_cast<Index>(c.model.predicates.size()));
     if (is_new) c.model.predicates.push_back(std::move(*predicate));
@@ -121,8 +218,7 @@ Index comparison_predicate(Context& c, const ast::Formula& comparison) {
 void check_predicates(Context& c) {
     for_each_declaration<ast::Predicate>(
         c.spec, [&](const ast::Predicate& declaration, Index index) {
-            auto predicate = make_predicate(c, *declaration.expression, declaration.comparison,
-                                            declared_threshold(c, declaration), declaration.span);
+            auto predicate = make_predicate(c, declared_sides(c, declaration), declaration.span);
             if (!predicate) c.scope.entity(NameKind::predicate, index).broken = true;
             c.model.predicates.push_back(predicate ? std::move(*predicate) : Predicate{});
             c.model.predicates.back().name = declaration.name.text;

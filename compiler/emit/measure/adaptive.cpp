@@ -19,6 +19,8 @@ std::string constant(const Context& context, check::Index p) {
 }  // namespace
 
 const char* comparison_name(const check::Predicate& predicate) {
+    if (predicate.equality())
+        return predicate.comparison == check::Comparison::equal ? "is_equal" : "is_unequal";
     if (predicate.upper_bound()) return predicate.strict() ? "is_below" : "is_at_most";
     return predicate.strict() ? "is_above" : "is_at_least";
 }

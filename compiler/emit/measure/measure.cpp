@@ -39,6 +39,17 @@ std::string expression(const Context& context, const Expr& e) {
     return "";
 }
 
+/// The function of the runtime that gives the robustness.
+const char* robustness_name(const check::Predicate& predicate) {
+    switch (predicate.comparison) {
+        case check::Comparison::less_equal:
+        case check::Comparison::less: return "at_most";
+        case check::Comparison::equal: return "equal";
+        case check::Comparison::not_equal: return "unequal";
+        default: return "at_least";
+    }
+}
+
 /// Distances that an expression or more than one predicate reads get a local; the others go
 /// straight into telemetry.
 std::map<Index, int> uses_of_distances(const Context& context) {
@@ -127,9 +138,9 @@ private:
             predicate.plain_distance() && context_.enclosed(predicate.expression.index);
         const std::string known =
             enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
-        print_wrapped(out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom,
-                                        predicate.upper_bound() ? "at_most" : "at_least", known,
-                                        threshold, missing_value(p)));
+        print_wrapped(
+            out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom, robustness_name(predicate),
+                              known, threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
         print_recorded(out_, context_, p, delta);
     }

@@ -66,6 +66,9 @@ std::string identifier(std::string_view text, const std::string& otherwise) {
             ++end;
         if (end > i) {
             append_word(name, word_for_operator(text.substr(i, end - i)));
+        } else if (text.substr(i, 2) == "==" || text.substr(i, 2) == "!=") {
+            end = i + 2;
+            append_word(name, text[i] == '=' ? "is" : "is_not");
         } else {
             end = i + 1;
             append_word(name, word_for(text[i]));

@@ -1,5 +1,6 @@
 #include "plan/program/predicate_values.hpp"
 
+#include "etlmon/temporal/equality.hpp"
 #include "etlmon/temporal/predicate.hpp"
 #include "etlmon/temporal/truth.hpp"
 
@@ -16,24 +17,22 @@ etlmon::Truth comparison(const check::Predicate& predicate, float delta, float e
         case check::Comparison::less_equal: return etlmon::is_at_most(delta, epsilon, range);
         case check::Comparison::less: return etlmon::is_below(delta, epsilon, range);
         case check::Comparison::greater_equal: return etlmon::is_at_least(delta, epsilon, range);
-        case check::Comparison::greater: break;
+        case check::Comparison::greater: return etlmon::is_above(delta, epsilon, range);
+        case check::Comparison::equal: return etlmon::is_equal(delta, epsilon, range);
+        case check::Comparison::not_equal: break;
     }
-    return etlmon::is_above(delta, epsilon, range);
+    return etlmon::is_unequal(delta, epsilon, range);
 }
 
-/// A comparison changes its answer at most once on the way from the least delta to the greatest,
-/// and on the way from the least epsilon to the greatest: the corners have all answers.
 etlmon::Truth truth_range(const check::Predicate& predicate) {
-    const check::Range thresholds = predicate.threshold.range();
-    etlmon::Truth range{true, false};
-    for (const float delta : {predicate.delta.low, predicate.delta.high})
-        for (const float epsilon : {thresholds.low, thresholds.high}) {
-            const etlmon::Truth at = comparison(predicate, delta, epsilon, etlmon::kPerhaps);
-            range = {range.low && at.low, range.high || at.high};
-        }
-    if (predicate.missing)
-        return {range.low && *predicate.missing, range.high || *predicate.missing};
-    return range;
+    const auto answer = predicate.constant_answer();
+    const etlmon::Truth range = answer ? etlmon::truth_of(*answer) : etlmon::kPerhaps;
+    if (!predicate.missing) return range;
+    return {range.low && *predicate.missing, range.high || *predicate.missing};
+}
+
+Value constant(bool truth) {
+    return truth ? etlmon::kTrue : etlmon::kFalse;
 }
 
 Value value_of(etlmon::Truth truth) {
@@ -49,14 +48,6 @@ Value unseen_range(const check::Predicate& predicate, Values values) {
     return value_of(truth_range(predicate));
 }
 
-namespace {
-
-Value constant(bool truth) {
-    return truth ? etlmon::kTrue : etlmon::kFalse;
-}
-
-}  // namespace
-
 Value missing_value(const check::Predicate& predicate, Values values) {
     return predicate.missing ? constant(*predicate.missing) : unseen_range(predicate, values);
 }
@@ -67,7 +58,7 @@ Value missing_value(const check::Input& input) {
 
 Value value_of(const check::Predicate& predicate, float delta, float epsilon, Values values) {
     const Value missing = missing_value(predicate, values);
-    if (values == Values::boolean) {
+    if (values == Values::boolean || predicate.equality()) {
         const etlmon::Truth otherwise{missing.low == etlmon::kTop, missing.high == etlmon::kTop};
         return value_of(comparison(predicate, delta, epsilon, otherwise));
     }

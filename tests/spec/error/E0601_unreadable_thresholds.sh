@@ -6,7 +6,7 @@ target goal = [[1]];
 predicate near = l2(z, goal) <= calibrated(f1);
 monitor m = F near;
 END
-"$ETLC" t.etl --check --thresholds no_such.json
+"$ETLC" t.etl -o t.hpp --thresholds no_such.json
 "$ETLC" t.etl --check --thresholds .
 truncate -s 67108865 large.json
 "$ETLC" t.etl --check --thresholds large.json

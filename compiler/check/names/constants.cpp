@@ -1,0 +1,252 @@
+// Constants: what each is worth, from the spec or from outside, put in place of its name.
+// Takes: the tree, and settings. Gives: a tree whose numbers are numbers, each with the name that
+// stood for it. Keeps true: a declaration whose constant is unknown or does not fit is taken as
+// unreadable, so that one error makes no others.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "check/numbers/duration.hpp"
+#include "check/steps.hpp"
+#include "data/files/file.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+std::string text_of(const ast::Constant& constant) {
+    return with_unit(constant.value.text, constant.unit);
+}
+
+std::string text_of(const Setting& setting) {
+    return fmt::format("--set {}={}{}", setting.name, setting.number, setting.unit);
+}
+
+/// Puts the settings into the declarations of constants.
+void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
+    for (const Setting& setting : c.options.settings) {
+        const auto named = [&](const ast::Constant* k) { return k->name.text == setting.name; };
+        const auto found = std::find_if(constants.begin(), constants.end(), named);
+        if (found == constants.end()) {
+            auto& error = c.sink.report(data::in_file(
+                {Code::unknown_setting,
+                 fmt::format("the spec has no constant {}", data::in_quotes(setting.name))},
+                text_of(setting)));
+            const std::string near = c.scope.nearest(setting.name, {NameKind::constant});
+            if (!near.empty()) error.note(fmt::format("did you mean '{}'?", near));
+            continue;
+        }
+        ast::Constant& constant = **found;
+        if (constant.unit.empty() != setting.unit.empty()) {
+            c.report(
+                Code::constant_form, constant.span,
+                fmt::format("{}: '{}' is {}, {}; expected {}", text_of(setting), setting.name,
+                            constant.unit.empty() ? "a number" : "a duration", text_of(constant),
+                            constant.unit.empty() ? "no unit" : "a unit behind the number"));
+            continue;
+        }
+        constant.value.text = setting.number;
+        constant.unit = setting.unit;
+        c.model.constants[static_cast<std::size_t>(found - constants.begin())].is_set = true;
+    }
+}
+
+/// Replaces the constants of one declaration.
+class Replacement {
+public:
+    Replacement(Context& context, const std::vector<ast::Constant*>& constants)
+        : c_(context), constants_(constants) {}
+
+    /// False where one is unknown or does not fit, which is reported.
+    bool in(ast::Declaration& declaration) {
+        good_ = true;
+        std::visit([this](auto& d) { this->replace(d); }, declaration);
+        return good_;
+    }
+
+private:
+    const ast::Constant* value_of(const ast::Name& name) {
+        const Index index = resolve(c_, name, NameKind::constant);
+        if (index == kNone) {
+            good_ = false;
+            return nullptr;
+        }
+        c_.used_constants.insert(name.text);
+        return constants_[index];
+    }
+
+    const ast::Constant* value_of(const ast::Number& number) {
+        return number.constant.empty() ? nullptr
+                                       : value_of(ast::Name{number.constant, number.span});
+    }
+
+    bool has_no_unit(const ast::Constant& constant, Span use) {
+        if (constant.unit.empty()) return true;
+        good_ = false;
+        c_.report(Code::constant_form, use,
+                  fmt::format("'{}' is a duration, {}; expected a number", constant.name.text,
+                              text_of(constant)))
+            .note(constant.span, fmt::format("'{}' is declared here", constant.name.text));
+        return false;
+    }
+
+    static void set(ast::Number& number, const ast::Constant& constant) {
+        std::string text = constant.value.text;
+        if (number.text.starts_with('-')) {
+            text = text.starts_with('-') ? text.substr(1) : '-' + text;
+            number.constant.insert(0, "-");
+        }
+        number.text = std::move(text);
+    }
+
+    void replace(ast::Number& number) {
+        const ast::Constant* constant = value_of(number);
+        if (constant != nullptr && has_no_unit(*constant, number.span)) set(number, *constant);
+    }
+
+    /// A time: its unit is that of the constant, or stands behind it.
+    void replace(ast::Number& number, std::string& unit) {
+        const ast::Constant* constant = value_of(number);
+        if (constant == nullptr) return;
+        if (!unit.empty() && !has_no_unit(*constant, number.span)) return;
+        set(number, *constant);
+        if (unit.empty()) unit = constant->unit;
+    }
+
+    template <class T>
+    void replace(std::optional<T>& optional) {
+        if (optional) replace(*optional);
+    }
+    template <class T>
+    void replace(std::vector<T>& all) {
+        for (T& one : all) replace(one);
+    }
+    template <class T>
+    void replace(std::unique_ptr<T>& pointer) {
+        if (pointer) replace(*pointer);
+    }
+    template <class... Alternatives>
+    void replace(std::variant<Alternatives...>& value) {
+        std::visit([this](auto& v) { this->replace(v); }, value);
+    }
+
+    void replace(ast::Name& /*name*/) {}
+    void replace(ast::Load& /*load*/) {}
+    void replace(ast::Constant& /*constant*/) {}
+    void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
+    void replace(ast::VectorLiteral& vector) { replace(vector.values); }
+
+    void replace(ast::Distance& distance) {
+        if (distance.aggregation) replace(distance.aggregation->n);
+        replace(distance.weights);
+    }
+
+    void replace(ast::Expr& expression) {
+        replace(expression.distance);
+        replace(expression.arguments);
+        const Reference* meant =
+            expression.kind == ast::Expr::Kind::name ? c_.scope.find(expression.text) : nullptr;
+        if (meant == nullptr || meant->kind != NameKind::constant) return;
+        ast::Number number{expression.text, expression.span, expression.text};
+        replace(number);
+        expression.kind = ast::Expr::Kind::number;
+        expression.text = number.text;
+        expression.constant = number.constant;
+    }
+
+    void replace(ast::Formula& formula) {
+        replace(formula.operands);
+        if (formula.interval) {
+            replace(formula.interval->low.number, formula.interval->low.unit);
+            replace(formula.interval->high.number, formula.interval->high.unit);
+        }
+        replace(formula.left);
+        replace(formula.right);
+    }
+
+    void replace(ast::Calibrated& calibrated) {
+        for (ast::Calibrated::Argument& argument : calibrated.arguments) {
+            auto* const name = std::get_if<ast::Name>(&argument.value);
+            if (name != nullptr && argument.key.text != "against" &&
+                c_.scope.find(name->text) != nullptr)
+                argument.value = ast::Number{name->text, name->span, name->text};
+            replace(argument.value);
+        }
+    }
+
+    void replace(ast::Rate& rate) {
+        if (!rate.is_period) return replace(rate.number);
+        replace(rate.number, rate.unit);
+        if (!rate.unit.empty() || !good_) return;
+        good_ = false;
+        c_.report(Code::constant_form, rate.number.span,
+                  fmt::format("'{0}' is a number, {1}, and a period has a unit; expected one, as "
+                              "in 'period {0} ms'",
+                              rate.number.constant, rate.number.text));
+    }
+
+    void replace(ast::Input& input) {
+        replace(input.type.dimension);
+        replace(input.type.scale);
+        if (input.range) {
+            replace(input.range->low);
+            replace(input.range->high);
+        }
+        replace(input.hold);
+    }
+
+    void replace(ast::Target& target) { replace(target.value); }
+    void replace(ast::Predicate& predicate) {
+        replace(predicate.expression);
+        replace(predicate.threshold);
+    }
+    void replace(ast::Truth& truth) { replace(truth.formula); }
+    void replace(ast::Let& let) { replace(let.formula); }
+    void replace(ast::Monitor& monitor) {
+        replace(monitor.formula);
+        replace(monitor.calibrated);
+    }
+
+    Context& c_;
+    const std::vector<ast::Constant*>& constants_;
+    bool good_ = true;
+};
+
+}  // namespace
+
+void set_constants(Context& c, ast::Spec& spec) {
+    std::vector<ast::Constant*> constants;
+    for (ast::Declaration& declaration : spec.declarations) {
+        for_each_name(declaration,
+                      [&](NameKind kind, const ast::Name& name) { c.scope.declare(kind, name); });
+        if (auto* const constant = std::get_if<ast::Constant>(&declaration))
+            constants.push_back(constant);
+    }
+    for (const ast::Name& name : spec.unreadable) c.scope.declare(NameKind::unreadable, name);
+    c.model.constants.resize(constants.size());
+    take_settings(c, constants);
+    for (std::size_t i = 0; i < constants.size(); ++i) {
+        c.model.constants[i].name = constants[i]->name.text;
+        c.model.constants[i].text = text_of(*constants[i]);
+    }
+
+    Replacement replacement(c, constants);
+    const auto is_broken = [&](ast::Declaration& declaration) {
+        if (replacement.in(declaration)) return false;
+        for_each_name(declaration, [&](NameKind /*kind*/, const ast::Name& name) {
+            spec.unreadable.push_back(name);
+        });
+        c.incomplete = true;
+        return true;
+    };
+    // Behind this, `constants` points to nothing.
+    spec.declarations.erase(
+        std::remove_if(spec.declarations.begin(), spec.declarations.end(), is_broken),
+        spec.declarations.end());
+    c.scope = {};  // declare_names makes it of the declarations that are left
+}
+
+}  // namespace etlc::check
