@@ -62,6 +62,8 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert("temporal/shift");
     if (any_stream(plan, {StreamOp::window, StreamOp::window_since, StreamOp::window_until}))
         headers.insert(words.windows);
+    if (any_stream(plan, {StreamOp::window_handover}))
+        headers.insert({"temporal/handover", "temporal/window"});
     if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");
     if (plan.recorder) headers.insert("temporal/recorder");
     for (const Names::OfReading& reading : context.names.readings) {

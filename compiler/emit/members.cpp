@@ -25,6 +25,9 @@ std::string type_of(const Context& context, const plan::Member& m) {
         case Kind::until_window:
             return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Until", "Release"),
                                m.length);
+        case Kind::handover_window:
+            return fmt::format("etlmon::Window<{}, {}>", aggregate(m, "Handover", "Covered"),
+                               m.length);
         case Kind::widening:
             return fmt::format("etlmon::Widening<{}, {}, {}>", aggregate(m, "Greatest", "Least"),
                                m.from_length, m.length);

@@ -154,6 +154,7 @@ private:
             const std::string words = name_of(graph_, stream.node);
             if (!words.empty()) return words;
         }
+        if (!stream.called.empty()) return std::string(stream.called);
         if (stream.op == plan::StreamOp::predicate)
             return predicate_name(model_.predicates[stream.index]);
         if (stream.op == plan::StreamOp::flag) return model_.inputs[stream.index].name;
@@ -185,7 +186,8 @@ private:
             case plan::StreamOp::window:
             case plan::StreamOp::widening:
             case plan::StreamOp::window_since:
-            case plan::StreamOp::window_until: return fmt::format("_last_{}", stream.length);
+            case plan::StreamOp::window_until:
+            case plan::StreamOp::window_handover: return fmt::format("_last_{}", stream.length);
             default: return "_value";
         }
     }

@@ -61,6 +61,8 @@ RandomFormula::Piece RandomFormula::connective(int depth, Allowed allowed) {
 
 RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
     if (!shape_.nested) allowed = {false, false};
+    if (shape_.nested && shape_.bounded && depth >= 2 && random_.chance(0.08))
+        return response_in_two(depth, allowed);
     const Piece operand = grow(depth - 1, allowed);
     switch (random_.between(0, 7)) {
         case 0:
@@ -80,6 +82,24 @@ RandomFormula::Piece RandomFormula::future(int depth, Allowed allowed) {
             [[fallthrough]];
         default: return unary(random_.word({"X", "next"}), "", operand);
     }
+}
+
+/// G (f || F[a,b] (g && F[c,d] h)) or its dual, sometimes without f, or with an until inside: few
+/// formulas that grow by chance have this shape.
+RandomFormula::Piece RandomFormula::response_in_two(int depth, Allowed allowed) {
+    const bool always = random_.chance(0.5);
+    const auto operand = [&] { return grow(depth - 3, {false, allowed.past}); };
+    const auto either = [&](bool max, const Piece& a, const Piece& b) {
+        return max ? binary(a, "||", "", b, disjunction) : binary(a, "&&", "", b, conjunction);
+    };
+    const std::string seek = always ? "F" : "G";
+    const Piece last = operand();
+    const Piece completed = random_.chance(0.25) ? binary(operand(), always ? "U" : "R",
+                                                          bounded_interval(), last, until)
+                                                 : unary(seek, bounded_interval(), last);
+    Piece body = unary(seek, bounded_interval(), either(!always, operand(), completed));
+    if (random_.chance(0.7)) body = either(always, operand(), body);
+    return unary(always ? "G" : "F", future_interval(), body);
 }
 
 RandomFormula::Piece RandomFormula::past(int depth, Allowed allowed) {

@@ -61,6 +61,7 @@ private:
     Piece connective(int depth, Allowed allowed);
     Piece future(int depth, Allowed allowed);
     Piece past(int depth, Allowed allowed);
+    Piece response_in_two(int depth, Allowed allowed);
     Piece named(Piece piece);
     Piece unary(const std::string& word, const std::string& interval, const Piece& operand);
     Piece binary(const Piece& left, const std::string& word, const std::string& interval,

@@ -73,6 +73,36 @@ TEST(PlanExhaustive, SlidingMonitorsWithGaps) {
         expect_agreement_on_all(exhaustive_sliding_spec(), steps, true);
 }
 
+/// F[a,b] (g && F[c,d] h), alone and as what G responds with, and the duals, with all of these
+/// intervals, over predicates of ranges that differ. Their state machines would take more
+/// operations than these limits allow.
+TEST(PlanInTwoParts, TakesFewOperations) {
+    const plan::Limits few_operations{.operations = 300};
+    const auto spec = [](const std::string& formula) {
+        return "spec two; input x, y, z : f32 in [-4, 4]; predicate p = x >= -1;\n"
+               "predicate q = y > 1; predicate r = z <= 0; monitor m = " +
+               formula + ";";
+    };
+    int seed = 0;
+    for (const char* begun : {"[0, 12]", "[9, 9]", "[4, 20]"})
+        for (const char* done : {"[0, 9]", "[0, 16]", "[5, 12]", "[12, 12]"})
+            for (const char* form :
+                 {"G F{} (p && F{} q)", "G (r -> F{} (p && F{} q))", "F G{} (q || G{} p)",
+                  "G[2, 30] (r || F{} (p && O[0, 2] r && F{} q))",
+                  "F[1, 40] (r && G{} (p || G{} q))", "F{} (p && F{} q)",
+                  "G{} (q || r || G{} p)"}) {
+                const auto model = load(spec(fmt::format(fmt::runtime(form), begun, done)));
+                ASSERT_TRUE(model);
+                PlanRunner runner(*model, few_operations);
+                ASSERT_EQ(runner.refusal(), "") << model->file.text();
+                for (const double missing : {0.0, 0.0, 0.1, 0.4}) {
+                    TraceShape shape{.steps = 60, .missing = missing};
+                    expect_agreement(*model, runner, random_trace(*model, ++seed, shape), 0);
+                    if (HasFatalFailure()) return;
+                }
+            }
+}
+
 struct RandomCase {
     const char* name;
     SpecShape shape;

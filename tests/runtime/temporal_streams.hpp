@@ -11,6 +11,7 @@
 
 #include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/boolean_window.hpp"
+#include "etlmon/temporal/handover.hpp"
 #include "etlmon/temporal/widening.hpp"
 #include "etlmon/temporal/window.hpp"
 
@@ -215,6 +216,45 @@ struct UntilCase : BinaryCase<V> {
         for (size_t j = first; j <= last; ++j) {
             value = max_of(value, min_of(s.g[j], held));
             held = min_of(held, s.f[j]);
+        }
+        return value;
+    }
+};
+
+/// f hands over to g, with the pair of each position made by the monoid.
+template <class V, class M>
+struct FlanksCase : BinaryCase<V> {
+    using Monoid = M;
+    static etlmon::Flanks<V> element(const Streams<V>& s, size_t at) {
+        return Monoid::at(s.f[at], s.g[at]);
+    }
+};
+
+template <class V>
+struct HandoverCase : FlanksCase<V, etlmon::Handover<V>> {
+    static constexpr const char* kName = "Handover";
+    static V defined(const Streams<V>& s, size_t first, size_t last) {
+        V value = Lattice<V>::bottom();
+        for (size_t j = first; j <= last; ++j) {
+            V both = Lattice<V>::top();
+            for (size_t k = first; k <= j; ++k) both = min_of(both, s.f[k]);
+            for (size_t k = j; k <= last; ++k) both = min_of(both, s.g[k]);
+            value = max_of(value, both);
+        }
+        return value;
+    }
+};
+
+template <class V>
+struct CoveredCase : FlanksCase<V, etlmon::Covered<V>> {
+    static constexpr const char* kName = "Covered";
+    static V defined(const Streams<V>& s, size_t first, size_t last) {
+        V value = Lattice<V>::top();
+        for (size_t j = first; j <= last; ++j) {
+            V either = Lattice<V>::bottom();
+            for (size_t k = first; k <= j; ++k) either = max_of(either, s.f[k]);
+            for (size_t k = j; k <= last; ++k) either = max_of(either, s.g[k]);
+            value = min_of(value, either);
         }
         return value;
     }

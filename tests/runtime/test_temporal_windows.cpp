@@ -70,7 +70,8 @@ using AllCases = testing::Types<
     temporal::GreatestCase<float>, temporal::LeastCase<float>, temporal::TriggerCase<float>,
     temporal::UntilCase<float>, temporal::LeastCase<Bits>, temporal::SinceCase<Bits>,
     temporal::GreatestCase<Truth>, temporal::LeastCase<Truth>, temporal::SinceCase<Truth>,
-    temporal::TriggerCase<Truth>, temporal::UntilCase<Truth>, temporal::ReleaseCase<Truth>>;
+    temporal::TriggerCase<Truth>, temporal::UntilCase<Truth>, temporal::ReleaseCase<Truth>,
+    temporal::HandoverCase<Key>, temporal::CoveredCase<Value>, temporal::CoveredCase<Truth>>;
 TYPED_TEST_SUITE(TemporalWindow, AllCases, temporal::CaseNames);
 
 TYPED_TEST(TemporalWindow, EveryLengthTo70) {
@@ -141,7 +142,11 @@ void expect_bursts_of(std::integer_sequence<uint32_t, N...>) {
 
 template <class Case>
 class TemporalPairWindow : public testing::Test {};
-TYPED_TEST_SUITE(TemporalPairWindow, CasesOf<Value>, temporal::CaseNames);
+using PairCases = testing::Types<temporal::GreatestCase<Value>, temporal::LeastCase<Value>,
+                                 temporal::SinceCase<Value>, temporal::TriggerCase<Value>,
+                                 temporal::UntilCase<Value>, temporal::ReleaseCase<Value>,
+                                 temporal::HandoverCase<Value>, temporal::CoveredCase<Value>>;
+TYPED_TEST_SUITE(TemporalPairWindow, PairCases, temporal::CaseNames);
 
 TYPED_TEST(TemporalPairWindow, HighsPartFromLowsAndMeetAgain) {
     expect_bursts_of<TypeParam>(std::make_integer_sequence<uint32_t, 8>());

@@ -25,6 +25,8 @@ constexpr std::uint64_t kSmallShares = 16;
 /// Machines up to this size are preferred to anything else.
 constexpr std::size_t kSmallMachineStates = 256;
 constexpr std::size_t kSmallMachineTransitions = 2048;
+/// Operations up to which nothing is cheaper.
+constexpr std::uint64_t kFewOperations = 160;
 /// Operations from which on it is worth to look for another way.
 constexpr std::uint64_t kMuchWork = 20'000;
 
@@ -52,6 +54,16 @@ AutomatonLimits small_machine_limits(const Limits& limits) {
     const AutomatonLimits any = machine_limits(limits);
     return {std::min(any.states, kSmallMachineStates),
             std::min(any.transitions, kSmallMachineTransitions), total_work(limits) / kSmallShares};
+}
+
+/// What it takes of that limit of which it takes most; above 1 it does not fit.
+double share(const Cost& cost, const Limits& limits) {
+    const auto part = [](std::uint64_t need, std::uint64_t limit) {
+        return static_cast<double>(need) / static_cast<double>(limit);
+    };
+    return std::max({part(cost.state_bytes + cost.stack_bytes, limits.state_bytes),
+                     part(cost.code_bytes, limits.code_bytes),
+                     part(cost.operations, limits.operations)});
 }
 
 /// The initial state's register stays at +inf where an unguarded loop keeps it there.
@@ -87,7 +99,7 @@ std::optional<std::uint32_t> ReadingBuilder::of(NodeId id) {
     else if (std::none_of(node.operands.begin(), node.operands.end(),
                           [&](NodeId o) { return graph_[o].has_future; }))
         reading = add(id, "fold", fold(streams_, node, id));
-    else if (auto code = response(streams_, graph_, id))
+    else if (auto code = response(streams_, graph_, id, Answer::at_once))
         reading = add(id, "response", std::move(*code));
     else
         reading = nested(node, id);
@@ -200,6 +212,19 @@ std::uint32_t ReadingBuilder::pending_part(Pending& pending, std::map<NodeId, st
     return known[id] = static_cast<std::uint32_t>(pending.parts.size() - 1);
 }
 
+/// What is answered in two parts, whatever the lengths of its windows.
+std::optional<Reading> ReadingBuilder::in_two(NodeId id) {
+    const auto straight = [&](const char* as, Straight code) {
+        return Reading{
+            .kind = Reading::Kind::straight, .node = id, .as = as, .straight = std::move(code)};
+    };
+    if (auto code = response(streams_, graph_, id, Answer::in_two))
+        return straight("response, answered in two parts", std::move(*code));
+    if (auto code = fold_in_two(streams_, graph_, id))
+        return straight("fold, in two parts", std::move(*code));
+    return std::nullopt;
+}
+
 /// The operator, or the automaton of what is unbounded, over the parts whose future is bounded.
 std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     Reading reading{.kind = Reading::Kind::pending, .node = id};
@@ -232,9 +257,9 @@ std::optional<Reading> ReadingBuilder::pending(const Node& node, NodeId id) {
     return reading;
 }
 
-/// The formula with its windows taken apart, where that can be read with fewer operations; else
+/// The formula with its windows taken apart, where that takes a smaller share of the limits; else
 /// nothing is added.
-std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, std::uint64_t operations) {
+std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, double below) {
     const auto found = program_.split_windows.find(id);
     if (found == program_.split_windows.end()) return std::nullopt;
     const std::size_t before = readings_.size();
@@ -246,7 +271,7 @@ std::optional<std::uint32_t> ReadingBuilder::apart(NodeId id, std::uint64_t oper
     Cost cost;
     for (std::size_t r = before; r < readings_.size(); ++r)
         cost = cost + cost_of(readings_[r], values_);
-    if (reading && within(cost, limits_) && cost.operations < operations) return reading;
+    if (reading && share(cost, limits_) < below) return reading;
     readings_.resize(before);
     std::erase_if(known_, [&](const auto& entry) { return entry.second >= before; });
     return std::nullopt;
@@ -269,7 +294,16 @@ Reading ReadingBuilder::as_reading(NodeId id, const Machine& machine) const {
 /// the formula with its windows taken apart, a machine up to the limits.
 std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id) {
     const std::size_t failures = oversize_.size();
-    if (auto small = machine(id, small_machine_limits(limits_))) return add(as_reading(id, *small));
+    if (auto small = machine(id, small_machine_limits(limits_))) {
+        Reading reading = as_reading(id, *small);
+        if (cost_of(reading, values_).operations > kFewOperations)
+            if (auto code = in_two(id)) reading = std::move(*code);
+        return add(std::move(reading));
+    }
+    if (auto code = in_two(id)) {
+        oversize_.resize(failures);
+        return add(std::move(*code));
+    }
     std::optional<Reading> best = pending(node, id);
     if (best && (best->pending.horizon == 0 || !within(cost_of(*best, values_), limits_)))
         best.reset();
@@ -281,10 +315,9 @@ std::optional<std::uint32_t> ReadingBuilder::nested(const Node& node, NodeId id)
             if (!best || cost_of(reading, values_).operations < cost_of(*best, values_).operations)
                 best = std::move(reading);
         }
-    const std::uint64_t operations =
-        best ? cost_of(*best, values_).operations : limits_.operations + 1;
-    if (operations > kMuchWork)
-        if (const auto reading = apart(id, operations)) {
+    const double whole = best ? share(cost_of(*best, values_), limits_) : 1;
+    if (!best || cost_of(*best, values_).operations > kMuchWork)
+        if (const auto reading = apart(id, std::min(whole, 1.0))) {
             oversize_.resize(failures);
             return reading;
         }

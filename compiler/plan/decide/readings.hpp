@@ -33,9 +33,10 @@ private:
     /// A state machine over formulas without future, within these limits and the work that is left.
     std::optional<Machine> machine(NodeId id, const AutomatonLimits& limits);
     Reading as_reading(NodeId id, const Machine& machine) const;
+    std::optional<Reading> in_two(NodeId id);
     std::optional<Reading> pending(const ir::Node& node, NodeId id);
     std::uint32_t pending_part(Pending& pending, std::map<NodeId, std::uint32_t>& known, NodeId id);
-    std::optional<std::uint32_t> apart(NodeId id, std::uint64_t operations);
+    std::optional<std::uint32_t> apart(NodeId id, double below);
     std::optional<std::uint32_t> nested(const ir::Node& node, NodeId id);
     std::uint32_t add(Reading reading);
     std::uint32_t add(NodeId id, std::string as, Straight code);

@@ -59,6 +59,25 @@ Straight fold(StreamBuilder& streams, const Node& node, NodeId id) {
 
 namespace {
 
+// ---- what G responds with, and what its dual does
+
+Op either(bool always) {
+    return always ? Op::disjunction : Op::conjunction;
+}
+Op both(bool always) {
+    return either(!always);
+}
+Op seek(bool always) {
+    return always ? Op::eventually : Op::always;
+}
+
+/// An answer in two parts, taken apart: p && F[c,d] q.
+struct InTwo {
+    std::vector<NodeId> begins;  ///< p, whose min it is (of the dual: the max)
+    NodeId completes = 0;        ///< q
+    ir::Interval within;         ///< [c,d], bounded
+};
+
 /// G[A,B] (f || F[a,b] g), taken apart.
 struct Asked {
     bool of_always = true;  ///< else the dual
@@ -67,36 +86,72 @@ struct Asked {
     NodeId body = 0;
     NodeId answer = 0;            ///< g
     std::vector<NodeId> excuses;  ///< f, whose max it is (of the dual: the min); none: false
+    std::optional<InTwo> in_two;  ///< g, where it looks ahead
 };
+
+/// The operands of a formula of this operation, else the formula alone.
+std::vector<NodeId> parts(const ir::Graph& graph, NodeId id, Op op) {
+    return graph[id].op == op ? graph[id].operands : std::vector<NodeId>{id};
+}
+
+/// The one part that looks ahead, a bounded F (of the dual: G); the others go to `rest`.
+std::optional<NodeId> ahead(const ir::Graph& graph, const std::vector<NodeId>& parts, Op op,
+                            std::vector<NodeId>& rest) {
+    std::optional<NodeId> found;
+    for (NodeId part : parts) {
+        if (!graph[part].has_future) {
+            rest.push_back(part);
+            continue;
+        }
+        if (found || graph[part].op != op || !graph[part].interval.bounded()) return std::nullopt;
+        found = part;
+    }
+    return found;
+}
+
+std::optional<InTwo> in_two(const ir::Graph& graph, NodeId answer, bool of_always) {
+    InTwo result;
+    const auto last =
+        ahead(graph, parts(graph, answer, both(of_always)), seek(of_always), result.begins);
+    if (!last || result.begins.empty()) return std::nullopt;
+    result.completes = graph[*last].operands[0];
+    result.within = graph[*last].interval;
+    if (graph[result.completes].has_future) return std::nullopt;
+    return result;
+}
 
 std::optional<Asked> asked(const ir::Graph& graph, NodeId id) {
     const Node& node = graph[id];
     const bool of_always = node.op == Op::always;
     if (!of_always && node.op != Op::eventually) return std::nullopt;
     Asked result{.of_always = of_always, .outer = node.interval, .body = node.operands[0]};
-    const Node& body = graph[result.body];
-    std::vector<NodeId> future;
-    if (body.op == (of_always ? Op::disjunction : Op::conjunction)) {
-        for (NodeId operand : body.operands)
-            (graph[operand].has_future ? future : result.excuses).push_back(operand);
-    } else {
-        future.push_back(result.body);
-    }
-    if (future.size() != 1) return std::nullopt;
-    const Node& inner = graph[future[0]];
-    if (inner.op != (of_always ? Op::eventually : Op::always)) return std::nullopt;
-    if (graph[inner.operands[0]].has_future || !inner.interval.bounded()) return std::nullopt;
-    result.inner = inner.interval;
-    result.answer = inner.operands[0];
-    return result;
+    const auto inner =
+        ahead(graph, parts(graph, result.body, either(of_always)), seek(of_always), result.excuses);
+    if (!inner) return std::nullopt;
+    result.inner = graph[*inner].interval;
+    result.answer = graph[*inner].operands[0];
+    if (!graph[result.answer].has_future) return result;
+    result.in_two = in_two(graph, result.answer, of_always);
+    return result.in_two ? std::optional(result) : std::nullopt;
 }
 
 /// What a response is made of, as streams.
 struct Answering {
-    Term passed;   ///< what the windows that close at this step came to
+    Term passed;  ///< what the windows that close at this step came to, from `passes_from` on
+    std::uint32_t passes_from = 0;
     Term pending;  ///< what open windows say; hopeless where none has begun at the last positions
     Term recent;   ///< what speaks for positions whose windows have not begun
+    std::optional<Term> hope;  ///< what the unseen may come to beside what it does everywhere
 };
+
+/// f at the positions of [A,B]; elsewhere nothing is asked.
+Slot excuse_of(StreamBuilder& streams, ir::Graph& graph, const Asked& asked, source::Span span) {
+    const bool always = asked.of_always;
+    const Slot stated = asked.excuses.empty()
+                            ? streams.constant(neutral(always))
+                            : streams.of(graph.combine(either(always), asked.excuses, span));
+    return streams.within(stated, asked.outer, neutral(!always));
+}
 
 Answering answering(StreamBuilder& streams, ir::Graph& graph, const Asked& asked,
                     source::Span span) {
@@ -105,17 +160,13 @@ Answering answering(StreamBuilder& streams, ir::Graph& graph, const Asked& asked
     const Value urgent = neutral(always);
     const Slot answer = streams.of(asked.answer);
     const auto [low, high] = asked.inner;
-    Answering result{.recent = Term::constant(idle)};
+    Answering result{.passes_from = high, .recent = Term::constant(idle)};
     if (asked.excuses.empty() && asked.outer == ir::Interval{}) {
         result.passed = streams.term(streams.of(asked.body));
         result.pending = low == 0 ? streams.term(answer) : Term::constant(urgent);
         return result;
     }
-    const Op either = always ? Op::disjunction : Op::conjunction;
-    const Slot stated = asked.excuses.empty()
-                            ? streams.constant(urgent)
-                            : streams.of(graph.combine(either, asked.excuses, span));
-    const Slot excuse = streams.within(stated, asked.outer, idle);
+    const Slot excuse = excuse_of(streams, graph, asked, span);
     const Slot pending = streams.pending(always, streams.earlier(excuse, low, idle), answer);
     result.pending = streams.term(pending);
     result.passed = streams.term(streams.recent(always, pending, high - low + 1));
@@ -123,21 +174,89 @@ Answering answering(StreamBuilder& streams, ir::Graph& graph, const Asked& asked
     return result;
 }
 
+/// What was answered at the positions that are settled, `late` steps ago; before there are any,
+/// nothing is asked.
+Slot answered(StreamBuilder& streams, bool always, Slot excuse, Slot answer, std::uint32_t late) {
+    const Value idle = neutral(!always);
+    const Slot slot = streams.is_constant(excuse)
+                          ? streams.within(answer, {late, kUnbounded}, idle)
+                          : streams.pending(always, streams.earlier(excuse, late, idle), answer);
+    return streams.call(slot, "answered", "what was asked is answered, where that is settled");
+}
+
+/// Of an answer in two parts. `width` + 1 steps is what a window has for them, and `late` steps
+/// after it began an answer is settled.
+Answering answering_in_two(StreamBuilder& streams, ir::Graph& graph, const Asked& asked,
+                           source::Span span) {
+    const bool always = asked.of_always;
+    const Value idle = neutral(!always);
+    const auto [low, high] = asked.inner;
+    const std::uint32_t width = high - low;
+    const std::uint32_t late = asked.in_two->within.high;
+    const Slot stated = excuse_of(streams, graph, asked, span);
+    const Slot excuse = streams.earlier(stated, low, idle);
+    const auto pending = [&](Slot answer) {
+        return streams.is_constant(excuse) ? answer : streams.pending(always, excuse, answer);
+    };
+    const Slot begun = streams.of(graph.combine(both(always), asked.in_two->begins, span));
+    const Slot settled = answered(streams, always, excuse, streams.of(asked.answer), late);
+
+    const auto across_settled = [&](Slot begun_since, Slot settled_before, std::uint32_t length) {
+        return streams.term(
+            streams.call(streams.handover(!always, begun_since, settled_before, length), "covered",
+                         "windows that are over: answered, or begun since"));
+    };
+
+    std::vector<Term> passed{streams.term(streams.recent(always, settled, width + 1))};
+    if (width >= late) {
+        const Slot before = streams.earlier(settled, width - late, idle);
+        std::vector<Term> across{across_settled(begun, before, late)};
+        if (width > late)
+            across.push_back(streams.term(streams.recent(always, settled, width - late)));
+        passed.push_back(Term::extreme(always, std::move(across)));
+    } else {
+        const Slot earlier = streams.earlier(begun, late - width, neutral(always));
+        if (width > 0) passed.push_back(across_settled(earlier, settled, width));
+        const Slot begun_lately = streams.recent(always, pending(begun), width + 1);
+        passed.push_back(streams.term(streams.within(begun_lately, {width, kUnbounded}, idle)));
+    }
+
+    const Slot completed = streams.call(
+        streams.combine(!always, {streams.of(asked.in_two->completes),
+                                  streams.since(always, excuse, begun, asked.in_two->within)}),
+        "completed", "what has begun since it was asked is completed now");
+    Answering result{.passed = Term::extreme(!always, std::move(passed)),
+                     .pending = streams.term(pending(completed)),
+                     .recent = Term::constant(idle)};
+    if (low > 0) result.recent = streams.term(streams.recent(!always, stated, low));
+    const End end = always ? End::high : End::low;
+    const Term completes = streams.term(streams.unseen(asked.in_two->completes), end);
+    if (completes != streams.term(streams.unseen(asked.answer), end))
+        result.hope =
+            Term::extreme(!always, {completes, streams.term(pending(begun)), result.recent});
+    return result;
+}
+
 }  // namespace
 
-std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
+std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeId id,
+                                 Answer answer) {
     const std::optional<Asked> found = asked(graph, id);
-    if (!found) return std::nullopt;
+    if (!found || found->in_two.has_value() != (answer == Answer::in_two)) return std::nullopt;
     const bool always = found->of_always;
     const auto worst = [&](std::vector<Term> terms) {
         return Term::extreme(!always, std::move(terms));
     };
+    if (found->in_two)
+        for (NodeId part : found->in_two->begins)
+            if (!streams.is_constant(streams.unseen(part))) return std::nullopt;
     streams.of(found->answer);  // so that judge() computes it before what is made of it
     const Term unseen_answer =
         streams.term(streams.unseen(found->answer), always ? End::high : End::low);
     const Term unseen_body =
         streams.term(streams.unseen(found->body), always ? End::low : End::high);
-    const Answering parts = answering(streams, graph, *found, graph[id].span);
+    const Answering parts = found->in_two ? answering_in_two(streams, graph, *found, graph[id].span)
+                                          : answering(streams, graph, *found, graph[id].span);
 
     Straight code;
     const Term settled = Term::reg(0);
@@ -145,7 +264,7 @@ std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeI
     code.registers[0].suffix = "_settled";
     code.registers[0].after = ": where the answer's time is over";
     code.assignments = {
-        {.positions = {found->inner.high, kUnbounded}, .value = worst({settled, parts.passed})}};
+        {.positions = {parts.passes_from, kUnbounded}, .value = worst({settled, parts.passed})}};
     Term open = parts.pending;
     if (parts.recent != Term::constant(neutral(!always))) {
         code.locals = {"_recent"};
@@ -156,8 +275,39 @@ std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeI
     code.rho = worst({settled, open});
     (always ? code.lower : code.upper) =
         Term::before(found->outer.high, worst({settled, open, unseen_body}), code.rho);
-    (always ? code.upper : code.lower) =
-        worst({settled, Term::extreme(always, {open, unseen_answer})});
+    std::vector<Term> hopes{open, unseen_answer};
+    if (parts.hope) hopes.push_back(*parts.hope);
+    (always ? code.upper : code.lower) = worst({settled, Term::extreme(always, std::move(hopes))});
+    return code;
+}
+
+std::optional<Straight> fold_in_two(StreamBuilder& streams, ir::Graph& graph, NodeId id) {
+    const Node node = graph[id];
+    const bool seeks = node.op == Op::eventually;
+    if ((!seeks && node.op != Op::always) || !node.interval.bounded()) return std::nullopt;
+    const std::optional<InTwo> found = in_two(graph, node.operands[0], seeks);
+    if (!found) return std::nullopt;
+    const auto [low, high] = found->within;
+    const Slot begun =
+        streams.within(streams.of(graph.combine(both(seeks), found->begins, node.span)),
+                       node.interval, neutral(seeks));
+    const Slot lately = streams.recent(seeks, begun, high - low + 1);
+    const Slot completed = streams.combine(
+        !seeks, {streams.of(found->completes), streams.earlier(lately, low, neutral(seeks))});
+    const End end = seeks ? End::high : End::low;
+    const Term may_complete =
+        Term::extreme(!seeks, {streams.term(streams.unseen(found->completes), end),
+                               streams.term(streams.recent(seeks, begun, high))});
+    const Term may_begin = streams.term(streams.unseen(node.operands[0]), end);
+
+    Straight code;
+    const Term best = Term::reg(0);
+    code.registers = {value(seeks, id)};
+    code.assignments = {{.value = Term::extreme(seeks, {best, streams.term(completed)})}};
+    code.rho = code.lower = code.upper = best;
+    (seeks ? code.upper : code.lower) =
+        Term::before(node.interval.high, Term::extreme(seeks, {best, may_complete, may_begin}),
+                     Term::extreme(seeks, {best, may_complete}));
     return code;
 }
 

@@ -197,6 +197,27 @@ Slot StreamBuilder::recent(bool max, Slot slot, std::uint32_t length) {
     return window(StreamOp::window, max, {slot}, length, 0, 0, kNone, begins_with_);
 }
 
+Slot StreamBuilder::since(bool max, Slot left, Slot right, ir::Interval interval) {
+    if (is_constant(left) && equal(streams_[left].value, neutral(max)))
+        return interval.low == 0 ? right : constant(neutral(max));
+    return since(max, {left, right}, interval, 0, kNone, begins_with_);
+}
+
+Slot StreamBuilder::handover(bool max, Slot before, Slot behind, std::uint32_t length) {
+    if (length == 1) return combine(!max, {before, behind});
+    return window(StreamOp::window_handover, max, {before, behind}, length, 0, 0, kNone,
+                  begins_with_);
+}
+
+Slot StreamBuilder::call(Slot slot, std::string_view name, std::string_view holds) {
+    Stream& stream = streams_[slot];
+    if (stream.node == kNone && stream.called.empty()) {
+        stream.called = name;
+        stream.holds = holds;
+    }
+    return slot;
+}
+
 /// O[a,b] f at k is O[0,b-a] f at k - a, or false where that is before the trace; H alike.
 Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
     const bool max = ir::takes_max(node.op);
@@ -214,10 +235,14 @@ Slot StreamBuilder::past_unary(const Node& node, NodeId id) {
 
 /// f S[a,b] g at k is (f S[0,b-a] g at k - a) && (f at the last a positions); its dual alike.
 Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
-    const bool max = ir::takes_max(node.op);
-    const auto [low, high] = node.interval;
     const std::vector<Slot> operands = align(node.operands);
     const std::uint32_t lag = std::max(streams_[operands[0]].lag, streams_[operands[1]].lag);
+    return since(ir::takes_max(node.op), operands, node.interval, lag, id, kNone);
+}
+
+Slot StreamBuilder::since(bool max, const std::vector<Slot>& operands, ir::Interval interval,
+                          std::uint32_t lag, NodeId id, std::uint32_t begins_with) {
+    const auto [low, high] = interval;
     const NodeId inner = low == 0 ? id : kNone;
     Slot slot = operands[1];
     if (high == kUnbounded)
@@ -227,14 +252,16 @@ Slot StreamBuilder::past_binary(const Node& node, NodeId id) {
                        .value = neutral(max),
                        .lag = lag,
                        .operand_lag = lag,
+                       .begins_with = begins_with,
                        .node = inner});
     else if (high > low)
-        slot = window(StreamOp::window_since, max, operands, high - low + 1, lag, lag, inner);
+        slot = window(StreamOp::window_since, max, operands, high - low + 1, lag, lag, inner,
+                      begins_with);
     if (low == 0) return slot;
-    const Slot earlier = shift(slot, low, lag, neutral(max), kNone, kNone);
-    const Slot held = low == 1
-                          ? operands[0]
-                          : window(StreamOp::window, !max, {operands[0]}, low, lag, lag, kNone);
+    const Slot earlier = shift(slot, low, lag, neutral(max), kNone, begins_with);
+    const Slot held =
+        low == 1 ? operands[0]
+                 : window(StreamOp::window, !max, {operands[0]}, low, lag, lag, kNone, begins_with);
     return combine(!max, {earlier, held}, id);
 }
 

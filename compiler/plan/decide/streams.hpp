@@ -53,6 +53,15 @@ public:
     Slot pending(bool of_always, Slot excuse, Slot answer);
     /// The max or min over the last `length` positions of a stream without lag.
     Slot recent(bool max, Slot slot, std::uint32_t length);
+    /// left S[a,b] right over streams without lag, or the dual; the interval is bounded.
+    Slot since(bool max, Slot left, Slot right, ir::Interval interval);
+    /// The best handover from `before` to `behind` in the last `length` positions, or the dual
+    /// (etlmon/temporal/handover.hpp); both without lag.
+    Slot handover(bool max, Slot before, Slot behind, std::uint32_t length);
+    /// Gives a stream a name and a comment for people, where no formula does; they outlive the
+    /// plan.
+    Slot call(Slot slot, std::string_view name, std::string_view holds);
+    bool is_constant(Slot slot) const { return streams_[slot].op == StreamOp::constant; }
 
 private:
     Slot intern(Stream stream);
@@ -64,6 +73,8 @@ private:
     Slot shift(Slot slot, std::uint32_t steps, std::uint32_t lag, Value before, NodeId node,
                std::uint32_t begins_with);
     Slot within(Slot slot, ir::Interval interval, Value elsewhere, std::uint32_t begins_with);
+    Slot since(bool max, const std::vector<Slot>& operands, ir::Interval interval,
+               std::uint32_t lag, NodeId node, std::uint32_t begins_with);
     Slot future_unary(const ir::Node& node, NodeId id);
     Slot future_binary(const ir::Node& node, NodeId id);
     Slot window(StreamOp op, bool max, std::vector<Slot> operands, std::uint32_t length,

@@ -220,6 +220,15 @@ Value Evaluator::advance_window(const Stream& stream, StreamState& state) const 
         return stream.max ? push<etlmon::Greatest<Value>>(state.values, state.cursor, n, value)
                           : push<etlmon::Least<Value>>(state.values, state.cursor, n, value);
     }
+    if (stream.op == StreamOp::window_handover) {
+        const auto pushed = [&](auto monoid) {
+            using Monoid = decltype(monoid);
+            return push<Monoid>(state.flanks, state.cursor, n,
+                                Monoid::at(operand(stream, 0, none), operand(stream, 1, none)))
+                .value;
+        };
+        return stream.max ? pushed(etlmon::Handover<Value>()) : pushed(etlmon::Covered<Value>());
+    }
     const etlmon::Span<Value> pair{operand(stream, 1, none),
                                    operand(stream, 0, neutral(!stream.max))};
     const auto pushed = [&](auto seeking, auto guarding) {
@@ -266,7 +275,8 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
             return combined(max, delayed(stream.length - stream.from_length, at(0)), at(0));
         case StreamOp::window:
         case StreamOp::window_since:
-        case StreamOp::window_until: return advance_window(stream, state);
+        case StreamOp::window_until:
+        case StreamOp::window_handover: return advance_window(stream, state);
     }
     return kAnything;
 }
@@ -288,6 +298,10 @@ void Evaluator::reset_member(const Member& member, StreamState& state) {
         case Member::Kind::until_window:
             state.pairs.assign(etlmon::window_elements(member.length),
                                {neutral(member.max), neutral(!member.max)});
+            break;
+        case Member::Kind::handover_window:
+            state.flanks.assign(etlmon::window_elements(member.length),
+                                {neutral(member.max), neutral(!member.max), neutral(!member.max)});
             break;
         case Member::Kind::widening:
             state.values.assign(member.length - member.from_length, neutral(member.max));

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "etlmon/distance/enclosed.hpp"
-#include "etlmon/temporal/monoid.hpp"
+#include "etlmon/temporal/handover.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
@@ -77,6 +77,7 @@ private:
     struct StreamState {
         std::vector<Value> values;
         std::vector<etlmon::Since<Value>::Element> pairs;
+        std::vector<etlmon::Handover<Value>::Element> flanks;
         std::uint32_t cursor = 0;
     };
     struct ReadingState {

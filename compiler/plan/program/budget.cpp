@@ -60,17 +60,19 @@ Cost straight_cost(const Straight& code) {
     return cost;
 }
 
+/// Of a window at one position: to make a suffix and a prefix, and to combine each into the result.
+constexpr std::uint64_t kPendingWindow = 4;
+
 /// Operations on values or readings at one position, in units of the temporal loops of
 /// etlmon/temporal/pending.hpp.
 std::uint64_t pending_steps(const Pending& pending) {
     std::uint64_t steps = 0;
     for (const Pending::Part& part : pending.parts) {
         const bool temporal = part.unseen != kNone;
-        const std::uint64_t window =
-            std::min(part.interval.high, pending.horizon) + std::uint64_t{1};
-        if (part.leaf == kNone)
-            steps += temporal ? (part.operands.size() == 2 ? 3 : 2) * window + 2
-                              : part.operands.size() - 1;
+        const bool is_binary = part.operands.size() == 2;
+        if (part.leaf != kNone) continue;
+        steps += temporal ? kPendingWindow : part.operands.size() - 1;
+        if (temporal && is_binary) steps += 3 + (part.interval.low > 0 ? kPendingWindow : 0);
     }
     if (pending.is_fold) return steps + 4;
     steps += 2 * pending.table.ends.size() + 2 * pending.table.transitions.size();
@@ -125,6 +127,7 @@ Cost work_of(const Stream& stream) {
         case StreamOp::window: return window_cost(stream.length, 1);
         case StreamOp::window_since:
         case StreamOp::window_until: return window_cost(stream.length, 2);
+        case StreamOp::window_handover: return window_cost(stream.length, 3);
         case StreamOp::widening: return Cost{.code_bytes = kCodePerRing} + values(0, 1);
     }
     return {};

@@ -22,6 +22,7 @@ struct Member {
         window,           ///< a sliding aggregate over the last `length`
         since_window,     ///< the same of two signals
         until_window,     ///< the same towards the future
+        handover_window,  ///< the same of two signals that meet
         widening,         ///< what a window of `length` adds to one of `from_length`
         machine,          ///< `length` registers, and those of the next step
         recent,           ///< the last `length` values, in order

@@ -34,6 +34,7 @@ const char* name(const Stream& stream) {
         case StreamOp::since: return either("since", "trigger");
         case StreamOp::window_since: return either("window since", "window trigger");
         case StreamOp::window_until: return either("window until", "window release");
+        case StreamOp::window_handover: return either("window handover", "window covered");
     }
     return "";
 }

@@ -30,6 +30,7 @@ std::vector<Member> members_of(const Stream& stream) {
         case StreamOp::window: member.kind = Kind::window; break;
         case StreamOp::window_since: member.kind = Kind::since_window; break;
         case StreamOp::window_until: member.kind = Kind::until_window; break;
+        case StreamOp::window_handover: member.kind = Kind::handover_window; break;
     }
     if (is_operand) return {};
     return {member};
@@ -37,11 +38,13 @@ std::vector<Member> members_of(const Stream& stream) {
 
 std::string text_of(const Stream& stream, const ir::Graph& formulas) {
     if (stream.node != kNone) return formulas.text(stream.node);
+    if (!stream.holds.empty()) return std::string(stream.holds);
     switch (stream.op) {
         case StreamOp::since: return "what is asked and not yet answered";
         case StreamOp::window:
         case StreamOp::window_since:
         case StreamOp::window_until:
+        case StreamOp::window_handover:
         case StreamOp::widening:
             return fmt::format("the {} over the last {} steps", stream.max ? "max" : "min",
                                stream.length);

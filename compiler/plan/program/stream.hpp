@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "plan/program/members.hpp"
@@ -25,8 +26,10 @@ enum class StreamOp : std::uint8_t {
     window,    ///< max over the last `length` positions
     widening,  ///< the same, from the operand, which is that over fewer
     since,     ///< v = max(g, min(v, f))
-    window_since,  ///< since, over the last `length` positions
-    window_until,  ///< until, at the first of the last `length` positions
+    window_since,     ///< since, over the last `length` positions
+    window_until,     ///< until, at the first of the last `length` positions
+    window_handover,  ///< of the last `length` positions: the first operand up to some of them, the
+                      ///< second from there on
 };
 
 struct Stream {
@@ -46,7 +49,9 @@ struct Stream {
     /// It restarts with this monitor, by index in the plan, and counts positions from there;
     /// kNone: with the trace.
     std::uint32_t begins_with = kNone;
-    NodeId node = kNone;  ///< the formula it is, for comments; kNone for the values in between
+    NodeId node = kNone;      ///< the formula it is, for comments; kNone for the values in between,
+    std::string_view called;  ///< which may have a name
+    std::string_view holds;   ///< and a comment
 };
 
 std::vector<Member> members_of(const Stream& stream);

@@ -2,6 +2,7 @@
 
 #include "etlmon/hosted/footprint.hpp"
 #include "etlmon/temporal/boolean_verdict.hpp"
+#include "etlmon/temporal/handover.hpp"
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 
@@ -18,7 +19,8 @@ constexpr ValueType row(bool on_demand) {
             .delay = etlmon::delay_bytes<V>,
             .window = etlmon::window_bytes<etlmon::Greatest<V>>,
             .since = etlmon::window_bytes<etlmon::Since<V>>,
-            .until = etlmon::window_bytes<etlmon::Until<V>>};
+            .until = etlmon::window_bytes<etlmon::Until<V>>,
+            .handover = etlmon::window_bytes<etlmon::Handover<V>>};
 }
 
 }  // namespace

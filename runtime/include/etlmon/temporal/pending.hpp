@@ -3,8 +3,8 @@
 // Takes: readings of the operands at n positions, oldest first, the last one being the present.
 // Gives: readings of the formula there, by the definitions of robustness and of the bounds, every
 // window cut at the present. Keeps true: position p tells exactly what rho and the bounds of the
-// operator are there on this prefix; the work is at most n times the window. R: Reading or
-// BasicReading<Truth>.
+// operator are there on this prefix; the work is in proportion to n, whatever the windows. R:
+// Reading or BasicReading<Truth>.
 #pragma once
 
 #include <stdint.h>
@@ -101,11 +101,6 @@ struct Guarding {
 /// The upper bound of a window without one.
 constexpr uint32_t kWithoutEnd = 0xffffffffu;
 
-/// One past the last position of a window up to `high`, cut at the present.
-constexpr uint32_t window_end(uint32_t from, uint32_t high, uint32_t n) noexcept {
-  return high < n - from ? from + high + 1 : n;
-}
-
 template <class R>
 void pending_and(const R* f, const R* g, R* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = min_of(f[p], g[p]);
@@ -116,23 +111,53 @@ void pending_or(const R* f, const R* g, R* out, uint32_t n) noexcept {
   for (uint32_t p = 0; p < n; ++p) out[p] = max_of(f[p], g[p]);
 }
 
+/// Combines into out[p] what `in` is over the `length` positions from p + first on, cut at the
+/// present. Cut into blocks of that length, a window is a suffix of one and a prefix of the next.
+template <class R, class Combine>
+void pending_windows(const R* in, R* out, uint32_t n, uint32_t first, uint32_t length,
+                     Combine combine) noexcept {
+  if (first >= n || length == 0) return;
+  const uint32_t last_block = (n - 1) / length * length;  // where it begins
+  R part = in[n - 1];
+  for (uint32_t at = n, begin = last_block; at-- > first;) {  // suffixes
+    const bool ends = at + 1 == begin;
+    if (ends) begin -= length;
+    part = ends || at + 1 == n ? in[at] : combine(in[at], part);
+    out[at - first] = combine(out[at - first], part);
+  }
+  for (uint32_t at = 0, begin = 0; at < n; ++at) {  // prefixes
+    const bool begins = at == begin;
+    if (begins) begin += length;
+    part = begins ? in[at] : combine(part, in[at]);
+    if (at + 1 < first + length) continue;
+    R& whole = out[at + 1 - first - length];
+    whole = combine(whole, part);
+  }
+  // Windows that the present cuts, where they reach into the last block.
+  uint32_t p = n + 1 > first + length ? n + 1 - first - length : 0;
+  for (; p + first < last_block; ++p) out[p] = combine(out[p], part);
+}
+
 /// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
-/// and G. unseen: the highest, or lowest, unseen value of g.
+/// and G. unseen: the highest, or lowest, unseen value of g. f U[low,high] g is f at the first low
+/// positions, and behind them F[0,high-low] g and f U g, also where the prefix ends before.
 template <class Sense, class R, class End>
 void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n,
                      uint32_t low, uint32_t high, End unseen) noexcept {
-  for (uint32_t p = 0; p < n; ++p) {
-    R best = Sense::template nothing<R>();
-    R held = Sense::template all<R>();
-    const uint32_t end = window_end(p, high, n);
-    for (uint32_t j = p; j < end; ++j) {
-      if (j - p >= low) best = Sense::gain(best, Sense::keep(held, g[j]));
-      if (f != nullptr) held = Sense::keep(held, f[j]);
-    }
-    auto& open = Sense::open_end(best);
-    if (high >= n - p) open = Sense::gain(open, Sense::keep(Sense::open_end(held), unseen));
-    out[p] = best;
+  const auto gain = [](R a, R b) noexcept { return Sense::gain(a, b); };
+  const auto keep = [](R a, R b) noexcept { return Sense::keep(a, b); };
+  R beyond = Sense::template nothing<R>();
+  Sense::open_end(beyond) = unseen;
+  for (uint32_t p = 0; p < n; ++p) out[p] = high < n - p ? Sense::template nothing<R>() : beyond;
+  low = low < n ? low : n;
+  pending_windows(g, out, n, low, (high < n ? high : n) - low + 1, gain);
+  if (f == nullptr) return;
+  R until = beyond;
+  for (uint32_t p = n; p-- > 0;) {
+    if (p < n - low) until = gain(g[p + low], keep(f[p + low], until));
+    out[p] = keep(out[p], until);
   }
+  pending_windows(f, out, n, 0, low, keep);
 }
 
 /// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,

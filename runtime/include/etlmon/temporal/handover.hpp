@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: MIT
+// Handovers inside a window: one signal holds up to some position, another from there on.
+// Takes: elements of two neighbouring segments of positions, the older first. Gives: the element of
+// their union, and that of the empty segment. Keeps true: combine is associative and identity
+// neutral; monoids for window.hpp, whatever the value type. Segments must not overlap.
+//
+// Of the dual: an interval of n steps is covered where none of its positions has neither g, now or
+// later in it, nor f, now or earlier. G F[0,a] (p && F[0,b] q) asks this at every step of the
+// intervals that its open windows share with what is settled: g is what was answered, f is p, which
+// may still be answered.
+#pragma once
+
+#include "etlmon/temporal/monoid.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// A handover over a segment of positions.
+template <class V>
+struct Flanks {
+  V value;
+  V before;  ///< what f lets through to newer positions: min of f (its dual: max)
+  V behind;  ///< what g lets through to older ones
+};
+
+/// f hands over to g: max over j of min(min of f over [oldest, j], min of g over [j, newest]).
+template <class V>
+struct Handover {
+  using Element = Flanks<V>;
+  static constexpr bool kMayOverlap = false;
+  static constexpr bool kNewestLast = true;
+  static constexpr Element identity() noexcept {
+    return {Lattice<V>::bottom(), Lattice<V>::top(), Lattice<V>::top()};
+  }
+  static constexpr Element at(V f, V g) noexcept { return {min_of(f, g), f, g}; }
+  static constexpr Element combine(Element older, Element newer) noexcept {
+    return {max_of(min_of(older.value, newer.behind), min_of(older.before, newer.value)),
+            min_of(older.before, newer.before), min_of(older.behind, newer.behind)};
+  }
+};
+
+/// The dual of Handover: min over j of max(max of f over [oldest, j], max of g over [j, newest]).
+template <class V>
+struct Covered {
+  using Element = Flanks<V>;
+  static constexpr bool kMayOverlap = false;
+  static constexpr bool kNewestLast = true;
+  static constexpr Element identity() noexcept {
+    return {Lattice<V>::top(), Lattice<V>::bottom(), Lattice<V>::bottom()};
+  }
+  static constexpr Element at(V f, V g) noexcept { return {max_of(f, g), f, g}; }
+  static constexpr Element combine(Element older, Element newer) noexcept {
+    return {min_of(max_of(older.value, newer.behind), max_of(older.before, newer.value)),
+            max_of(older.before, newer.before), max_of(older.behind, newer.behind)};
+  }
+};
+
+constexpr Flanks<Key> low_of(Flanks<Value> e) noexcept {
+  return {e.value.low, e.before.low, e.behind.low};
+}
+constexpr Flanks<Key> high_of(Flanks<Value> e) noexcept {
+  return {e.value.high, e.before.high, e.behind.high};
+}
+constexpr Flanks<Value> pair_of(Flanks<Key> low, Flanks<Key> high) noexcept {
+  return {{low.value, high.value}, {low.before, high.before}, {low.behind, high.behind}};
+}
+constexpr bool same_ends(Flanks<Value> e) noexcept {
+  return same_ends(e.before) && same_ends(e.behind) && same_ends(e.value);
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
