@@ -53,6 +53,18 @@ std::string columns_text(const Plan& plan) {
     return text;
 }
 
+void warn_of_late_monitors(const Plan& plan, diag::Sink& sink) {
+    for (const Monitor& monitor : plan.monitors) {
+        if (monitor.horizon <= plan.recorder->before) continue;
+        sink.report(diag::Code::recorder_too_short, plan.model->monitors[monitor.index].span,
+                    fmt::format("an alarm of '{}' is about the step {} before it; the recorder "
+                                "keeps {}",
+                                monitor.name, diag::counted(monitor.horizon, "step"),
+                                plan.recorder->before))
+            .note("a larger BEFORE of --recorder holds that step too");
+    }
+}
+
 }  // namespace
 
 std::uint64_t RecorderColumns::row_bytes() const {
@@ -113,6 +125,7 @@ void add_recorder(Plan& plan, const RecorderRequest& request, const Limits& limi
     const std::uint64_t others = plan.cost.state_bytes + plan.cost.stack_bytes;
     plan.cost.state_bytes += bytes;
     plan.cost.code_bytes += kCode;
+    warn_of_late_monitors(plan, sink);
     if (within(plan.cost, limits)) return;
     sink.report(diag::Code::over_budget, plan.model->monitors.front().span,
                 fmt::format(

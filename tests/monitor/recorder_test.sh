@@ -154,3 +154,32 @@ done
 cp incident0 damaged
 sed 's/0.35/0.36/' drive.etl >other.etl
 refused E0833 other.etl
+
+# An adaptive threshold is recorded as it was at each step.
+"$etlc" "$here/../spec/ok/adaptive.etl" --values "$values" --recorder 4,0,1 -o adaptive.hpp
+cat >adaptive.cpp <<'END'
+#include <cstdio>
+
+#include "adaptive.hpp"
+
+int main() {
+    static adaptive::Monitor monitor;
+    for (const float x : {0.9f, 0.95f}) {
+        adaptive::Inputs in;
+        in.x = x;
+        monitor.step(in);
+        monitor.observe_low(monitor.distance_low(), true);  // a hit at first: 1 becomes 0.9375
+    }
+    monitor.close_incidents();
+    const bool written = monitor.write_incident(0, [](const uint8_t* data, size_t size) {
+        std::fwrite(data, 1, size, stdout);
+    });
+    return written ? 0 : 1;
+}
+END
+"$cxx" -std=c++17 -Wall -Wextra -Werror "$@" -I . -I "$runtime" adaptive.cpp -o adaptive
+./adaptive >learnt
+"$etlc" incident learnt --spec "$here/../spec/ok/adaptive.etl" --values "$values" --format csv |
+  cut -d, -f1-3,8 >found
+printf '%s\n' step,distance_low,threshold_low,alarm 0,0.899999976,1, 1,0.949999988,0.9375,both |
+  diff - found || fail "an adaptive threshold is not what it was"

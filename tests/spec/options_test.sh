@@ -48,6 +48,16 @@ for time in -1 nan 1s ' 1'; do
     refuses "--at: found '$time', expected a number of seconds from 0" \
         explain t.etl --trace t.csv "--at=$time"
 done
+for recorder in 2s 2s,1s 2s,1s,0 2s,1s,-1 2s,1s,4,1 1.5,1,4 -1,1,4 2h,1,4 inf,1,4 ,1,4 1,1,ten; do
+    refuses "--recorder: found '$recorder', expected BEFORE,AFTER,INCIDENTS: two durations or \
+numbers of steps, and how many incidents, as 2s,1s,4 or 40,20,4" \
+        t.etl --check "--recorder=$recorder"
+done
+for recorder in 0,0,1 4,2,3; do
+    "$etlc" t.etl --check --recorder $recorder 2>err.txt || fail "--recorder $recorder"
+done
+refuses "--format: found 'json', expected table, csv, trace or spec" \
+    incident t.csv --spec t.etl --format json
 "$etlc" t.etl --values boolean -o boolean.hpp 2>err.txt || fail "$(cat err.txt)"
 "$etlc" t.etl --values robustness -o robustness.hpp 2>err.txt || fail "$(cat err.txt)"
 ! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"

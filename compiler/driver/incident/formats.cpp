@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 
 #include "etlmon/temporal/recorder.hpp"
 #include "plan/recorder.hpp"
@@ -154,6 +155,13 @@ std::string input_of(const check::Model& model, Index p, std::size_t number) {
     return name.empty() ? fmt::format("comparison_{}", number) : "distance_" + name;
 }
 
+/// " in [0, inf]": what bounds over every continuation rest on.
+std::string range_of(const check::Predicate& predicate) {
+    const auto [low, high] = predicate.delta;
+    if (std::isinf(low) && std::isinf(high)) return "";
+    return fmt::format(" in [{}, {}]", low, high);
+}
+
 const char* sign(check::Comparison comparison) {
     switch (comparison) {
         case check::Comparison::less: return "<";
@@ -215,7 +223,7 @@ std::string incident_spec(const plan::Plan& plan) {
     for (const Index p : plan.predicates) {
         const check::Predicate& predicate = model.predicates[p];
         const std::string input = input_of(model, p, changes.size() + 1);
-        inputs += fmt::format("input {} : f32;\n", input);
+        inputs += fmt::format("input {} : f32{};\n", input, range_of(predicate));
         const std::string name =
             predicate.name.empty() ? "" : "predicate " + predicate.name + " = ";
         const source::Span rest{predicate.threshold.span.end, predicate.span.end};

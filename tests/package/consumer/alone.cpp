@@ -1,9 +1,11 @@
-// One monitor whose header holds the runtime that it needs.
+// One monitor whose header holds the runtime that it needs, and a flight recorder.
 #include "guard.hpp"
 
 int main() {
     guard::Inputs motion;
     motion.speed = 3.0F;
     guard::Monitor monitor;
-    return monitor.step(motion).limit.violated() ? 0 : 1;
+    const bool alarm = monitor.step(motion).limit.alarm();
+    monitor.close_incidents();
+    return alarm && monitor.incidents() == 1 ? 0 : 1;
 }
