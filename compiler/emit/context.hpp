@@ -128,7 +128,8 @@ void print_recorded(Printer& out, const Context& context, check::Index predicate
                     const std::string& delta);
 void print_recorded_flag(Printer& out, const Context& context, check::Index input,
                          const std::string& flag);
-/// At the end of a step, with the verdicts in `verdicts`.
+/// At the end of a step, with the verdicts in `verdicts`; after print_progress, so that each alarm
+/// of a repeating monitor is one that begins.
 void print_record(Printer& out, const Context& context, const std::string& verdicts);
 
 /// A data member of the class: its declaration and how reset() sets it.

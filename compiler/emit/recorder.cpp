@@ -108,13 +108,8 @@ void print_recorded_flag(Printer& out, const Context& context, Index input,
 void print_record(Printer& out, const Context& context, const std::string& verdicts) {
     if (!context.plan.recorder) return;
     std::vector<std::string> statuses;
-    for (const plan::Monitor& monitor : context.plan.monitors) {
-        // After the trace a verdict that finish() repeats is no alarm of another cycle.
-        const bool repeated =
-            context.plan.has_sliding && monitor.restarts != check::Restarts::never;
-        statuses.push_back(fmt::format("{}{}.{}.status{}", repeated ? "finishes == 0 ? " : "",
-                                       verdicts, monitor.name, repeated ? " : 0u" : ""));
-    }
+    for (const plan::Monitor& monitor : context.plan.monitors)
+        statuses.push_back(fmt::format("{}.{}.status", verdicts, monitor.name));
     print_wrapped(out,
                   fmt::format("const uint32_t statuses[] = {{{}}};", fmt::join(statuses, ", ")));
     out.line("recorder.record({}, statuses);", row_of(context));

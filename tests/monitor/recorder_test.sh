@@ -28,9 +28,10 @@ monitor safe = G !at_wall;
 monitor calm = G (x <= 0.97 || held);
 monitor reach = F (at_goal && armed);
 sliding monitor slow = G[0, 0.2 s] !fast;
+repeating monitor again = F[0, 0.3 s] (at_goal && x <= 0.97);
 END
 "$etlc" drive.etl --values "$values" --recorder 0.45s,3,6 -o drive.hpp
-grep -q 'etlmon::Recorder<etlmon::RecorderRow<6, 2, 4>, 5, 3, 6>' drive.hpp  # 0.45 s are 5 steps
+grep -q 'etlmon::Recorder<etlmon::RecorderRow<6, 2, 5>, 5, 3, 6>' drive.hpp  # 0.45 s are 5 steps
 
 awk 'BEGIN {
   srand(5)
@@ -110,20 +111,21 @@ awk -F, '
   NR == 1 { next }
   { step = $1; word[$2] = $7 && $6 in final ? final[$6] : $6
     distances[step] = $9 "," $10 "," $11 "," $12 "," $13
-    verdicts[step] = word["safe"] "," word["calm"] "," word["reach"] "," word["slow"] }
+    verdicts[step] = word["safe"] "," word["calm"] "," word["reach"] "," word["slow"] \
+                     "," word["again"] }
   END { for (s = 0; s <= step; ++s) print s "," distances[s] "," verdicts[s] }' run.csv >expected
 for n in 0 1 2 3 4 5; do
   read_it() { "$etlc" incident "incident$n" --spec drive.etl --values "$values" "$@"; }
   read_it --format csv >incident.csv
-  cut -d, -f1-3,5,7,8,11-14 incident.csv | tail -n +2 >found
+  cut -d, -f1-3,5,7,8,11-15 incident.csv | tail -n +2 >found
   first=$(head -1 found | cut -d, -f1)
   last=$(tail -1 found | cut -d, -f1)
   # A class of truth values measures what it asks for, etlc run everything.
   sed -n "$((first + 1)),$((last + 1))p" expected | paste -d, - found | awk -F, '
-    { for (c = 1; c <= 10; ++c) if ($(c + 10) != "unasked" && $c != $(c + 10)) bad = 1 }
+    { for (c = 1; c <= 11; ++c) if ($(c + 11) != "unasked" && $c != $(c + 11)) bad = 1 }
     END { exit bad }' || fail "incident $n is not what etlc run says"
   ! grep -q unasked found || [ "$values" = boolean ] || fail "incident $n did not ask for all"
-  alarm=$(awk -F, 'NR > 1 && $15 != "" { print $1 }' incident.csv)
+  alarm=$(awk -F, 'NR > 1 && $16 != "" { print $1 }' incident.csv)
   grep -qx "$first\|$((first + 5))" <<<"$alarm" || fail "incident $n has its alarm elsewhere"
   read_it | grep -q "^incident $n of drive, episode 0: alarm of " || fail "no table"
 
@@ -164,7 +166,8 @@ cat >adaptive.cpp <<'END'
 
 int main() {
     static adaptive::Monitor monitor;
-    for (const float x : {0.9f, 0.95f}) {
+    const float samples[] = {0.9f, 0.95f};
+    for (const float x : samples) {
         adaptive::Inputs in;
         in.x = x;
         monitor.step(in);

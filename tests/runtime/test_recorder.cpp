@@ -106,6 +106,10 @@ public:
         expect_closed();
         recorder_.close();
     }
+    void restart(uint32_t monitor) {
+        recorder_.restart(monitor);
+        last_[monitor] = false;
+    }
     void forget() {
         recorder_.forget();
         incidents_.clear();
@@ -182,6 +186,7 @@ void try_at_random(uint32_t seed) {
             if (once_in(30)) twin.end_episode();
             if (once_in(40)) twin.close();
             if (once_in(60)) twin.forget();
+            if (once_in(5)) twin.restart(static_cast<uint32_t>(random() % 3));
             twin.expect_equal();
             if (::testing::Test::HasFatalFailure()) return;
         }

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <map>
 
 #include "etlmon/temporal/recorder.hpp"
 #include "plan/recorder.hpp"
@@ -126,11 +127,9 @@ private:
     RecorderColumns columns_ = plan::recorder_columns(plan_);
 };
 
-std::string csv_line(const Cells& cells) {
-    std::string line;
-    for (const std::string& cell : cells)
-        line += (line.empty() && &cell == &cells.front() ? "" : ",") + source::csv_cell(cell);
-    return line + "\n";
+std::string csv_line(Cells cells) {
+    for (std::string& cell : cells) cell = source::csv_cell(cell);
+    return fmt::format("{}\n", fmt::join(cells, ","));
 }
 
 /// The columns to the right, each as wide as its widest cell; `mark` stands before a line.
@@ -162,14 +161,33 @@ std::string range_of(const check::Predicate& predicate) {
     return fmt::format(" in [{}, {}]", low, high);
 }
 
-const char* sign(check::Comparison comparison) {
-    switch (comparison) {
-        case check::Comparison::less: return "<";
-        case check::Comparison::less_equal: return "<=";
-        case check::Comparison::greater: return ">";
-        case check::Comparison::greater_equal: return ">=";
+/// "distance_near <= 0.35", and what the spec says behind the threshold.
+std::string comparison(const check::Model& model, const check::Predicate& predicate,
+                       const std::string& input) {
+    const std::string_view text = predicate.text;  // "min l2(z, goal) <= "
+    const std::size_t end = text.find_last_not_of(' ') + 1;
+    const std::string_view sign = text.substr(0, end).substr(text.rfind(' ', end - 1) + 1);
+    const std::uint32_t behind = predicate.threshold.span.end;
+    const bool is_written = behind > predicate.span.begin;
+    return fmt::format("{} {} {}{}", input, sign, predicate.threshold.value,
+                       is_written ? model.file.text(source::Span{behind, predicate.span.end}) : "");
+}
+
+/// What stands at a place of the spec instead.
+using Changes = std::map<std::uint32_t, std::pair<source::Span, std::string>>;
+
+/// A comparison without a name may stand in several formulas.
+void change_everywhere(Changes& changes, const check::Model& model, Index p,
+                       const std::string& text) {
+    const check::Predicate& predicate = model.predicates[p];
+    if (!predicate.name.empty()) {
+        changes[predicate.span.begin] = {predicate.span,
+                                         "predicate " + predicate.name + " = " + text};
+        return;
     }
-    return "";
+    for (const check::Formula& formula : model.formulas)
+        if (formula.kind == check::Formula::Kind::predicate && formula.index == p)
+            changes[formula.span.begin] = {formula.span, text};
 }
 
 }  // namespace
@@ -197,7 +215,7 @@ std::string incident_csv(const plan::Plan& plan, const Incident& incident) {
     const Rows rows(plan, incident);
     const auto with = [](Cells cells, std::string last) {
         cells.push_back(std::move(last));
-        return csv_line(cells);
+        return csv_line(std::move(cells));
     };
     std::string text = with(rows.head("distance_", "nearest_"), "alarm");
     for (const Incident::Row& row : rows.all())
@@ -211,35 +229,29 @@ std::string incident_trace(const plan::Plan& plan, const Incident& incident) {
     for (const RecorderColumns::OfPredicate& column : rows.columns().predicates)
         names.push_back(input_of(*plan.model, column.predicate, names.size() + 1));
     for (const Index i : rows.columns().bools) names.push_back(plan.model->inputs[i].name);
-    std::string text = csv_line(names);
+    std::string text = csv_line(std::move(names));
     for (const Incident::Row& row : rows.all()) text += csv_line(rows.measured(row));
     return text;
 }
 
 std::string incident_spec(const plan::Plan& plan) {
     const check::Model& model = *plan.model;
-    std::vector<std::pair<source::Span, std::string>> changes;
+    Changes changes;
     std::string inputs;
+    std::size_t number = 0;
     for (const Index p : plan.predicates) {
         const check::Predicate& predicate = model.predicates[p];
-        const std::string input = input_of(model, p, changes.size() + 1);
+        const std::string input = input_of(model, p, ++number);
         inputs += fmt::format("input {} : f32{};\n", input, range_of(predicate));
-        const std::string name =
-            predicate.name.empty() ? "" : "predicate " + predicate.name + " = ";
-        const source::Span rest{predicate.threshold.span.end, predicate.span.end};
-        changes.emplace_back(predicate.span,
-                             fmt::format("{}{} {} {}{}", name, input, sign(predicate.comparison),
-                                         predicate.threshold.value, model.file.text(rest)));
+        change_everywhere(changes, model, p, comparison(model, predicate, input));
     }
-    std::sort(changes.begin(), changes.end(),
-              [](const auto& a, const auto& b) { return a.first.begin < b.first.begin; });
     std::string text;
     std::uint32_t copied = 0;
-    const std::uint32_t end = static_cast<std::uint32_t>(model.file.text().size());
-    for (const auto& [span, words] : changes) {
-        text += model.file.text({copied, span.begin});
-        text += words;
-        copied = span.end;
+    const auto end = static_cast<std::uint32_t>(model.file.text().size());
+    for (const auto& [begin, change] : changes) {
+        text += model.file.text({copied, begin});
+        text += change.second;
+        copied = change.first.end;
     }
     text += model.file.text({copied, end});
     return text + (text.ends_with("\n") ? "" : "\n") + inputs;

@@ -2,10 +2,13 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "check/model/fingerprint.hpp"
 #include "data/files/file.hpp"
 #include "driver/incident/formats.hpp"
 #include "driver/output_file.hpp"
+#include "etlmon/temporal/recorder.hpp"
 #include "plan/recorder.hpp"
 
 namespace etlc::driver {
@@ -41,21 +44,31 @@ bool check_origin(const Incident& incident, const plan::Plan& plan, const std::s
                     "give the options that the header was made with");
 }
 
-/// Whether each row has what the columns say, and nothing that no monitor records.
-bool check_shape(const Incident& incident, const plan::Plan& plan, const std::string& path,
-                 diag::Sink& sink) {
+/// Whether the row is one that this monitor records, as far as its bytes tell.
+bool is_recorded(const Incident::Row& row, std::size_t bools) {
+    for (std::size_t i = 0; i < row.bytes.size(); ++i)
+        if (row.bytes[i] >= (i < bools ? etlmon::kRecordedUnasked + 1 : 2 * etlmon::kAlarmBegins))
+            return false;
+    return true;
+}
+
+/// Whether the rows have what the columns say, and the alarm is one.
+bool check_rows(const Incident& incident, const plan::Plan& plan, const std::string& path,
+                diag::Sink& sink) {
     const plan::RecorderColumns columns = plan::recorder_columns(plan);
-    const Incident::Row& row = incident.rows.front();
-    if (row.figures.size() == columns.figures &&
-        row.bytes.size() == columns.bools.size() + columns.monitors)
-        return true;
-    sink.report(data::in_file(
-        {diag::Code::damaged_incident,
-         fmt::format("contradicts itself: a row of {} figures and {} bytes, expected {} and {}",
-                     row.figures.size(), row.bytes.size(), columns.figures,
-                     columns.bools.size() + columns.monitors)},
-        path));
-    return false;
+    const std::size_t bools = columns.bools.size();
+    const Incident::Row& alarm = incident.rows[incident.alarm];
+    const bool fits =
+        alarm.figures.size() == columns.figures && alarm.bytes.size() == bools + columns.monitors &&
+        std::all_of(incident.rows.begin(), incident.rows.end(),
+                    [bools](const Incident::Row& row) { return is_recorded(row, bools); }) &&
+        std::any_of(alarm.bytes.begin() + static_cast<std::ptrdiff_t>(bools), alarm.bytes.end(),
+                    [](std::uint8_t status) { return status >= etlmon::kAlarmBegins; });
+    if (!fits)
+        sink.report(data::in_file(
+            {diag::Code::damaged_incident, "contradicts itself: its rows are none of this monitor"},
+            path));
+    return fits;
 }
 
 std::string text_of(const plan::Plan& plan, const Incident& incident, IncidentFormat format) {
@@ -79,7 +92,7 @@ bool incident(const source::File& spec, const Compiled& compiled, const Incident
     const auto read = data::within_memory([&] { return data::parse_incident(*bytes); });
     if (!read) return sink.report(data::in_file(read.failure(), request.file)), false;
     if (!check_origin(*read, plan, request.file, sink) ||
-        !check_shape(*read, plan, request.file, sink))
+        !check_rows(*read, plan, request.file, sink))
         return false;
     std::vector<std::string> inputs = plan.model->dependencies;
     inputs.insert(inputs.end(), {spec.path(), request.file});
