@@ -263,7 +263,7 @@ private:
 
 Literals literals(const check::Model& model, const Trace& trace, Values values,
                   const std::vector<Alteration>& alterations) {
-    return Evaluation(model, trace, values, {}).literals(alterations);
+    return Evaluation(model, trace, values, {}, {}).literals(alterations);
 }
 
 Run evaluate(const check::Model& model, const Trace& trace, Values values,

@@ -76,12 +76,15 @@ TEST(PlanExhaustive, SlidingMonitorsWithGaps) {
 /// F[a,b] (g && F[c,d] h), alone and as what G responds with, and the duals, with all of these
 /// intervals, over predicates of ranges that differ. Their state machines would take more
 /// operations than these limits allow.
-TEST(PlanInTwoParts, TakesFewOperations) {
+class PlanInTwoParts : public testing::TestWithParam<const char*> {};
+
+TEST_P(PlanInTwoParts, TakesFewOperations) {
     const plan::Limits few_operations{.operations = 300};
     const auto spec = [](const std::string& formula) {
-        return "spec two; input x, y, z : f32 in [-4, 4]; predicate p = x >= -1;\n"
-               "predicate q = y > 1; predicate r = z <= 0; monitor m = " +
-               formula + ";";
+        return fmt::format(
+            "spec two; input x, y, z : f32 in [-4, 4]; predicate p = x >= -1; predicate q = y > 1;"
+            "predicate r = z <= 0; {} m = {};",
+            GetParam(), formula);
     };
     int seed = 0;
     for (const char* begun : {"[0, 12]", "[9, 9]", "[4, 20]"})
@@ -96,12 +99,14 @@ TEST(PlanInTwoParts, TakesFewOperations) {
                 PlanRunner runner(*model, few_operations);
                 ASSERT_EQ(runner.refusal(), "") << model->file.text();
                 for (const double missing : {0.0, 0.0, 0.1, 0.4}) {
-                    TraceShape shape{.steps = 60, .missing = missing};
+                    const TraceShape shape{.steps = 60, .missing = missing};
                     expect_agreement(*model, runner, random_trace(*model, ++seed, shape), 0);
                     if (HasFatalFailure()) return;
                 }
             }
 }
+
+INSTANTIATE_TEST_SUITE_P(Kinds, PlanInTwoParts, testing::Values("monitor", "repeating monitor"));
 
 struct RandomCase {
     const char* name;
