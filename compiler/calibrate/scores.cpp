@@ -56,11 +56,8 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
     }
     const check::Predicate& p = model_.predicates[predicate];
     const float score = p.upper_bound() ? delta : -delta;
-    if (p.threshold.origin == ThresholdOrigin::f1) {
-        scores.labelled.push_back({score, positive});
-        return;
-    }
-    if (!positive) return;
+    scores.labelled.push_back({score, positive});
+    if (!positive || p.threshold.origin == ThresholdOrigin::f1) return;
     const Interval interval = *interval_of(model_, predicate, measured_.evaluator());
     const double reach = p.upper_bound() ? interval.high : -interval.low;
     scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
