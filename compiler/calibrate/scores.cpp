@@ -37,8 +37,10 @@ diag::Result<Demonstration> Scorer::score(const std::string& path) {
         return true;
     });
     if (!done) return done.failure();
-    for (std::size_t i = 0; i < predicates_.size(); ++i)
+    for (std::size_t i = 0; i < predicates_.size(); ++i) {
         scores[i].from_array = recording->from_array(predicates_[i]);
+        scores[i].labelled.shrink_to_fit();  // they are kept for all episodes
+    }
     return Demonstration{recording->recorded(), std::move(scores)};
 }
 
