@@ -1,5 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
-#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE])
+#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE]
+#                  [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -9,6 +10,7 @@
 #   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
 #                   only the distances that matter
 #   NAMESPACE       of the generated code; default: the name after `spec`
+#   SET             other values for constants of the spec: SET limit=0.25 deadline=2s
 #   STANDALONE      the header holds the runtime that it needs; without it TARGET is linked with
 #                   etlmon::etlmon. No source includes both kinds.
 #   INLINE_TARGETS  larger target sets go to <stem of SPEC>.targets.bin beside the header; default:
@@ -24,7 +26,7 @@ cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
-    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "")
+    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -85,6 +87,9 @@ function(etlc_add_monitor target)
   if(arg_STANDALONE)
     list(APPEND options --standalone)
   endif()
+  foreach(setting IN LISTS arg_SET)
+    list(APPEND options --set ${setting})
+  endforeach()
 
   file(MAKE_DIRECTORY "${folder}")
   add_custom_command(

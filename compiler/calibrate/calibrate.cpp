@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "calibrate/doubts.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
@@ -170,6 +171,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             continue;
         }
         all.push_back(std::get<Fitted>(fitted));
+        warn_of_doubts(predicate, *demonstrations, i, all.back(), sink);
         check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
         threshold.value = all.back().epsilon;
         if (threshold.adaptation)

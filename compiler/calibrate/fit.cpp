@@ -89,7 +89,7 @@ Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& dem
     std::vector<double> by_episode;
     for (const Demonstration& demonstration : demonstrations) {
         const Scores& scores = demonstration.scores[of];
-        labelled.insert(labelled.end(), scores.labelled.begin(), scores.labelled.end());
+        if (is_f1) labelled.insert(labelled.end(), scores.labelled.begin(), scores.labelled.end());
         if (predicate.threshold.origin == ThresholdOrigin::class_conditional) {
             reaches.insert(reaches.end(), scores.reaches.begin(), scores.reaches.end());
         } else if (!is_f1 && scores.has_score) {

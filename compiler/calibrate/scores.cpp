@@ -37,8 +37,10 @@ diag::Result<Demonstration> Scorer::score(const std::string& path) {
         return true;
     });
     if (!done) return done.failure();
-    for (std::size_t i = 0; i < predicates_.size(); ++i)
+    for (std::size_t i = 0; i < predicates_.size(); ++i) {
         scores[i].from_array = recording->from_array(predicates_[i]);
+        scores[i].labelled.shrink_to_fit();  // they are kept for all episodes
+    }
     return Demonstration{recording->recorded(), std::move(scores)};
 }
 
@@ -56,11 +58,8 @@ void Scorer::add(Index predicate, Label label, Scores& scores) const {
     }
     const check::Predicate& p = model_.predicates[predicate];
     const float score = p.upper_bound() ? delta : -delta;
-    if (p.threshold.origin == ThresholdOrigin::f1) {
-        scores.labelled.push_back({score, positive});
-        return;
-    }
-    if (!positive) return;
+    scores.labelled.push_back({score, positive});
+    if (!positive || p.threshold.origin == ThresholdOrigin::f1) return;
     const Interval interval = *interval_of(model_, predicate, measured_.evaluator());
     const double reach = p.upper_bound() ? interval.high : -interval.low;
     scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;

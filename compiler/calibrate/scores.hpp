@@ -1,7 +1,7 @@
 // Nonconformity scores: what the calibrated predicates measured in one demonstration.
 // Takes: a demonstration. Gives: per calibrated predicate its score and the counts that the report
 // needs. Keeps true: distances come from the kernels that the monitor uses; memory is that of one
-// frame, but for the pooled methods, which keep a number for every frame that they pool.
+// frame and of a number for every labelled one.
 #pragma once
 
 #include <cstdint>
@@ -30,7 +30,7 @@ struct Scores {
     bool has_score = false;          ///< some positive frame was measured
     double worst_reach = 0;          ///< the greatest score of one that any build may have measured
     std::vector<double> reaches;     ///< class_conditional: those of all positive frames
-    std::vector<Labelled> labelled;  ///< f1: all measured frames
+    std::vector<Labelled> labelled;  ///< all measured frames
 };
 
 struct Demonstration : episodes::Recorded {

@@ -80,7 +80,7 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
         request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
     if (!check_outputs({output}, inputs(*model, file, request), sink)) return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
-    if (!result) return false;
+    if (!result || sink.refused()) return false;
 
     // The report comes before the file takes its name: where a part of it is lost, nothing has
     // changed.

@@ -48,7 +48,7 @@ public:
     }
 
     /// False where a monitor is too large; the sink then says which part.
-    bool add_monitor(Index index, diag::Sink& sink) {
+    bool add_monitor(Index index, diag::Sink& sink, const Advice& advice) {
         const check::Monitor& source = plan_.model->monitors[index];
         Monitor monitor{.name = source.name,
                         .sliding = source.sliding,
@@ -81,7 +81,7 @@ public:
             const auto reading = readings_.of(program_.monitors[index]);
             for (std::size_t i = known; i < readings_.oversize().size(); ++i)
                 refuse_part(source, readings_.oversize()[i], *formulas_, limits_, plan_.values,
-                            sink);
+                            advice ? advice(index, Among::alone) : std::vector<diag::Note>{}, sink);
             if (!reading) return false;
             monitor.reading = *reading;
         }
@@ -168,14 +168,14 @@ private:
 }  // namespace
 
 std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag::Sink& sink,
-                         check::Values values, Storage targets_as) {
+                         check::Values values, Storage targets_as, const Advice& advice) {
     Planning planning(program, limits, values);
     bool complete = true;
     for (Index m = 0; m < program.monitors.size(); ++m)
-        complete = planning.add_monitor(m, sink) && complete;
+        complete = planning.add_monitor(m, sink, complete ? advice : Advice{}) && complete;
     if (!complete) return std::nullopt;
     Plan result = planning.finish(targets_as, sink);
-    check_budget(result, limits, sink);
+    check_budget(result, limits, advice, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
 }

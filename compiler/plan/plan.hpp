@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -112,10 +113,15 @@ struct Limits {
     std::uint64_t inline_target_bytes = 256U << 10U;
 };
 
-/// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits.
+/// What would fit in place of a monitor that does not, all monitors together or it alone.
+enum class Among : std::uint8_t { all, alone };
+using Advice = std::function<std::vector<diag::Note>(Index monitor, Among among)>;
+
+/// Plans every monitor, or reports the ones whose exact state, code or work exceeds the limits;
+/// `advice` is asked once.
 std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag::Sink& sink,
                          check::Values values = check::Values::robustness,
-                         Storage targets_as = Storage::f32);
+                         Storage targets_as = Storage::f32, const Advice& advice = {});
 
 /// A plan without monitors: the evaluator then only measures these predicates, as it does for
 /// monitors that use them.

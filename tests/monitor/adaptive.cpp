@@ -1,6 +1,7 @@
 #include "adaptive.hpp"
 
 #include <fmt/format.h>
+#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
@@ -48,9 +49,12 @@ bool misses(const check::Predicate& predicate, double distance, double epsilon) 
         case check::Comparison::less_equal: return !(distance <= epsilon);
         case check::Comparison::less: return !(distance < epsilon);
         case check::Comparison::greater_equal: return !(distance >= epsilon);
-        case check::Comparison::greater: break;
+        case check::Comparison::greater: return !(distance > epsilon);
+        case check::Comparison::equal:
+        case check::Comparison::not_equal: break;
     }
-    return !(distance > epsilon);
+    ADD_FAILURE() << "an adaptive threshold is never one of equality";
+    return false;
 }
 
 /// epsilon += gamma (miss - alpha) within [lo, hi], for >= and > epsilon -= gamma (miss - alpha).

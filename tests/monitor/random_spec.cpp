@@ -164,7 +164,6 @@ private:
         if (kind < 5) return fmt::format("{} {} {}", distance(), compare(), number(0, 6));
         if (kind < 7)
             return fmt::format("{} - {} {} {}", distance(), distance(), compare(), number(-2, 2));
-        if (random_.chance(0.3)) return comparison_of_scalars();
         return fmt::format("{} {} {}", expression(random_.between(1, 3)), compare(), number(-3, 3));
     }
 };

@@ -13,14 +13,6 @@ namespace {
 
 constexpr std::size_t kMostNamed = 3;
 
-std::string figures(const Cost& cost) {
-    const std::string stack = cost.stack_bytes == 0
-                                  ? ""
-                                  : fmt::format(" and {} on the stack of a step", cost.stack_bytes);
-    return fmt::format("{} bytes of state{}, {} bytes of code (estimated), {} operations a step",
-                       cost.state_bytes, stack, cost.code_bytes, cost.operations);
-}
-
 std::string limit_figures(const Limits& limits) {
     return fmt::format("the limits are {}, {} and {}", limits.state_bytes, limits.code_bytes,
                        limits.operations);
@@ -61,18 +53,27 @@ struct Part {
     Cost cost;
 };
 
-/// By what they need of what is short, in parts of the limit.
+/// What a cost needs of what is short, in parts of the limit.
+double weight_of(const Cost& cost, const Cost& all, const Limits& limits) {
+    const auto share = [](std::uint64_t need, std::uint64_t of_all, std::uint64_t limit) {
+        return of_all <= limit ? 0.0 : static_cast<double>(need) / static_cast<double>(limit + 1);
+    };
+    return share(cost.state_bytes + cost.stack_bytes, all.state_bytes + all.stack_bytes,
+                 limits.state_bytes) +
+           share(cost.code_bytes, all.code_bytes, limits.code_bytes) +
+           share(cost.operations, all.operations, limits.operations);
+}
+
+Index costliest_monitor(const Plan& plan, const Limits& limits) {
+    const auto costliest = std::max_element(
+        plan.monitor_costs.begin(), plan.monitor_costs.end(), [&](const Cost& a, const Cost& b) {
+            return weight_of(a, plan.cost, limits) < weight_of(b, plan.cost, limits);
+        });
+    return plan.monitors[static_cast<std::size_t>(costliest - plan.monitor_costs.begin())].index;
+}
+
 std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
-    const auto share = [](std::uint64_t need, std::uint64_t all, std::uint64_t limit) {
-        return all <= limit ? 0.0 : static_cast<double>(need) / static_cast<double>(limit + 1);
-    };
-    const Cost& all = plan.cost;
-    const auto weight = [&](const Cost& cost) {
-        return share(cost.state_bytes + cost.stack_bytes, all.state_bytes + all.stack_bytes,
-                     limits.state_bytes) +
-               share(cost.code_bytes, all.code_bytes, limits.code_bytes) +
-               share(cost.operations, all.operations, limits.operations);
-    };
+    const auto weight = [&](const Cost& cost) { return weight_of(cost, plan.cost, limits); };
     std::vector<Part> parts;
     for (const Reading& reading : plan.readings)
         parts.push_back({reading.node, cost_of(reading, plan.values)});
@@ -91,7 +92,7 @@ std::vector<Part> costly_parts(const Plan& plan, const Limits& limits) {
 
 void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part,
                  const ir::Graph& graph, const Limits& limits, check::Values values,
-                 diag::Sink& sink) {
+                 std::vector<diag::Note> alternatives, diag::Sink& sink) {
     const std::string_view why = part.reached.out_of_work
                                      ? "that takes more work to build than the limits allow"
                                      : "larger than the limits";
@@ -102,7 +103,7 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
                     "transitions, which take {} so far; {}",
                     monitor.name, why, graph.text(part.node), part.reached.states,
                     part.reached.transitions,
-                    figures(cost_of_table(part.reached.states, part.reached.transitions, values)),
+                    in_words(cost_of_table(part.reached.states, part.reached.transitions, values)),
                     limit_figures(limits)));
     for (ir::NodeId id : costly_operators(graph, part.node)) {
         const ir::Node& node = graph[id];
@@ -114,25 +115,29 @@ void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& 
             error.note(node.span,
                        fmt::format("'{}' is followed from each position separately", text));
     }
+    for (diag::Note& note : alternatives) error.notes.push_back(std::move(note));
     error.note(
         "shorter windows or fewer nested operators make it smaller; --max-state and --max-code "
         "move the limits");
 }
 
-void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink) {
+void check_budget(const Plan& plan, const Limits& limits, const Advice& advice, diag::Sink& sink) {
     if (within(plan.cost, limits)) return;
     const ir::Graph& graph = *plan.formulas;
     const check::Model& model = *plan.model;
     auto& error = sink.report(
         diag::Code::over_budget, model.monitors.front().span,
-        fmt::format("the monitor class needs {}; {}", figures(plan.cost), limit_figures(limits)));
+        fmt::format("the monitor class needs {}; {}", in_words(plan.cost), limit_figures(limits)));
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         error.note(model.monitors[plan.monitors[m].index].span,
                    fmt::format("'{}' alone needs {}", plan.monitors[m].name,
-                               figures(plan.monitor_costs[m])));
+                               in_words(plan.monitor_costs[m])));
     for (const Part& part : costly_parts(plan, limits))
         error.note(graph[part.node].span, fmt::format("of that, '{}' takes {}",
-                                                      graph.text(part.node), figures(part.cost)));
+                                                      graph.text(part.node), in_words(part.cost)));
+    if (advice)
+        for (diag::Note& note : advice(costliest_monitor(plan, limits), Among::all))
+            error.notes.push_back(std::move(note));
     error.note("--max-state, --max-code and --max-work move the limits");
 }
 

@@ -11,9 +11,9 @@ namespace etlc::plan {
 /// A part of a monitor whose state machine would be larger than the limits.
 void refuse_part(const check::Monitor& monitor, const ReadingBuilder::Oversize& part,
                  const ir::Graph& graph, const Limits& limits, check::Values values,
-                 diag::Sink& sink);
+                 std::vector<diag::Note> alternatives, diag::Sink& sink);
 
-/// A plan over the limits.
-void check_budget(const Plan& plan, const Limits& limits, diag::Sink& sink);
+/// A plan over the limits; advice is asked for the costliest monitor.
+void check_budget(const Plan& plan, const Limits& limits, const Advice& advice, diag::Sink& sink);
 
 }  // namespace etlc::plan

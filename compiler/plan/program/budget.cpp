@@ -1,5 +1,7 @@
 #include "plan/program/budget.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 
@@ -255,6 +257,14 @@ Cost operator+(Cost a, const Cost& b) {
 bool within(const Cost& cost, const Limits& limits) {
     return cost.state_bytes + cost.stack_bytes <= limits.state_bytes &&
            cost.code_bytes <= limits.code_bytes && cost.operations <= limits.operations;
+}
+
+std::string in_words(const Cost& cost) {
+    const std::string stack = cost.stack_bytes == 0
+                                  ? ""
+                                  : fmt::format(" and {} on the stack of a step", cost.stack_bytes);
+    return fmt::format("{} bytes of state{}, {} bytes of code (estimated), {} operations a step",
+                       cost.state_bytes, stack, cost.code_bytes, cost.operations);
 }
 
 Cost cost_of(const Stream& stream, Values kind) {

@@ -11,6 +11,8 @@ namespace etlc::plan {
 
 Cost operator+(Cost a, const Cost& b);
 bool within(const Cost& cost, const Limits& limits);
+/// "12 bytes of state, 216 bytes of code (estimated), 3 operations a step"
+std::string in_words(const Cost& cost);
 Cost cost_of(const Stream& stream, check::Values values);
 Cost cost_of(const Reading& reading, check::Values values);
 /// Target elements that a predicate measures.

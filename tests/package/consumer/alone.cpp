@@ -3,7 +3,7 @@
 
 int main() {
     guard::Inputs motion;
-    motion.speed = 3.0F;
+    motion.speed = 30.0F;  // in range with the constant that CMakeLists.txt sets
     guard::Monitor monitor;
     const bool alarm = monitor.step(motion).limit.alarm();
     monitor.close_incidents();

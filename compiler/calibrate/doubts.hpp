@@ -1,0 +1,17 @@
+// Doubts about a threshold that has been fitted.
+// Takes: the scores of all labelled frames, and the threshold. Gives: warnings where the distance
+// does not tell the labels apart, or the threshold is so wide that nearly every frame is within.
+// Keeps true: says nothing of what too few episodes leave open; changes no threshold.
+#pragma once
+
+#include "calibrate/fit.hpp"
+#include "diag/diag.hpp"
+
+namespace etlc::calibrate {
+
+/// `of`: which of the demonstrations' scores are this predicate's; `fitted` of the same.
+void warn_of_doubts(const check::Predicate& predicate,
+                    const std::vector<Demonstration>& demonstrations, std::size_t of,
+                    const Fitted& fitted, diag::Sink& sink);
+
+}  // namespace etlc::calibrate
