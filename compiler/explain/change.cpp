@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "etlmon/temporal/shift.hpp"
 #include "explain/support.hpp"
 
 namespace etlc::explain {
@@ -18,12 +17,12 @@ using etlmon::Key;
 
 class Search {
 public:
-    Search(const Subject& subject, Status status) : subject_(subject), status_(status) {}
+    Search(const Subject& subject, const Judged& judged)
+        : subject_(subject), judged_(judged), status_(judged.status) {}
 
     std::optional<Change> among(const std::vector<Sample>& samples) {
-        const Judged judged = judge(subject_);
         const Key weakest = status_ == Status::satisfied ? etlmon::kBottom : etlmon::kTop;
-        Support support(subject_, judged, weakest);
+        Support support(subject_, judged_, weakest);
         std::set<std::pair<std::uint64_t, Index>> seen;  // step and first atom
         for (const Sample& sample : samples) {
             const std::vector<Index> atoms = of_same_measurement(sample.atom);
@@ -36,9 +35,9 @@ public:
                          [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
         for (const Candidate& candidate : candidates_) {
             const Judged then = judge(subject_, candidate.altered);
-            if (then.status != Status::unknown && then.status != status_)
+            if (turned(then))
                 return Change{candidate.sample, candidate.altered.measured, then.status,
-                              etlmon::float_of(etlmon::shifted(then.root.key, subject_.shift))};
+                              then.reading == Reading::for_good};
         }
         return std::nullopt;
     }
@@ -49,6 +48,11 @@ private:
         Sample sample;
         Altered altered;
     };
+
+    bool turned(const Judged& then) const {
+        return then.status != status_ ||
+               (judged_.reading == Reading::for_good && then.reading == Reading::so_far);
+    }
 
     /// The atoms that one distance or expression, or one bool, decides.
     std::vector<Index> of_same_measurement(Index atom) {
@@ -110,6 +114,7 @@ private:
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
     const Subject& subject_;
+    const Judged& judged_;
     Status status_;
     std::vector<std::string> expressions_;  ///< per atom
     std::vector<Candidate> candidates_;
@@ -117,9 +122,9 @@ private:
 
 }  // namespace
 
-std::optional<Change> smallest_change(const Subject& subject, Status status,
+std::optional<Change> smallest_change(const Subject& subject, const Judged& judged,
                                       const std::vector<Sample>& samples) {
-    return Search(subject, status).among(samples);
+    return Search(subject, judged).among(samples);
 }
 
 }  // namespace etlc::explain

@@ -47,103 +47,152 @@ std::uint64_t at(const ir::Node& node, std::uint64_t position, std::uint64_t off
 
 }  // namespace
 
-std::vector<std::vector<bool>> reach(const ir::Graph& graph, NodeId root, std::uint64_t position,
-                                     std::uint64_t last) {
-    const std::uint64_t length = last + 1;
-    std::vector<Ranges> ranges(root + std::size_t{1}, Ranges(length));
-    std::vector<std::vector<bool>> result(root + std::size_t{1});
-    ranges[root].add(position, position + 1);
-    for (NodeId id = root + 1; id-- > 0;) {
-        result[id] = ranges[id].positions();
-        const ir::Node& node = graph[id];
-        for (std::uint64_t k = 0; k < length && !node.operands.empty(); ++k) {
-            if (!result[id][k]) continue;
-            if (!is_temporal(node)) {
-                for (const NodeId operand : node.operands) ranges[operand].add(k, k + 1);
-                continue;
-            }
-            const bool past = is_past(node);
-            const std::uint64_t room = past ? k : last - k;
-            if (node.interval.low > room) continue;
-            const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
-            const NodeId operand = node.operands.back();
-            if (past)
-                ranges[operand].add(k - high, k - node.interval.low + 1);
-            else
-                ranges[operand].add(k + node.interval.low, k + high + 1);
-            if (node.operands.size() == 1) continue;
-            if (past)
-                ranges[node.operands.front()].add(k - high + 1, k + 1);
-            else
-                ranges[node.operands.front()].add(k, k + high);
-        }
-    }
-    return result;
+bool Statement::takes_one(const ir::Node& node) const {
+    return (ir::takes_max(node.op) || node.op == ir::Op::disjunction) == satisfied;
 }
 
-Claim::Claim(const ir::Graph& graph, NodeId root, std::uint64_t position, std::uint64_t last,
-             bool satisfied, const std::vector<std::vector<bool>>& speaks_for_it)
-    : graph_(graph),
-      root_(root),
-      position_(position),
-      last_(last),
-      satisfied_(satisfied),
-      true_(reach(graph, root, position, last)),
-      offsets_(root + std::size_t{1}),
-      parents_(root + std::size_t{1}),
-      first_(root + std::size_t{1}, kNever),
-      final_(root + std::size_t{1}, 0) {
-    for (NodeId id = 0; id <= root; ++id) {
-        const ir::Node& node = graph[id];
-        for (std::uint64_t k = 0; k <= last; ++k) {
+bool Statement::goes_on(const ir::Node& node, std::uint64_t at) const {
+    return reading == Reading::for_good && !is_past(node) && !takes_one(node) &&
+           node.interval.high > last - at;
+}
+
+namespace {
+
+/// What the statement looks at, from the root down.
+class Reach {
+public:
+    explicit Reach(const Statement& statement)
+        : statement_(statement),
+          ranges_(statement.root + std::size_t{1}, Ranges(statement.last + 2)) {}
+
+    std::vector<std::vector<bool>> find() {
+        std::vector<std::vector<bool>> result(ranges_.size());
+        add(statement_.root, statement_.position, statement_.position + 1);
+        for (NodeId id = statement_.root + 1; id-- > 0;) {
+            result[id] = ranges_[id].positions();
+            const ir::Node& node = statement_.graph[id];
+            if (node.operands.empty()) continue;
+            for (std::uint64_t k = 0; k <= statement_.unseen(); ++k)
+                if (result[id][k]) look_from(node, k);
+        }
+        return result;
+    }
+
+private:
+    void add(NodeId node, std::uint64_t first, std::uint64_t end) { ranges_[node].add(first, end); }
+
+    void look_from(const ir::Node& node, std::uint64_t k) {
+        if (!is_temporal(node))
+            for (const NodeId operand : node.operands) add(operand, k, k + 1);
+        else if (k == statement_.unseen())
+            look_from_unseen(node);
+        else if (is_past(node))
+            look_back(node, k);
+        else
+            look_ahead(node, k);
+    }
+
+    void look_back(const ir::Node& node, std::uint64_t k) {
+        if (node.interval.low > k) return;
+        const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, k);
+        add(node.operands.back(), k - high, k - node.interval.low + 1);
+        if (node.operands.size() == 2) add(node.operands.front(), k - high + 1, k + 1);
+    }
+
+    void look_ahead(const ir::Node& node, std::uint64_t k) {
+        const std::uint64_t room = statement_.last - k;
+        const bool goes_on = statement_.goes_on(node, k);
+        if (node.interval.low > room && !goes_on) return;
+        const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
+        add(node.operands.back(), k + node.interval.low, k + high + 1);
+        if (goes_on) add(node.operands.back(), statement_.unseen(), statement_.unseen() + 1);
+        if (node.operands.size() == 2) add(node.operands.front(), k, k + high + (goes_on ? 1 : 0));
+    }
+
+    void look_from_unseen(const ir::Node& node) {
+        const std::uint64_t end = statement_.unseen() + 1;
+        add(node.operands.back(), is_past(node) ? 0 : statement_.unseen(), end);
+    }
+
+    const Statement& statement_;
+    std::vector<Ranges> ranges_;
+};
+
+}  // namespace
+
+std::vector<std::vector<bool>> reach(const Statement& statement) {
+    return Reach(statement).find();
+}
+
+Claim::Claim(const Statement& statement, const std::vector<std::vector<bool>>& speaks_for_it)
+    : statement_(statement),
+      graph_(statement.graph),
+      true_(reach(statement)),
+      offsets_(true_.size()),
+      parents_(true_.size()),
+      first_(true_.size(), kNever),
+      final_(true_.size(), 0) {
+    for (NodeId id = 0; id < true_.size(); ++id) {
+        const ir::Node& node = graph_[id];
+        for (std::uint64_t k = 0; k <= statement.last; ++k) {
             if (!true_[id][k]) continue;
             first_[id] = std::min(first_[id], k);
             final_[id] = k;
         }
-        if (first_[id] == kNever) continue;
+        if (first_[id] == kNever && !true_[id][statement.unseen()]) continue;
         for (std::size_t n = 0; n < node.operands.size(); ++n)
             parents_[node.operands[n]].push_back({id, n + 1 == node.operands.size()});
-        if (node.operands.empty()) {
-            for (std::uint64_t k = first_[id]; k <= final_[id]; ++k)
-                true_[id][k] = true_[id][k] && speaks_for_it[id][k];
+        if (!node.operands.empty()) {
+            establish(id);
             continue;
         }
-        establish(id);
+        for (std::uint64_t k = 0; k <= statement.unseen(); ++k)
+            true_[id][k] = true_[id][k] && speaks_for_it[id][k];
     }
 }
 
-/// Of a max, a claim that it is satisfied asks for one operand, that it is violated for all; of a
-/// min the other way round.
-bool Claim::asks_for_one(const ir::Node& node) const {
-    return (ir::takes_max(node.op) || node.op == ir::Op::disjunction) == satisfied_;
-}
-
 Claim::Window Claim::window(const ir::Node& node, std::uint64_t position) const {
-    const std::uint64_t room = is_past(node) ? position : last_ - position;
+    const std::uint64_t room = is_past(node) ? position : statement_.last - position;
     return {node.interval.low, std::min<std::uint64_t>(node.interval.high, room),
-            node.interval.low > room};
+            node.interval.low > room, statement_.goes_on(node, position)};
 }
 
 // ---- what is true to begin with -----------------------------------------------------------------
 
 void Claim::establish(NodeId id) {
     const ir::Node& node = graph_[id];
-    if (is_temporal(node)) offsets_[id].resize(last_ + 1);
-    for (std::uint64_t k = first_[id]; k <= final_[id]; ++k)
+    const bool temporal = is_temporal(node);
+    const std::uint64_t unseen_position = statement_.unseen();
+    if (temporal) offsets_[id].resize(unseen_position + 1);
+    for (std::uint64_t k = 0; k <= unseen_position; ++k)
         if (true_[id][k])
-            true_[id][k] = is_temporal(node) ? search(id, k, 0) : combination(node, k);
+            true_[id][k] = !temporal              ? combination(node, k)
+                           : k == unseen_position ? unseen(node)
+                                                  : search(id, k, 0);
 }
 
 bool Claim::combination(const ir::Node& node, std::uint64_t position) const {
-    const bool one = asks_for_one(node);
+    const bool one = statement_.takes_one(node);
     for (const NodeId operand : node.operands)
         if (true_[operand][position] == one) return one;
     return !one;
 }
 
+/// At the position that stands for all that may come: as Values has it.
+bool Claim::unseen(const ir::Node& node) const {
+    const bool one = statement_.takes_one(node);
+    if (one && node.interval.low > 0) return false;
+    const std::vector<bool>& operand = true_[node.operands.back()];
+    const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
+    const bool now = operand[statement_.unseen()];
+    if (now == one || !is_past(node) || (one && !never_forgets)) return now;
+    const auto seen_end = operand.begin() + static_cast<std::ptrdiff_t>(statement_.unseen());
+    return (std::find(operand.begin(), seen_end, one) != seen_end) == one;
+}
+
 bool Claim::search(NodeId id, std::uint64_t position, std::uint64_t from) {
-    return asks_for_one(graph_[id]) ? find_witness(id, position, from)
-                                    : find_release(id, position, from);
+    return statement_.takes_one(graph_[id]) ? find_witness(id, position, from)
+                                            : find_release(id, position, from);
 }
 
 /// The first place of the window, at or after `from`, where the last operand is true, and the left
@@ -166,23 +215,24 @@ bool Claim::find_witness(NodeId id, std::uint64_t position, std::uint64_t from) 
 }
 
 /// The first place, at or after `from`, where the left operand is true: up to it the last one has
-/// to be true in the window. Before `from` it is.
+/// to be true in the window, and after the prefix if the window goes on and there is no such place.
+/// Before `from` it is.
 bool Claim::find_release(NodeId id, std::uint64_t position, std::uint64_t from) {
     const ir::Node& node = graph_[id];
     const Window w = window(node, position);
     offsets_[id][position] = kNever;
-    if (w.empty) return true;
+    if (w.empty && !w.goes_on) return true;
     const std::vector<bool>& last = true_[node.operands.back()];
     const bool binary = node.operands.size() == 2;
     const std::vector<bool>& left = true_[node.operands.front()];
     for (std::uint64_t o = binary ? from : std::max(from, w.low); o <= w.high; ++o) {
         if (o >= w.low && !last[at(node, position, o)]) return false;
-        if (binary && o < w.high && left[at(node, position, o)]) {
+        if (binary && (o < w.high || w.goes_on) && left[at(node, position, o)]) {
             offsets_[id][position] = o;
             return true;
         }
     }
-    return true;
+    return !w.goes_on || last[statement_.unseen()];
 }
 
 // ---- without some of it -------------------------------------------------------------------------
@@ -227,7 +277,10 @@ void Claim::tell(const Parent& parent, std::uint64_t position) {
             refute(parent.node, position);
         return;
     }
-    const std::uint64_t room = is_past(node) ? last_ - position : position;
+    if (parent.is_last && true_[parent.node][statement_.unseen()] && !unseen(node))
+        refute(parent.node, statement_.unseen());
+    if (position == statement_.unseen()) return tell_of_unseen(parent);
+    const std::uint64_t room = is_past(node) ? statement_.last - position : position;
     const std::uint64_t low = parent.is_last ? node.interval.low : 0;
     const std::uint64_t high = std::min<std::uint64_t>(node.interval.high, room);
     if (low > high) return;
@@ -241,11 +294,21 @@ void Claim::tell(const Parent& parent, std::uint64_t position) {
             reconsider(parent, k, is_past(node) ? k - position : position - k);
 }
 
+/// Nor after the prefix, where windows go on that have not been released before.
+void Claim::tell_of_unseen(const Parent& parent) {
+    const ir::Node& node = graph_[parent.node];
+    if (!parent.is_last) return;
+    for (std::uint64_t k = first_[parent.node]; k <= final_[parent.node] && k != kNever; ++k)
+        if (true_[parent.node][k] && statement_.goes_on(node, k) &&
+            offsets_[parent.node][k] == kNever)
+            refute(parent.node, k);
+}
+
 /// The operand is no longer true at this offset from the position.
 void Claim::reconsider(const Parent& parent, std::uint64_t position, std::uint64_t offset) {
     const NodeId id = parent.node;
     const std::uint64_t known = offsets_[id][position];
-    const bool one = asks_for_one(graph_[id]);
+    const bool one = statement_.takes_one(graph_[id]);
     if (parent.is_last != one) {  // an operand that has to be true up to the known offset
         if (one ? offset < known : offset <= known) refute(id, position);
         return;

@@ -19,17 +19,34 @@ struct Evidence {
     std::uint64_t step = 0;
 };
 
-/// Per node, the positions of the prefix 0..last that the value of `root` at `position` looks at.
-std::vector<std::vector<bool>> reach(const ir::Graph& graph, NodeId root, std::uint64_t position,
-                                     std::uint64_t last);
+/// That the formula `root` is satisfied, or violated, at a position of the prefix 0..last, so far
+/// or for good.
+struct Statement {
+    const ir::Graph& graph;
+    NodeId root = 0;
+    std::uint64_t position = 0;
+    std::uint64_t last = 0;
+    bool satisfied = true;
+    Reading reading = Reading::so_far;
+
+    /// Whether it takes one operand, or one position of a window, and not all: so with the max of a
+    /// formula that is satisfied, and the min of one that is violated.
+    bool takes_one(const ir::Node& node) const;
+    /// Whether the window at this position goes on after the prefix, where it has to hold as well.
+    bool goes_on(const ir::Node& node, std::uint64_t position) const;
+    /// The position after the prefix, which stands for all that may come.
+    std::uint64_t unseen() const { return last + 1; }
+};
+
+/// Per node, the positions, the unseen one included, that the statement looks at.
+std::vector<std::vector<bool>> reach(const Statement& statement);
 
 class Claim {
 public:
-    /// `speaks_for_it`: per node that is a literal or constant, by step.
-    Claim(const ir::Graph& graph, NodeId root, std::uint64_t position, std::uint64_t last,
-          bool satisfied, const std::vector<std::vector<bool>>& speaks_for_it);
+    /// `speaks_for_it`: per node that is a literal or constant, by step, the unseen one included.
+    Claim(const Statement& statement, const std::vector<std::vector<bool>>& speaks_for_it);
 
-    bool holds() const { return true_[root_][position_]; }
+    bool holds() const { return true_[statement_.root][statement_.position]; }
     /// Whether a literal is within reach, speaks for the claim, and has not been taken away.
     bool uses(NodeId literal, std::uint64_t step) const { return true_[literal][step]; }
     /// Whether the claim needs one of these, beside what else is still there.
@@ -43,6 +60,7 @@ private:
         std::uint64_t low = 0;
         std::uint64_t high = 0;  ///< cut at the end of the prefix, or at its beginning
         bool empty = false;
+        bool goes_on = false;  ///< after the prefix
     };
     /// What was so before a change that may be taken back.
     struct Before {
@@ -57,11 +75,11 @@ private:
 
     static constexpr std::uint64_t kNever = UINT64_MAX;
 
-    bool asks_for_one(const ir::Node& node) const;
     Window window(const ir::Node& node, std::uint64_t position) const;
 
     void establish(NodeId id);
     bool combination(const ir::Node& node, std::uint64_t position) const;
+    bool unseen(const ir::Node& node) const;
     bool search(NodeId id, std::uint64_t position, std::uint64_t from);
     bool find_witness(NodeId id, std::uint64_t position, std::uint64_t from);
     bool find_release(NodeId id, std::uint64_t position, std::uint64_t from);
@@ -69,20 +87,18 @@ private:
     bool withdraw(const std::vector<Evidence>& evidence);
     void refute(NodeId id, std::uint64_t position);
     void tell(const Parent& parent, std::uint64_t position);
+    void tell_of_unseen(const Parent& parent);
     void reconsider(const Parent& parent, std::uint64_t position, std::uint64_t offset);
     void take_back();
 
+    const Statement statement_;
     const ir::Graph& graph_;
-    NodeId root_;
-    std::uint64_t position_;
-    std::uint64_t last_;
-    bool satisfied_;
     std::vector<std::vector<bool>> true_;  ///< [node][position]; false also where out of reach
     /// [node][position], of temporal operators: the offset of what makes them true. Of an until, of
     /// its first witness; of a release, of the first left operand, up to which the window holds.
     std::vector<std::vector<std::uint64_t>> offsets_;
     std::vector<std::vector<Parent>> parents_;
-    std::vector<std::uint64_t> first_;  ///< per node: the first and last position within reach
+    std::vector<std::uint64_t> first_;  ///< per node: the first and last seen position within reach
     std::vector<std::uint64_t> final_;
     std::vector<Before> changes_;
     std::vector<Evidence> refuted_;  ///< whose parents have not been told

@@ -29,12 +29,13 @@ Polarities polarities(const Formula& formula, std::size_t n) {
     }
 }
 
-/// The positions at which a formula looks at an operand.
+/// The positions at which a formula looks at an operand, in 0..seen - 1; `seen` itself stands for
+/// those that are not seen yet.
 struct Span {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
 };
-Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t last) {
+Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t seen) {
     switch (formula.kind) {
         case Kind::next:
         case Kind::eventually:
@@ -42,7 +43,7 @@ Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t las
         case Kind::until:
         case Kind::weak_until:
         case Kind::release:
-            return {position, std::min<std::uint64_t>(last, position + formula.high)};
+            return {position, std::min<std::uint64_t>(seen, position + formula.high)};
         case Kind::previous:
         case Kind::once:
         case Kind::historically:
@@ -50,6 +51,7 @@ Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t las
         case Kind::rise:
         case Kind::fall:
         case Kind::held:
+            if (position == seen) return {0, seen};
             return {position - std::min<std::uint64_t>(position, formula.high), position};
         default: return {position, position};
     }
@@ -82,7 +84,9 @@ private:
 
     std::optional<Place> below(const Place& place) const {
         const Formula& formula = subject_.graph.model().formulas[place.formula];
-        const Span span = looked_at(formula, place.position, subject_.last);
+        const Span span = looked_at(formula, place.position, subject_.last + 1);
+        const std::uint64_t last_position =
+            subject_.last + (judged_.reading == Reading::for_good ? 1 : 0);
         for (std::size_t n = 0; n < formula.operands.size(); ++n) {
             const Polarities has = polarities(formula, n);
             for (const bool flipped : {false, true}) {
@@ -90,7 +94,8 @@ private:
                 const bool negated = place.negated != flipped;
                 const NodeId node = program_.formulas[negated ? 1 : 0][formula.operands[n]];
                 if (node == check::kNone || !judged_.values.has(node)) continue;
-                for (std::uint64_t k = span.first; k <= span.last; ++k)
+                const std::uint64_t last = std::min(span.last, last_position);
+                for (std::uint64_t k = span.first; k <= last; ++k)
                     if (judged_.values.at(node, k) == judged_.root)
                         return Place{formula.operands[n], negated, k};
             }
@@ -123,7 +128,7 @@ std::vector<Sample> in_order(std::vector<Sample> samples) {
 }
 
 std::vector<Sample> missing(const Subject& subject) {
-    const auto reached = reach(subject.graph, subject.root, subject.position, subject.last);
+    const auto reached = reach({subject.graph, subject.root, subject.position, subject.last});
     std::vector<Sample> result;
     for (Index atom = 0; atom < subject.observations.atoms().size(); ++atom)
         for (std::uint64_t step = 0; step <= subject.last; ++step) {
@@ -176,12 +181,13 @@ Explanation explain(const ir::Program& program, const Observations& observations
         result.missing = missing(subject);
         return result;
     }
+    result.for_good = judged.reading == Reading::for_good;
     result.robustness = etlmon::float_of(etlmon::shifted(judged.root.key, subject.shift));
     result.critical = judged.values.source(judged.root);
     result.chain = Chain(program, subject, judged).from(monitor.formula);
     Support support(subject, judged, judged.root.key);
     result.samples = in_order(irreducible(support, result.critical));
-    result.change = smallest_change(subject, judged.status, result.samples);
+    result.change = smallest_change(subject, judged, result.samples);
     return result;
 }
 

@@ -120,10 +120,10 @@ private:
                                   : change.measured != 0 ? "true"
                                                          : "false";
         return fmt::format(
-            "{{{}, \"step\": {}, \"measured\": {}, \"instead\": {}, "
-            "\"status\": \"{}\", \"robustness\": {}}}",
+            "{{{}, \"step\": {}, \"measured\": {}, \"instead\": {}, \"status\": \"{}\", "
+            "\"final\": {}}}",
             named(change.sample.atom), change.sample.step, measured(change.sample), other,
-            word(change.status), number(change.robustness));
+            word(change.status), change.for_good ? "true" : "false");
     }
 
     const Observations& observations_;

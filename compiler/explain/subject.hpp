@@ -24,6 +24,7 @@ struct Subject {
 
 struct Judged {
     Status status = Status::unknown;
+    Reading reading = Reading::so_far;  ///< whether the status is there for good
     /// Those that decide it: the pessimistic ones where satisfied, else the optimistic ones.
     Values values;
     Sourced root;
@@ -33,9 +34,9 @@ Judged judge(const Subject& subject, const std::optional<Altered>& altered = std
 /// The end that decides: see Judged.
 End deciding_end(Status status);
 
-/// The smallest change of one measurement behind the samples that turns the status; a bool's only
+/// The smallest change of one measurement behind the samples that turns the verdict; a bool's only
 /// where no other does.
-std::optional<Change> smallest_change(const Subject& subject, Status status,
+std::optional<Change> smallest_change(const Subject& subject, const Judged& judged,
                                       const std::vector<Sample>& samples);
 
 }  // namespace etlc::explain

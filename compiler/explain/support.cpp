@@ -49,7 +49,7 @@ std::vector<std::vector<bool>> speaking(const Subject& subject, const Judged& ju
         if (!node.operands.empty() || !judged.values.has(id)) continue;
         const bool always_does = is_literal(node) ? always(subject, status, node)
                                                   : subject.supports(status, constant(node));
-        result[id].resize(subject.last + 1, always_does);
+        result[id].resize(subject.last + 2, always_does);
     }
     for (const std::vector<NodeId>& of_atom : literals)
         for (std::uint64_t step = 0; step <= subject.last && !of_atom.empty(); ++step) {
@@ -72,8 +72,9 @@ std::vector<std::vector<bool>> speaking(const Subject& subject, const Judged& ju
 
 Support::Support(const Subject& subject, const Judged& judged, etlmon::Key least)
     : literals_(literals_of(subject, judged.status)),
-      claim_(subject.graph, subject.root, subject.position, subject.last,
-             judged.status == Status::satisfied, speaking(subject, judged, literals_, least)) {
+      claim_({subject.graph, subject.root, subject.position, subject.last,
+              judged.status == Status::satisfied, judged.reading},
+             speaking(subject, judged, literals_, least)) {
     for (std::uint64_t step = 0; step <= subject.last; ++step)
         for (Index atom = 0; atom < literals_.size(); ++atom)
             if (!literals({atom, step}).empty()) samples_.push_back({atom, step});

@@ -28,11 +28,11 @@ public:
         section("it takes");
         if (explained_.samples.empty()) line("no sample");
         for (const Interval& i : intervals(observations_, explained_.samples)) interval(i);
-        section("its robustness is that of");
+        section(*bound() != 0 ? "the bound is the robustness of" : "its robustness is that of");
         critical();
         for (const Link& link : explained_.chain)
             line("{:9.6g}  {} at {}", link.robustness, check::shown(model_, link.formula),
-                 when(link.position));
+                 link.position > report_.question.step ? "any later step" : when(link.position));
         section("the smallest change that turns it");
         change();
         return std::move(text_);
@@ -51,9 +51,15 @@ private:
         text_ += fmt::format("after {}, about {}: {}", when(report_.question.step),
                              when(report_.question.position), word(explained_.status));
         if (explained_.status != Status::unknown)
-            text_ += fmt::format("{}, robustness {:.6g}", report_.is_final ? " for good" : "",
-                                 explained_.robustness);
+            text_ += fmt::format("{}, robustness {}{:.6g}", report_.is_final ? " for good" : "",
+                                 bound(), explained_.robustness);
         text_ += "\n";
+    }
+
+    /// Of a verdict that may have another robustness later on.
+    const char* bound() const {
+        if (model_.monitors[report_.question.monitor].sliding || !explained_.for_good) return "";
+        return explained_.status == Status::satisfied ? "at least " : "at most ";
     }
 
     /// "step 5 (1.25 s)"
@@ -99,7 +105,8 @@ private:
     }
 
     void critical() {
-        if (!explained_.critical) return line("an empty window, or a constant");
+        if (!explained_.critical)
+            return line("no sample: an empty window, a constant, or the end of a range");
         const Sample& sample = *explained_.critical;
         const std::string name = name_of(observations_, sample.atom);
         if (observations_.is_missing(sample))
@@ -113,7 +120,10 @@ private:
         const Change& change = *explained_.change;
         const Index atom = change.sample.atom;
         const std::string then =
-            fmt::format("{}, robustness {:.6g}", word(change.status), change.robustness);
+            fmt::format("{}{}", word(change.status),
+                        change.for_good                      ? " for good"
+                        : change.status == explained_.status ? ", but no longer for good"
+                                                             : "");
         if (!observations_.atoms()[atom].is_predicate)
             return line("{} {} at {}: {}", name_of(observations_, atom),
                         change.measured != 0 ? "true" : "false", when(change.sample.step), then);

@@ -26,14 +26,16 @@ struct Choice {
     Choice dual() const { return {!max}; }
 };
 
-/// At t the choice among [t + low, t + high], cut at the end.
-Column window(const Column& operand, std::uint64_t low, std::uint64_t high, Choice choose) {
+/// At t the choice among [t + low, t + high], cut at the end. `endless`: the last element stands
+/// for all that come after it, too.
+Column window(const Column& operand, std::uint64_t low, std::uint64_t high, Choice choose,
+              bool endless) {
     const std::size_t n = operand.size();
     Column result(n, choose.of_nothing());
     std::deque<std::size_t> chosen;  // from the last position to the first, each beating the next
     for (std::size_t t = n; t-- > 0;) {
-        if (low >= n - t) continue;
-        const std::size_t entering = t + low;
+        if (low >= n - t && !endless) continue;
+        const std::size_t entering = std::min<std::uint64_t>(t + low, n - 1);
         while (!chosen.empty() &&
                choose(operand[chosen.back()], operand[entering]) == operand[entering])
             chosen.pop_back();
@@ -45,21 +47,24 @@ Column window(const Column& operand, std::uint64_t low, std::uint64_t high, Choi
 }
 
 /// f U[low, high] g for a max, f R[low, high] g for a min. As on every trace, f U[0,w] g is
-/// f U g && F[0,w] g, and f U[a,b] g asks f for a steps and then f U[0,b-a] g.
-Column until(const Column& f, const Column& g, std::uint64_t low, std::uint64_t high,
-             Choice choose) {
+/// f U g && F[0,w] g, and f U[a,b] g asks f for a steps and then f U[0,b-a] g. `endless`: of g.
+Column until(Column f, const Column& g, std::uint64_t low, std::uint64_t high, Choice choose,
+             bool endless) {
     const std::size_t n = g.size();
     const Choice join = choose.dual();
-    Column inner = window(g, 0, high == check::kUnbounded ? high : high - low, choose);
+    Column inner = window(g, 0, high == check::kUnbounded ? high : high - low, choose, endless);
     Sourced unbounded = choose.of_nothing();
     for (std::size_t t = n; t-- > 0;) {
         unbounded = choose(g[t], join(f[t], unbounded));
         inner[t] = join(inner[t], unbounded);
     }
     if (low == 0) return inner;
-    const Column before = window(f, 0, low - 1, join);
+    if (endless) f.back() = join.of_nothing();  // f is asked for where it has been seen
+    const Column before = window(f, 0, low - 1, join, false);
     Column result(n, choose.of_nothing());
-    for (std::size_t t = 0; low < n - t; ++t) result[t] = join(before[t], inner[t + low]);
+    for (std::size_t t = 0; t < n; ++t)
+        if (low < n - t || endless)
+            result[t] = join(before[t], inner[std::min<std::uint64_t>(t + low, n - 1)]);
     return result;
 }
 
@@ -76,14 +81,18 @@ std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roo
 }
 
 Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
-               const Observations& observations, std::uint64_t last, End end,
+               const Observations& observations, std::uint64_t last, End end, Reading reading,
                const std::optional<Altered>& altered)
-    : atoms_(observations.atoms().size()), length_(last + 1), values_(nodes.size()) {
+    : atoms_(observations.atoms().size()),
+      seen_(last + 1),
+      end_(end),
+      reading_(reading),
+      values_(nodes.size()) {
     for (NodeId id = 0; id < nodes.size(); ++id) {
         if (!nodes[id]) continue;
         const ir::Node& node = graph[id];
         switch (ir::info(node.op).arity) {
-            case ir::Arity::atom: values_[id] = literal(node, observations, end, altered); break;
+            case ir::Arity::atom: values_[id] = literal(node, observations, altered); break;
             case ir::Arity::many: values_[id] = combination(node); break;
             case ir::Arity::unary:
             case ir::Arity::binary: values_[id] = temporal(node); break;
@@ -95,22 +104,25 @@ std::optional<Sample> Values::source(Sourced value) const {
     const std::int64_t rank = value.rank < 0 ? -value.rank : value.rank;
     if (rank > kFirst) return std::nullopt;
     const auto sample = static_cast<std::uint64_t>(kFirst - rank);
+    if (sample / atoms_ >= seen_) return std::nullopt;
     return Sample{static_cast<Index>(sample % atoms_), sample / atoms_};
 }
 
-Column Values::literal(const ir::Node& node, const Observations& observations, End end,
+Column Values::literal(const ir::Node& node, const Observations& observations,
                        const std::optional<Altered>& altered) const {
-    if (node.op == ir::Op::constant_true) return Column(length_, kTrueItself);
-    if (node.op == ir::Op::constant_false) return Column(length_, kFalseItself);
+    const std::size_t length = seen_ + (is_for_good() ? 1 : 0);
+    if (node.op == ir::Op::constant_true) return Column(length, kTrueItself);
+    if (node.op == ir::Op::constant_false) return Column(length, kFalseItself);
     const Index atom = observations.atom(node.op == ir::Op::predicate, node.index);
-    Column result(length_);
-    for (std::size_t step = 0; step < length_; ++step) {
-        const bool other =
-            altered && altered->step == step &&
-            std::find(altered->atoms.begin(), altered->atoms.end(), atom) != altered->atoms.end();
-        const etlmon::Value value =
-            other ? observations.value(atom, altered->measured) : observations.value({atom, step});
-        const bool low = (end == End::low) != node.negated;
+    const bool is_altered = altered && std::find(altered->atoms.begin(), altered->atoms.end(),
+                                                 atom) != altered->atoms.end();
+    Column result(length);
+    for (std::size_t step = 0; step < length; ++step) {
+        const etlmon::Value value = step == seen_ ? observations.range(atom)
+                                    : is_altered && altered->step == step
+                                        ? observations.value(atom, altered->measured)
+                                        : observations.value({atom, step});
+        const bool low = (end_ == End::low) != node.negated;
         const Sourced found = sourced(low ? value.low : value.high, step * atoms_ + atom);
         result[step] = node.negated ? -found : found;
     }
@@ -121,7 +133,7 @@ Column Values::combination(const ir::Node& node) const {
     const Choice choose{node.op == ir::Op::disjunction};
     Column result = values_[node.operands.front()];
     for (const NodeId operand : node.operands)
-        for (std::size_t t = 0; t < length_; ++t)
+        for (std::size_t t = 0; t < result.size(); ++t)
             result[t] = choose(result[t], values_[operand][t]);
     return result;
 }
@@ -129,15 +141,37 @@ Column Values::combination(const ir::Node& node) const {
 Column Values::temporal(const ir::Node& node) const {
     const Choice choose{ir::takes_max(node.op)};
     const bool past = ir::info(node.op).tense == ir::Tense::past;
+    // What may come counts where it may turn the bound: a max may grow, a min may fall.
+    const bool endless = is_for_good() && !past && choose.max == (end_ == End::high);
     // The past is the future of the trace backwards.
     const auto in_order = [&](Column column) {
+        column.resize(endless ? seen_ + 1 : seen_);
         if (past) std::reverse(column.begin(), column.end());
         return column;
     };
     const Column last = in_order(values_[node.operands.back()]);
     const auto [low, high] = node.interval;
-    if (node.operands.size() == 1) return in_order(window(last, low, high, choose));
-    return in_order(until(in_order(values_[node.operands.front()]), last, low, high, choose));
+    Column result =
+        in_order(node.operands.size() == 1 ? window(last, low, high, choose, endless)
+                                           : until(in_order(values_[node.operands.front()]), last,
+                                                   low, high, choose, endless));
+    result.resize(seen_);
+    if (is_for_good()) result.push_back(unseen(node));
+    return result;
+}
+
+/// The lowest or highest unseen value of a temporal operator, as docs/semantics.md has them.
+Sourced Values::unseen(const ir::Node& node) const {
+    const Choice choose{ir::takes_max(node.op)};
+    const bool past = ir::info(node.op).tense == ir::Tense::past;
+    const bool moves = choose.max == (end_ == End::high);
+    const Column& operand = values_[node.operands.back()];
+    if (!moves && node.interval.low > 0) return choose.of_nothing();
+    const bool never_forgets = node.operands.size() == 1 && !node.interval.bounded();
+    Sourced result = operand.back();
+    if (past && (moves || never_forgets))
+        for (const Sourced& known : operand) result = choose(result, known);
+    return result;
 }
 
 }  // namespace etlc::explain

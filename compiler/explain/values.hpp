@@ -32,6 +32,10 @@ inline constexpr Sourced kFalseItself{etlmon::kBottom, -INT64_MAX};
 /// Pessimistic or optimistic about what is missing.
 enum class End : std::uint8_t { low, high };
 
+/// Of what values are: of the prefix as it ends, or bounds over every continuation of it, which
+/// docs/semantics.md defines.
+enum class Reading : std::uint8_t { so_far, for_good };
+
 /// Measurements of one step that are other than observed.
 struct Altered {
     std::uint64_t step = 0;
@@ -43,22 +47,29 @@ class Values {
 public:
     /// On the prefix 0..last. `nodes`: which to evaluate, with each also its operands.
     Values(const ir::Graph& graph, const std::vector<bool>& nodes, const Observations& observations,
-           std::uint64_t last, End end, const std::optional<Altered>& altered = std::nullopt);
+           std::uint64_t last, End end, Reading reading,
+           const std::optional<Altered>& altered = std::nullopt);
 
     bool has(NodeId node) const { return node < values_.size() && !values_[node].empty(); }
     Sourced at(NodeId node, std::uint64_t position) const { return values_[node][position]; }
-    /// Nothing where a value is that of an empty window or a constant.
+    /// Nothing where a value is that of an empty window, of a constant, or of what is not yet seen.
     std::optional<Sample> source(Sourced value) const;
 
 private:
-    std::vector<Sourced> literal(const ir::Node& node, const Observations& observations, End end,
+    std::vector<Sourced> literal(const ir::Node& node, const Observations& observations,
                                  const std::optional<Altered>& altered) const;
     std::vector<Sourced> combination(const ir::Node& node) const;
     std::vector<Sourced> temporal(const ir::Node& node) const;
+    Sourced unseen(const ir::Node& node) const;
+    bool is_for_good() const { return reading_ == Reading::for_good; }
 
     std::size_t atoms_;
-    std::size_t length_;
-    std::vector<std::vector<Sourced>> values_;  ///< [node][position]; empty: not evaluated
+    std::size_t seen_;  ///< positions of the prefix
+    End end_;
+    Reading reading_;
+    /// [node][position]; empty: not evaluated. For good, the position after the prefix stands for
+    /// all that may come: its values are the lowest, or highest, unseen ones.
+    std::vector<std::vector<Sourced>> values_;
 };
 
 /// These nodes and all below them.

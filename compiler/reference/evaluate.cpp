@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <limits>
+#include <utility>
 
 #include "reference/atoms.hpp"
 #include "reference/explanation.hpp"
@@ -126,14 +127,14 @@ Verdict sliding_verdict(const Value& value) {
 
 class Evaluation {
 public:
-    Evaluation(const check::Model& model, const Trace& trace, Values values,
+    Evaluation(const check::Model& model, NormalForm form, const Trace& trace, Values values,
                const Thresholds& thresholds, const Requests& requests)
         : model_(model),
           values_(values),
           thresholds_(thresholds),
           requests_(requests),
           starts_(model.monitors.size(), 0),
-          form_(normal_form(model)),
+          form_(std::move(form)),
           samples_(accept(model, trace)) {
         for (const check::Monitor& monitor : model.monitors)
             horizons_.push_back(monitor.sliding ? horizon(model, monitor.formula) : 0);
@@ -261,14 +262,14 @@ private:
 
 }  // namespace
 
-Literals literals(const check::Model& model, const Trace& trace, Values values,
-                  const std::vector<Alteration>& alterations) {
-    return Evaluation(model, trace, values, {}, {}).literals(alterations);
+Literals literals(const check::Model& model, const NormalForm& form, const Trace& trace,
+                  Values values, const std::vector<Alteration>& alterations) {
+    return Evaluation(model, form, trace, values, {}, {}).literals(alterations);
 }
 
 Run evaluate(const check::Model& model, const Trace& trace, Values values,
              const Thresholds& thresholds, const Requests& requests) {
-    return Evaluation(model, trace, values, thresholds, requests).run();
+    return Evaluation(model, normal_form(model), trace, values, thresholds, requests).run();
 }
 
 }  // namespace etlc::reference

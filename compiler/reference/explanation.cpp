@@ -7,10 +7,13 @@
 namespace etlc::reference {
 namespace {
 
-/// "satisfied where rho >= 0, violated where rho_high < 0, else unknown"
-Status status_of(const Value& value) {
-    if (value.rho >= 0) return Status::satisfied;
-    return value.rho_high < 0 ? Status::violated : Status::unknown;
+/// "satisfied where rho >= 0, violated where rho_high < 0, else unknown"; "final where lower >= 0
+/// [...] or upper < 0".
+Said said_by(const Value& value) {
+    const Status status = value.rho >= 0       ? Status::satisfied
+                          : value.rho_high < 0 ? Status::violated
+                                               : Status::unknown;
+    return {status, value.lower >= 0 || value.upper < 0};
 }
 
 /// "Of two equal values that of the earlier sample counts as farther from zero, and a zero as
@@ -29,20 +32,26 @@ struct Less {
 
 }  // namespace
 
-Explained::Explained(const check::Model& model, const Trace& trace, check::Values values,
-                     Index monitor, std::uint64_t position, std::uint64_t step)
+Explained::Explained(const check::Model& model, NormalForm form, const Trace& trace,
+                     check::Values values, Index monitor, std::uint64_t position,
+                     std::uint64_t step)
     : model_(model),
       trace_(trace),
       values_(values),
-      form_(normal_form(model)),
-      literals_(literals(model, trace, values)),
+      form_(std::move(form)),
+      literals_(literals(model, form_, trace, values)),
       root_(form_.roots[monitor]),
       position_(position),
       step_(step),
-      status_(status_of(value(literals_))) {}
+      said_(said_by(value(literals_))) {}
 
 Value Explained::value(const Literals& literals) const {
     return Prefix(form_, literals, step_).at(root_, position_);
+}
+
+double Explained::deciding(const Value& value) const {
+    if (said_.status == Status::satisfied) return said_.for_good ? value.lower : value.rho;
+    return said_.for_good ? value.upper : value.rho_high;
 }
 
 Sample Explained::sample(const Node& literal, std::uint64_t step) const {
@@ -52,7 +61,7 @@ Sample Explained::sample(const Node& literal, std::uint64_t step) const {
     return {step, span.begin, is_predicate, literal.index};
 }
 
-Status Explained::status_with_only(const SampleSet& known) const {
+Said Explained::said_with_only(const SampleSet& known) const {
     Literals literals = literals_;
     for (std::size_t n = 0; n < form_.nodes.size(); ++n) {
         if (!form_.nodes[n].is_atom()) continue;
@@ -62,28 +71,31 @@ Status Explained::status_with_only(const SampleSet& known) const {
                 literals.values[n][step] = {range.lowest, range.lowest, range.highest,
                                             range.highest};
     }
-    return status_of(value(literals));
+    return said_by(value(literals));
 }
 
-Status Explained::status_with(const std::vector<Alteration>& alterations) const {
-    return status_of(value(literals(model_, trace_, values_, alterations)));
+Said Explained::said_with(const std::vector<Alteration>& alterations) const {
+    return said_by(value(literals(model_, form_, trace_, values_, alterations)));
 }
 
-/// Every value of a literal gets a number of its own, in their order: rho is then the number of the
-/// sample that it is the value of.
+/// Every value of a literal gets a number of its own, in their order, and so do the ranges of what
+/// comes after the prefix: the deciding value is then the number of the sample that it is that of.
 std::optional<Sample> Explained::critical() const {
-    const bool low = status_ == Status::satisfied;
-    std::map<Ordered, double, Less> numbers;
+    const bool low = said_.status == Status::satisfied;
     const auto ordered = [&](std::size_t n, std::uint64_t step) {
-        const Value& v = literals_.values[n][step];
-        const double value = low ? v.rho : v.rho_high;
+        const Value& v = literals_.values[n][step <= step_ ? step : 0];
+        const Unseen& range = literals_.ranges[n];
+        const double value = step > step_ ? (low ? range.lowest : range.highest)
+                             : low        ? v.rho
+                                          : v.rho_high;
         const bool negated = form_.nodes[n].negated;
         const int sign = (negated ? -value : value) < 0 ? -1 : 1;
         return Ordered{value, {negated ? -sign : sign, sample(form_.nodes[n], step)}};
     };
+    std::map<Ordered, double, Less> numbers;
     const auto for_each = [&](const auto& visit) {
         for (std::size_t n = 0; n < form_.nodes.size(); ++n)
-            for (std::uint64_t step = 0; step <= step_ && form_.nodes[n].is_atom(); ++step)
+            for (std::uint64_t step = 0; step <= step_ + 1 && form_.nodes[n].is_atom(); ++step)
                 visit(n, step);
     };
     for_each([&](std::size_t n, std::uint64_t step) { numbers.emplace(ordered(n, step), 0); });
@@ -92,23 +104,26 @@ std::optional<Sample> Explained::critical() const {
     Literals literals = literals_;
     for_each([&](std::size_t n, std::uint64_t step) {
         const double number = numbers.at(ordered(n, step));
-        literals.values[n][step] = {number, number, number, number};
+        if (step > step_)
+            literals.ranges[n] = {number, number};
+        else
+            literals.values[n][step] = {number, number, number, number};
     });
-    const double rho = value(literals).rho;
+    const double found = deciding(value(literals));
     for (const auto& [value, number] : numbers)
-        if (number == rho) return value.second.second;
+        if (number == found && value.second.second.step <= step_) return value.second.second;
     return std::nullopt;
 }
 
 SampleSet Explained::explanation() const {
-    const Value rho = value(literals_);
+    const bool low = said_.status == Status::satisfied;
+    const double least = deciding(value(literals_));
     SampleSet kept;
     for (std::size_t n = 0; n < form_.nodes.size(); ++n)
         for (std::uint64_t step = 0; step <= step_ && form_.nodes[n].is_atom(); ++step) {
             const Value& v = literals_.values[n][step];
             const bool is_known = v.rho == v.rho_high;
-            const bool supports =
-                status_ == Status::satisfied ? v.rho >= rho.rho : v.rho_high <= rho.rho_high;
+            const bool supports = low ? v.rho >= least : v.rho_high <= least;
             if (is_known && supports) kept.insert(sample(form_.nodes[n], step));
         }
     std::vector<Sample> order(kept.rbegin(), kept.rend());
@@ -116,7 +131,7 @@ SampleSet Explained::explanation() const {
     std::stable_partition(order.begin(), order.end(), [&](const Sample& s) { return s != last; });
     for (const Sample& candidate : order) {
         kept.erase(candidate);
-        if (status_with_only(kept) != status_) kept.insert(candidate);
+        if (said_with_only(kept) != said_) kept.insert(candidate);
     }
     return kept;
 }

@@ -36,29 +36,41 @@ struct Alteration {
     double measured = 0;
 };
 
-/// The literals of the whole trace, with some samples altered.
-Literals literals(const check::Model& model, const Trace& trace, check::Values values,
-                  const std::vector<Alteration>& alterations = {});
+/// The literals of a form on the whole trace, with some samples altered.
+Literals literals(const check::Model& model, const NormalForm& form, const Trace& trace,
+                  check::Values values, const std::vector<Alteration>& alterations = {});
 
-/// One monitor's rho(f, position, step).
+/// What a verdict says.
+struct Said {
+    Status status = Status::unknown;
+    bool for_good = false;
+
+    bool operator==(const Said&) const = default;
+};
+
+/// One monitor's rho(f, position, step) with its bounds.
 class Explained {
 public:
-    Explained(const check::Model& model, const Trace& trace, check::Values values, Index monitor,
-              std::uint64_t position, std::uint64_t step);
+    /// `form`: the monitors' formulas, as they are written or simplified.
+    Explained(const check::Model& model, NormalForm form, const Trace& trace, check::Values values,
+              Index monitor, std::uint64_t position, std::uint64_t step);
 
     /// Of the prefix, with all that the trace has.
-    Status status() const { return status_; }
-    Status status_with_only(const SampleSet& known) const;
-    Status status_with(const std::vector<Alteration>& alterations) const;
+    Said said() const { return said_; }
+    Said said_with_only(const SampleSet& known) const;
+    Said said_with(const std::vector<Alteration>& alterations) const;
 
-    /// Nothing where rho is that of an empty window or a constant.
+    /// Whose value the deciding one is: for good the bound, else rho; nothing where it is that of
+    /// an empty window, a constant, or a step that is not yet seen.
     std::optional<Sample> critical() const;
-    /// The rule: from those samples that support the status as far as rho does, the last ones are
-    /// left out first, and the critical one at the very end, wherever the rest gives the status.
+    /// The rule: from those samples that support the verdict as far as the deciding value does, the
+    /// last ones are left out first, and the critical one at the very end, wherever the rest gives
+    /// the verdict.
     SampleSet explanation() const;
 
 private:
     Value value(const Literals& literals) const;
+    double deciding(const Value& value) const;
     Sample sample(const Node& literal, std::uint64_t step) const;
 
     const check::Model& model_;
@@ -69,7 +81,7 @@ private:
     Index root_;
     std::uint64_t position_;
     std::uint64_t step_;
-    Status status_;
+    Said said_;
 };
 
 }  // namespace etlc::reference

@@ -42,6 +42,7 @@ struct Tally {
     int pairs = 0;
     int compiled = 0;
     int explained = 0;
+    int for_good = 0;      ///< of these: verdicts that are final
     int with_samples = 0;  ///< of these: the explanation has some
     int with_change = 0;   ///< and it knows what would turn the verdict
     std::vector<Finding> findings;

@@ -16,6 +16,7 @@ namespace {
 
 using reference::Alteration;
 using reference::Explained;
+using reference::Said;
 using reference::SampleSet;
 using reference::Status;
 
@@ -23,16 +24,37 @@ constexpr int kTracesPerFormula = 3;
 constexpr int kShrinkingTries = 3000;
 constexpr std::size_t kLongest = 40;
 
-const char* name_of(Status status) {
-    return status == Status::satisfied  ? "satisfied"
-           : status == Status::violated ? "violated"
-                                        : "unknown";
+std::string words(Said said) {
+    const char* status = said.status == Status::satisfied  ? "satisfied"
+                         : said.status == Status::violated ? "violated"
+                                                           : "unknown";
+    return std::string(status) + (said.for_good ? " for good" : "");
 }
 
-Status status_of(explain::Status status) {
-    return status == explain::Status::satisfied  ? Status::satisfied
-           : status == explain::Status::violated ? Status::violated
-                                                 : Status::unknown;
+Said said_by(explain::Status status, bool for_good) {
+    return {status == explain::Status::satisfied  ? Status::satisfied
+            : status == explain::Status::violated ? Status::violated
+                                                  : Status::unknown,
+            for_good};
+}
+
+/// The graph as the reference reads formulas: bounds are those of the simplified formula.
+reference::NormalForm form_of(const ir::Program& program) {
+    using Kind = reference::Node::Kind;
+    // In the order of ir/operators.def; constants stand by `negated`.
+    constexpr Kind kKinds[] = {Kind::constant, Kind::constant, Kind::predicate,  Kind::boolean,
+                               Kind::all,      Kind::any,      Kind::eventually, Kind::always,
+                               Kind::until,    Kind::release,  Kind::once,       Kind::historically,
+                               Kind::since,    Kind::trigger};
+    reference::NormalForm form;
+    for (ir::NodeId id = 0; id < program.graph.size(); ++id) {
+        const ir::Node& node = program.graph[id];
+        form.nodes.push_back({kKinds[static_cast<std::size_t>(node.op)],
+                              node.negated || node.op == ir::Op::constant_false, node.index,
+                              node.operands, node.interval.low, node.interval.high});
+    }
+    form.roots = program.monitors;
+    return form;
 }
 
 /// One explanation, and the judge of it.
@@ -46,7 +68,8 @@ public:
           position_(position),
           step_(observations.steps() - 1),
           found_(explain::explain(program, observations, {0, position, step_})),
-          reference_(model, trace, values, 0, position, step_) {}
+          written_(model, reference::normal_form(model), trace, values, 0, position, step_),
+          reference_(model, form_of(program), trace, values, 0, position, step_) {}
 
     const explain::Explanation& found() const { return found_; }
 
@@ -54,32 +77,44 @@ public:
         const auto bad = first_mismatch();
         if (!bad) return {};
         return fmt::format("position {} after step {}, {}: {}", position_, step_,
-                           name_of(reference_.status()), *bad);
+                           words(reference_.said()), *bad);
     }
 
 private:
     std::optional<std::string> first_mismatch() const {
-        if (status_of(found_.status) != reference_.status())
-            return fmt::format("explained as {}", name_of(status_of(found_.status)));
+        const Said said = said_by(found_.status, found_.for_good);
+        if (said != reference_.said()) return fmt::format("explained as {}", words(said));
         if (found_.status == explain::Status::unknown) return {};
+        if (auto bad = samples()) return bad;
+        if (auto bad = critical(reference_)) return bad;
+        // However the formula is written; but then its bounds may be looser.
+        if (!said.for_good)
+            if (auto bad = critical(written_)) return bad;
+        if (auto bad = chain()) return bad;
+        return change();
+    }
+
+    std::optional<std::string> samples() const {
         const SampleSet samples = set_of(found_.samples);
-        if (reference_.status_with_only(samples) != reference_.status())
+        if (reference_.said_with_only(samples) != reference_.said())
             return fmt::format("{} do not suffice", show(samples));
         for (const reference::Sample& sample : samples) {
             SampleSet rest = samples;
             rest.erase(sample);
-            if (reference_.status_with_only(rest) == reference_.status())
+            if (reference_.said_with_only(rest) == reference_.said())
                 return fmt::format("{} would do without {}", show(samples), show({sample}));
         }
         if (const SampleSet expected = reference_.explanation(); samples != expected)
             return fmt::format("explained by {}, by the rule by {}", show(samples), show(expected));
-        const auto critical = reference_.critical();
+        return {};
+    }
+
+    std::optional<std::string> critical(const Explained& reference) const {
+        const auto critical = reference.critical();
         const SampleSet expected = critical ? SampleSet{*critical} : SampleSet{};
         const SampleSet found = found_.critical ? set_of({*found_.critical}) : SampleSet{};
-        if (found != expected)
-            return fmt::format("critical {}, expected {}", show(found), show(expected));
-        if (auto bad = chain()) return bad;
-        return change();
+        if (found == expected) return {};
+        return fmt::format("critical {}, expected {}", show(found), show(expected));
     }
 
     /// It leads from the monitor's formula to the atom.
@@ -103,15 +138,19 @@ private:
         return {};
     }
 
+    bool turned(Said then) const {
+        const Said now = reference_.said();
+        return then.status != now.status || (now.for_good && !then.for_good);
+    }
+
     /// It turns the verdict, and what is a little smaller does not.
     std::optional<std::string> change() const {
         if (found_.change) {
             const explain::Change& change = *found_.change;
-            const Status then = reference_.status_with(altered(change.sample, change.measured));
-            if (then != status_of(change.status) || then == reference_.status() ||
-                then == Status::unknown)
+            const Said then = reference_.said_with(altered(change.sample, change.measured));
+            if (then != said_by(change.status, change.for_good) || !turned(then))
                 return fmt::format("{} as {:.9g}: {}", show(set_of({change.sample})),
-                                   change.measured, name_of(then));
+                                   change.measured, words(then));
         }
         for (explain::Index atom = 0; atom < observations_.atoms().size(); ++atom)
             for (std::uint64_t step = 0; step <= step_; ++step)
@@ -137,10 +176,10 @@ private:
             }
         }
         for (const float other : others) {
-            const Status then = reference_.status_with(altered(sample, other));
-            if (then != reference_.status() && then != Status::unknown)
+            const Said then = reference_.said_with(altered(sample, other));
+            if (turned(then))
                 return fmt::format("{} as {:.9g} instead of {:.9g}: {}", show(set_of({sample})),
-                                   other, now, name_of(then));
+                                   other, now, words(then));
         }
         return {};
     }
@@ -193,7 +232,8 @@ private:
     std::uint64_t position_;
     std::uint64_t step_;
     explain::Explanation found_;
-    Explained reference_;
+    Explained written_;    ///< the formula as written
+    Explained reference_;  ///< the formula as it is monitored
 };
 
 /// Of the monitor at its first position, and at another one.
@@ -215,6 +255,7 @@ std::optional<std::string> mismatch_of(const check::Model& model, const referenc
         if (auto bad = judge.mismatch()) return bad;
         if (tally == nullptr) continue;
         ++tally->explained;
+        if (judge.found().for_good) ++tally->for_good;
         if (!judge.found().samples.empty()) ++tally->with_samples;
         if (judge.found().change) ++tally->with_change;
     }

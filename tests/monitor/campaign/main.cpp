@@ -50,9 +50,10 @@ int report(const Effort& effort, const Tally& tally) {
     good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
     fmt::print(
         "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds, "
-        "{} explained ({} by samples, {} with what would turn them): {} mismatches\n",
-        tally.pairs, tally.compiled, effort.builds, tally.explained, tally.with_samples,
-        tally.with_change, tally.findings.size());
+        "{} explained ({} for good, {} by samples, {} with what would turn them): "
+        "{} mismatches\n",
+        tally.pairs, tally.compiled, effort.builds, tally.explained, tally.for_good,
+        tally.with_samples, tally.with_change, tally.findings.size());
     good = good && tally.findings.empty();
     // A spec that does not load or a class that does not compile is a failure of GoogleTest's,
     // outside of any test.
