@@ -25,6 +25,7 @@ public:
         Support support(subject_, judged_, weakest);
         std::set<std::pair<std::uint64_t, Index>> seen;  // step and first atom
         for (const Sample& sample : samples) {
+            if (subject_.observations.is_missing(sample)) continue;
             const std::vector<Index> atoms = of_same_measurement(sample.atom);
             if (!seen.insert({sample.step, atoms.front()}).second) continue;
             std::vector<Sample> all;

@@ -98,8 +98,8 @@ private:
             "{{{}, \"first\": {}, \"last\": {}, \"holds\": {}, \"threshold\": {}, "
             "\"margin\": {}, \"closest\": {}, \"measured\": [{}], \"nearest\": [{}]}}",
             named(i.atom), i.first, i.last, i.holds ? "true" : "false", threshold(i.atom),
-            number(margin(observations_, {i.atom, i.closest})), i.closest, all_measured,
-            all_nearest);
+            i.is_missing ? "null" : number(margin(observations_, {i.atom, i.closest})), i.closest,
+            all_measured, all_nearest);
     }
 
     std::string sample(Sample at) const {

@@ -82,7 +82,7 @@ etlmon::Value Observations::value(Index atom, float measured) const {
         const check::Predicate& predicate = this->predicate(atom);
         return plan::value_of(predicate, measured, predicate.threshold.value, values_);
     }
-    if (etlmon::is_nan(measured)) return range(atom);
+    if (etlmon::is_nan(measured)) return plan::missing_value(model_.inputs[atoms_[atom].index]);
     return measured != 0 ? etlmon::kTrue : etlmon::kFalse;
 }
 

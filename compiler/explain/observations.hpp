@@ -57,10 +57,11 @@ public:
         return columns_[sample.atom].nearest[sample.step];
     }
 
-    /// What the atom is worth to a formula where that is measured.
+    /// What the atom is worth to a formula where that is measured; NaN: what a missing sample
+    /// counts as.
     etlmon::Value value(Index atom, float measured) const;
     etlmon::Value value(Sample sample) const { return value(sample.atom, measured(sample)); }
-    /// What it is worth where it is missing.
+    /// What it is worth where nothing is known of it.
     etlmon::Value range(Index atom) const;
 
 private:

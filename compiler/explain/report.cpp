@@ -15,10 +15,13 @@ std::vector<Interval> intervals(const Observations& observations,
     std::vector<Interval> result;
     for (const Sample& sample : order) {
         const bool holds = observations.value(sample).low >= 0;
+        const bool is_missing = observations.is_missing(sample);
         const bool goes_on = !result.empty() && result.back().atom == sample.atom &&
-                             result.back().last + 1 == sample.step && result.back().holds == holds;
+                             result.back().last + 1 == sample.step &&
+                             result.back().holds == holds && result.back().is_missing == is_missing;
         if (!goes_on) {
-            result.push_back({sample.atom, sample.step, sample.step, holds, sample.step});
+            result.push_back(
+                {sample.atom, sample.step, sample.step, holds, is_missing, sample.step});
             continue;
         }
         Interval& interval = result.back();

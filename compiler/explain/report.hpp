@@ -28,6 +28,7 @@ struct Interval {
     std::uint64_t first = 0;
     std::uint64_t last = 0;
     bool holds = false;
+    bool is_missing = false;    ///< the spec says what they count as
     std::uint64_t closest = 0;  ///< the step of the least margin
 };
 

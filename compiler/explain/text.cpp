@@ -75,6 +75,9 @@ private:
 
     void interval(const Interval& i) {
         const std::string name = name_of(observations_, i.atom);
+        if (i.is_missing)
+            return line("{} counts as {} at {}: its sample is missing", name,
+                        i.holds ? "true" : "false", steps(i.first, i.last));
         if (!observations_.atoms()[i.atom].is_predicate)
             return line("{} is {} at {}", name, i.holds ? "true" : "false", steps(i.first, i.last));
         const float least = margin(observations_, {i.atom, i.closest});
@@ -110,8 +113,7 @@ private:
         const Sample& sample = *explained_.critical;
         const std::string name = name_of(observations_, sample.atom);
         if (observations_.is_missing(sample))
-            return line("{} at {}, which is missing, at the end of its range", name,
-                        when(sample.step));
+            return line("{} at {}, which is missing", name, when(sample.step));
         line("{} at {}", name, when(sample.step));
     }
 

@@ -24,13 +24,15 @@ using check::Index;
 /// What a monitor said at every step.
 struct History {
     std::vector<etlmon::Verdict> verdicts;
+    std::vector<std::uint64_t> positions;  ///< what they are about
     std::optional<std::uint64_t> first_alarm;
     std::optional<std::uint64_t> first_final;
 
-    void add(const etlmon::Verdict& verdict) {
+    void add(const etlmon::Verdict& verdict, std::uint64_t position) {
         if (verdict.alarm() && !first_alarm) first_alarm = verdicts.size();
         if (verdict.final() && !first_final) first_final = verdicts.size();
         verdicts.push_back(verdict);
+        positions.push_back(position);
     }
 };
 
@@ -49,9 +51,8 @@ public:
         const History& history = choose_monitor();
         const auto step = choose_step(history);
         if (!step) return std::nullopt;
-        const plan::Monitor& monitor = plan_.monitors[chosen_];
-        const explain::Question question{monitor.index,
-                                         monitor.sliding ? *step - monitor.horizon : 0, *step};
+        const explain::Question question{plan_.monitors[chosen_].index, history.positions[*step],
+                                         *step};
         const etlmon::Verdict& verdict = history.verdicts[*step];
         const explain::Report report{observations_, question, verdict.final(),
                                      explain::explain(ir::lower(model_), observations_, question)};
@@ -103,7 +104,7 @@ private:
         const auto frame = [&] {
             observations_.add(atoms.evaluator());
             for (std::size_t m = 0; m < histories_.size(); ++m)
-                histories_[m].add(monitors.verdicts()[m]);
+                histories_[m].add(monitors.verdicts()[m], monitors.evaluator().position(m));
             return true;
         };
         const auto done = episodes::replay(*recording, {&monitors, &atoms}, frame);
