@@ -3,6 +3,7 @@
 // latch, a fold or a response. Keeps true: rho and the bounds of the definitions, on every prefix.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 
 #include "plan/decide/streams.hpp"
@@ -17,6 +18,9 @@ Straight latch(StreamBuilder& streams, NodeId id);
 /// window is open.
 Straight fold(StreamBuilder& streams, const ir::Node& node, NodeId id);
 
+/// What G responds with: something without future, or an answer in two parts.
+enum class Answer : std::uint8_t { at_once, in_two };
+
 /// G[A,B] (f || F[a,b] g) or its dual F[A,B] (f && G[a,b] g), f and g without future; nothing for
 /// other formulas. What the positions whose window is still open say is one recurrence, pending =
 /// max(min(pending, f), g), true before the first position. And they are settled by the same value:
@@ -26,25 +30,22 @@ Straight fold(StreamBuilder& streams, const ir::Node& node, NodeId id);
 /// run of false pendings begins with a position that asks and lasts until an answer.) Without f and
 /// from every position, pending is g itself and the body's own stream settles.
 ///
-/// The answer may be in two parts, F[a,b] (p && F[c,d] q) and the dual: p begins it and q completes
-/// it. After step n it is settled at the positions up to e = n - d; call it g there. At those
-/// since, p may still be completed, so that a position is surely missed where its window is over
-/// and has neither g up to e nor p behind. Once missed is missed, and settled keeps the min of
-/// - the max of the last b - a + 1 pendings over g: windows up to e;
-/// - the windows across e: with their i and i + (b - a) in step, those that begin at i = e - (b -
-/// a)
-///   + 1, ..., e ask for g in [i, e] or p in [e + 1, i + b - a], a covered interval
-///   (etlmon/temporal/handover.hpp). Where b - a > d the last of them are not over yet, and the
-///   others all reach over the positions up to e;
-/// - where b - a < d, the max of the last b - a + 1 pendings over p: windows behind e.
-/// What is not missed and has some completed answer behind it has one in time: if that is beyond
-/// the window, the p in the window is not settled and is completed by the same q. So what the
-/// positions whose window is still open say is again one recurrence, over answers as they are
-/// completed: pending = max(min(pending, f), min(q, f S[c,d] p)). For the upper bound, what is
-/// unseen may begin and complete answers, or complete where one has begun. The second only matters
-/// above the highest unseen value of p, which must be a constant: there no p is expected, and that
-/// none has begun since it was asked says enough.
-enum class Answer : std::uint8_t { at_once, in_two };
+/// The answer may be in two parts, g = p && F[c,d] q: p begins it and q completes it. Let w be b -
+/// a and e = n - d the last position at which g is settled after step n. Behind e a p may still be
+/// completed: a position is missed for good where its window is over and has neither g up to e nor
+/// p behind. What is missed stays so, and settled takes the min of
+/// - the max of the last w + 1 pendings over g: windows up to e;
+/// - windows across e. The one that begins at i asks for g in [i, e] or p in [e + 1, i + w]. With
+///   p(i + w) beside g(i), all that begin in [e - w + 1, e] are good where these steps are covered
+///   (etlmon/temporal/handover.hpp). If w > d the last of them are not over yet, and the others all
+///   hold the last w - d positions up to e;
+/// - if w < d, the max of the last w + 1 pendings over p: windows behind e.
+/// A position that is not missed, and behind which some answer is completed, has one in its window:
+/// if that one is later, the p in the window is still open, and the same q completes it. So what
+/// open windows say is again one recurrence, pending = max(min(pending, f), min(q, f S[c,d] p)).
+/// What is unseen may bring whole answers, or q where p is seen. The latter matters only above the
+/// highest unseen value of p, which must be a constant: as p is not above it either, it is enough
+/// to ask whether something began since it was asked.
 std::optional<Straight> response(StreamBuilder& streams, ir::Graph& graph, NodeId id,
                                  Answer answer);
 
