@@ -4,7 +4,7 @@
 #include "check/check.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
-#include "driver/names.hpp"
+#include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
 #include "driver/version.hpp"

@@ -5,7 +5,7 @@
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
-#include "driver/names.hpp"
+#include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
 #include "source/escape.hpp"

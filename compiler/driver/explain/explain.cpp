@@ -9,7 +9,7 @@
 
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
-#include "driver/names.hpp"
+#include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "episodes/replay.hpp"
 #include "explain/report.hpp"

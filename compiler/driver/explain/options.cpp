@@ -9,8 +9,8 @@
 #include <string>
 
 #include "data/quote.hpp"
-#include "driver/options.hpp"
-#include "driver/recording_options.hpp"
+#include "driver/options/options.hpp"
+#include "driver/options/recording_options.hpp"
 
 namespace etlc::driver {
 

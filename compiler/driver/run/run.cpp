@@ -6,7 +6,7 @@
 
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
-#include "driver/names.hpp"
+#include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"

@@ -1,9 +1,9 @@
-#include "driver/recording_options.hpp"
+#include "driver/options/recording_options.hpp"
 
 #include <utility>
 
-#include "driver/names.hpp"
-#include "driver/options.hpp"
+#include "driver/options/names.hpp"
+#include "driver/options/options.hpp"
 
 namespace etlc::driver {
 

@@ -1,4 +1,4 @@
-#include "driver/compile_options.hpp"
+#include "driver/options/compile_options.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 #include <cctype>
 
 #include "check/names/reserved.hpp"
-#include "driver/options.hpp"
+#include "driver/options/options.hpp"
 
 namespace etlc::driver {
 

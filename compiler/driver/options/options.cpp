@@ -1,4 +1,4 @@
-#include "driver/options.hpp"
+#include "driver/options/options.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "driver/settings.hpp"
+#include "driver/options/settings.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "driver/names.hpp"
+#include "driver/options/names.hpp"
 
 #include <fmt/format.h>
 
