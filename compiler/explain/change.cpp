@@ -28,9 +28,7 @@ public:
             if (subject_.observations.is_missing(sample)) continue;
             const std::vector<Index> atoms = of_same_measurement(sample.atom);
             if (!seen.insert({sample.step, atoms.front()}).second) continue;
-            std::vector<Sample> all;
-            for (const Index atom : atoms) all.push_back({atom, sample.step});
-            if (support.needs(all)) add_candidates(sample, atoms, support);
+            add_candidates(sample, atoms, support);
         }
         std::stable_sort(candidates_.begin(), candidates_.end(),
                          [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
@@ -72,42 +70,52 @@ private:
     }
 
     /// Where a literal that supports the status no longer does.
-    void add_candidates(Sample sample, const std::vector<Index>& atoms, const Support& support) {
+    void add_candidates(Sample sample, const std::vector<Index>& atoms, Support& support) {
         const Observations& observed = subject_.observations;
         const float measured = observed.measured(sample);
         if (!observed.atoms()[sample.atom].is_predicate) {
-            add(sample, atoms, measured != 0 ? 0.0F : 1.0F, kInfinity);
+            add({kInfinity, sample, {sample.step, atoms, measured != 0 ? 0.0F : 1.0F}}, support);
             return;
         }
         for (const Index atom : atoms)
             for (const NodeId literal : support.literals({atom, sample.step}))
                 for (const bool up : {false, true})
-                    if (const auto other =
-                            turning_point(atom, measured, subject_.graph[literal].negated, up))
-                        add(sample, atoms, *other,
-                            std::abs(static_cast<double>(*other) - static_cast<double>(measured)));
+                    if (const auto other = turning_point(literal, atom, measured, up))
+                        add({std::abs(static_cast<double>(*other) - static_cast<double>(measured)),
+                             sample,
+                             {sample.step, atoms, *other}},
+                            support);
     }
 
-    void add(Sample sample, const std::vector<Index>& atoms, float measured, double size) {
-        candidates_.push_back({size, sample, {sample.step, atoms, measured}});
+    /// Unless the status is there without the literals that then no longer support it.
+    void add(Candidate candidate, Support& support) {
+        std::vector<Evidence> lost;
+        for (const Index atom : candidate.altered.atoms)
+            for (const NodeId literal : support.literals({atom, candidate.sample.step}))
+                if (!supports(literal, atom, candidate.altered.measured))
+                    lost.push_back({literal, candidate.sample.step});
+        if (support.needs(lost)) candidates_.push_back(std::move(candidate));
+    }
+
+    bool supports(NodeId literal, Index atom, float measured) const {
+        const etlmon::Value value = subject_.observations.value(atom, measured);
+        return subject_.supports(status_, subject_.graph[literal].negated ? -value.low : value.low);
     }
 
     /// The first number above or below at which the literal no longer supports the status.
-    std::optional<float> turning_point(Index atom, float measured, bool negated, bool up) const {
-        const auto supports = [&](Key delta) {
-            const etlmon::Value value = subject_.observations.value(atom, etlmon::float_of(delta));
-            return subject_.supports(status_, negated ? -value.low : value.low);
+    std::optional<float> turning_point(NodeId literal, Index atom, float measured, bool up) const {
+        const auto still = [&](std::int64_t delta) {
+            return supports(literal, atom, etlmon::float_of(static_cast<Key>(delta)));
         };
         const check::Range& range = subject_.observations.predicate(atom).delta;
         constexpr float kGreatest = std::numeric_limits<float>::max();
         std::int64_t other =
             etlmon::key_of(up ? std::min(range.high, kGreatest) : std::max(range.low, -kGreatest));
         std::int64_t same = etlmon::key_of(measured);
-        if ((up ? other <= same : other >= same) || supports(static_cast<Key>(other)))
-            return std::nullopt;
+        if ((up ? other <= same : other >= same) || still(other)) return std::nullopt;
         while (std::abs(other - same) > 1) {
             const std::int64_t middle = same + (other - same) / 2;
-            (supports(static_cast<Key>(middle)) ? same : other) = middle;
+            (still(middle) ? same : other) = middle;
         }
         return etlmon::float_of(static_cast<Key>(other));
     }

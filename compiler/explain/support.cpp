@@ -87,11 +87,9 @@ std::vector<NodeId> Support::literals(Sample sample) const {
     return result;
 }
 
-std::vector<Evidence> Support::evidence(const std::vector<Sample>& samples) const {
+std::vector<Evidence> Support::evidence(Sample sample) const {
     std::vector<Evidence> result;
-    for (const Sample& sample : samples)
-        for (const NodeId literal : literals_[sample.atom])
-            result.push_back({literal, sample.step});
+    for (const NodeId literal : literals_[sample.atom]) result.push_back({literal, sample.step});
     return result;
 }
 

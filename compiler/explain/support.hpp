@@ -18,13 +18,13 @@ public:
     const std::vector<Sample>& samples() const { return samples_; }
     /// The literals of a sample that speak for the status.
     std::vector<NodeId> literals(Sample sample) const;
-    /// Whether the status needs one of these, beside what else is still there.
-    bool needs(const std::vector<Sample>& samples) { return claim_.needs(evidence(samples)); }
+    /// Whether the status needs one of these literals, beside what else is still there.
+    bool needs(const std::vector<Evidence>& literals) { return claim_.needs(literals); }
     /// Takes the sample away unless it does.
-    bool can_do_without(Sample sample) { return claim_.can_do_without(evidence({sample})); }
+    bool can_do_without(Sample sample) { return claim_.can_do_without(evidence(sample)); }
 
 private:
-    std::vector<Evidence> evidence(const std::vector<Sample>& samples) const;
+    std::vector<Evidence> evidence(Sample sample) const;
 
     std::vector<std::vector<NodeId>> literals_;  ///< per atom, those that it has to speak for
     Claim claim_;
