@@ -67,7 +67,8 @@ void warn_of_same_predicates(Context& c) {
         if (entity.broken || entity.duplicate ||
             predicate.threshold.origin != ThresholdOrigin::literal)
             continue;
-        const std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
+        std::string text = predicate.text + Decimal::parse(predicate.threshold.text).text();
+        if (predicate.missing) text += fmt::format(" missing {}", *predicate.missing);
         const auto [before, is_new] = first.try_emplace(text, &entity);
         if (is_new) continue;
         c.report(
