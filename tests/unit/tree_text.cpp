@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <array>
 #include <variant>
 
 namespace etlc::tree_text {
@@ -167,7 +168,8 @@ std::string word(const Let& d) {
 std::string word(const Monitor& d) {
     std::vector<std::string> items{d.name.text, of(*d.formula)};
     if (d.calibrated) items.push_back(word(*d.calibrated));
-    return list(d.sliding ? "sliding" : "monitor", items);
+    constexpr std::array<const char*, 4> kWords{"monitor", "sliding", "restartable", "repeating"};
+    return list(kWords[static_cast<std::size_t>(d.kind)], items);
 }
 
 }  // namespace
