@@ -31,7 +31,7 @@ public:
         section(*bound() != 0 ? "the bound is the robustness of" : "its robustness is that of");
         critical();
         for (const Link& link : explained_.chain)
-            line("{:10.6g}  {} at {}", link.robustness, check::shown(model_, link.formula),
+            line("{:>10.6g}  {} at {}", link.robustness, check::shown(model_, link.formula),
                  link.position > report_.question.step ? "any later step" : when(link.position));
         section("the smallest change that turns it");
         change();
