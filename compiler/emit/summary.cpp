@@ -5,6 +5,7 @@
 #include "check/formulas/gaps.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/model/fingerprint.hpp"
+#include "diag/diag.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/text/table.hpp"
@@ -291,7 +292,7 @@ void print_rounded(Printer& out, const std::string& prefix, const check::Model& 
 std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
     if (gap.inputs.empty()) return "never";
     if (gap.steps != check::Gap::kForGood)
-        return fmt::format("for up to {} steps", number(gap.steps));
+        return fmt::format("for up to {}", diag::counted(gap.steps, "step"));
     switch (monitor.restarts) {
         case check::Restarts::never: break;
         case check::Restarts::on_request: return "until it is restarted";

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "check/formulas/looks.hpp"
 #include "etlmon/temporal/shift.hpp"
 #include "explain/support.hpp"
 
@@ -36,25 +37,11 @@ struct Span {
     std::uint64_t last = 0;
 };
 Span looked_at(const Formula& formula, std::uint64_t position, std::uint64_t seen) {
-    switch (formula.kind) {
-        case Kind::next:
-        case Kind::eventually:
-        case Kind::always:
-        case Kind::until:
-        case Kind::weak_until:
-        case Kind::release:
-            return {position, std::min<std::uint64_t>(seen, position + formula.high)};
-        case Kind::previous:
-        case Kind::once:
-        case Kind::historically:
-        case Kind::since:
-        case Kind::rise:
-        case Kind::fall:
-        case Kind::held:
-            if (position == seen) return {0, seen};
-            return {position - std::min<std::uint64_t>(position, formula.high), position};
-        default: return {position, position};
-    }
+    if (check::looks_ahead(formula.kind))
+        return {position, std::min<std::uint64_t>(seen, position + formula.high)};
+    if (!check::looks_back(formula.kind)) return {position, position};
+    if (position == seen) return {0, seen};
+    return {position - std::min<std::uint64_t>(position, formula.high), position};
 }
 
 /// From the monitor's formula down, always to an operand that has the monitor's value: the sample

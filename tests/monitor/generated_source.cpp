@@ -84,14 +84,14 @@ std::string labelling(const check::Model& model) {
     return labels + "  }\n" + restart + "  }\n";
 }
 
-/// restart_NAME() where restart_schedule.hpp says so.
+/// restart_NAME() where restarts_before.hpp says so.
 std::string restarting(const check::Model& model) {
     std::string result =
         "  static void restart_before(Monitor& m, uint32_t step) {\n    (void)m, (void)step;\n";
     for (std::size_t m = 0; m < model.monitors.size(); ++m)
         if (model.monitors[m].restarts != check::Restarts::never)
-            result += fmt::format("    if (harness::restarts_before(step, {})) m.restart_{}();\n",
-                                  m, model.monitors[m].name);
+            result += fmt::format("    if (restarts_before(step, {})) m.restart_{}();\n", m,
+                                  model.monitors[m].name);
     return result + "  }\n";
 }
 

@@ -1,21 +1,14 @@
-// When the tests restart monitors: the same steps for the reference, the evaluator and compiled
-// classes.
+// What the reference says of runs in which monitors restart.
 #pragma once
 
 #include <cstddef>
 
 #include "check/model/model.hpp"
 #include "compare.hpp"
+#include "driver/restarts_before.hpp"
 #include "reference/reference.hpp"
 
 namespace etlc::tests {
-
-/// restart_NAME() of the m-th monitor is called before the step; now and then, and sometimes twice
-/// in a row. generated_source.cpp has it once more, for compiled programs.
-constexpr bool restarts_before(std::size_t step, std::size_t monitor) {
-    const std::size_t turn = (7 * step + 3 * monitor) % 23;
-    return turn == 5 || turn == 12;
-}
 
 /// What the program and final verdicts restart in the observed run. A monitor's bounds may be
 /// tighter than the definition's, and its verdict final earlier: then the reference has to follow

@@ -5,6 +5,7 @@
 #pragma once
 
 #include "check/context.hpp"
+#include "check/formulas/looks.hpp"
 
 namespace etlc::check {
 
@@ -12,8 +13,5 @@ namespace etlc::check {
 Index check_formula(Context& context, const ast::Formula& formula);
 
 std::string_view operator_word(Formula::Kind kind);  ///< "F", "U", ...
-
-bool looks_ahead(Formula::Kind kind);
-bool looks_back(Formula::Kind kind);
 
 }  // namespace etlc::check

@@ -3,24 +3,13 @@
 #include <algorithm>
 #include <set>
 
+#include "check/formulas/looks.hpp"
+
 namespace etlc::check {
 
 namespace {
 
 using Kind = Formula::Kind;
-
-bool looks_back(Kind kind) {
-    switch (kind) {
-        case Kind::previous:
-        case Kind::once:
-        case Kind::historically:
-        case Kind::since:
-        case Kind::rise:
-        case Kind::fall:
-        case Kind::held: return true;
-        default: return false;
-    }
-}
 
 /// What one formula reads: inputs that may leave it unknown, and how many steps back.
 struct Reading {

@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "etlmon/temporal/boolean_verdict.hpp"
+#include "restarts_before.hpp"
 
 namespace harness {
 
@@ -186,11 +187,6 @@ void take_labels(Monitor& monitor) {
     const Watch watch;
     Predicate::observe(monitor, distance, truth, 0);
   }
-}
-
-/// restart_schedule.hpp says what for.
-constexpr bool restarts_before(uint32_t step, uint32_t monitor) {
-  return (7 * step + 3 * monitor) % 23 == 5 || (7 * step + 3 * monitor) % 23 == 12;
 }
 
 /// A trace as it came in, and what a monitor says on it, kept until it is its turn to be written.
