@@ -30,6 +30,7 @@ std::string recorder_row(const Context& context) {
 void print_recorder_type(Printer& out, const Context& context) {
     if (!context.plan.recorder) return;
     const plan::Recorder& recorder = *context.plan.recorder;
+    out.line();
     print_doc(out, fmt::format("Of each step {}, {}, {}; {} before an alarm, {} after it, {}.",
                                diag::counted(context.recorded.figures, "figure"),
                                diag::counted(context.recorded.bools.size(), "bool"),

@@ -20,9 +20,7 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
         out.close();
         const auto alarms = context.names.alarms_member.find(m);
         if (alarms != context.names.alarms_member.end()) {
-            print_doc(out,
-                      "How often it raised an alarm and was fulfilled, after which it goes on "
-                      "with the next step.");
+            print_doc(out, "How often it raised an alarm, and how often it was fulfilled.");
             out.line("uint32_t alarms_{}() const noexcept {{ return {}; }}", monitor.name,
                      alarms->second);
             out.line("uint32_t fulfilled_{}() const noexcept {{ return {}; }}", monitor.name,
@@ -43,7 +41,7 @@ void print_next_cycle(Printer& out, const Context& context, std::size_t m,
                                                                           : "";
     out.gap();
     print_comment(out, "//",
-                  fmt::format("{} has decided: it goes on with the next step",
+                  fmt::format("after a final verdict {} is about the next step",
                               context.plan.monitors[m].name));
     out.open(fmt::format("if ({}{}.final()) {{", while_open, verdict));
     out.line("uint32_t& count = {}.alarm() ? {} : {};", verdict, context.names.alarms_member.at(m),
