@@ -79,7 +79,8 @@ void make_episodes(const fs::path& folder, const Size& size) {
         std::vector<float> z(std::size_t{size.frames} * size.dimension);
         std::string truth(size.frames, '\0');
         const std::size_t start = random() % noise.size();
-        for (std::size_t i = 0; i < z.size(); ++i) z[i] = noise[(start + i) % noise.size()];
+        const float own = 1e-4F * static_cast<float>(e);  // no two episodes share a frame
+        for (std::size_t i = 0; i < z.size(); ++i) z[i] = noise[(start + i) % noise.size()] + own;
         for (std::uint32_t f = size.frames / 3; f < size.frames / 2; ++f) {
             truth[f] = '\1';
             for (std::uint32_t d = 0; d < size.dimension; ++d)
