@@ -178,12 +178,7 @@ Interval Expression::of_distance(const check::Model& model, Index index,
     const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
     if (!full || std::isinf(delta))
         return interval_of(distance, target.rows, target.dimension, static_cast<double>(delta));
-    std::vector<float> point;
-    if (distance.point_is_vector)
-        for (const Index input : distance.point) point.push_back(*measured.input(input));
-    return of_full_weights(
-        distance, target,
-        distance.point_is_vector ? point.data() : measured.input(distance.point[0]));
+    return of_full_weights(distance, target, measured.point(distance.point));
 }
 
 }  // namespace
