@@ -20,6 +20,7 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     check_lets(context);
     check_truths(context);
     check_fitted_frames(context);
+    check_fitted_entries(context);
     check_monitors(context);
     check_thresholds(context);
     set_robustness(context);

@@ -21,6 +21,7 @@
 #include "check/names/scope.hpp"
 #include "check/predicates/matrices.hpp"
 #include "diag/diag.hpp"
+#include "fitted/fitted.hpp"
 
 namespace etlc::check {
 
@@ -55,6 +56,9 @@ struct Context {
     std::map<std::pair<Index, Index>, Index> projected_targets{};
     /// Parallel to model.fitted: which frames.
     std::vector<const ast::Formula*> fitted_where{};
+    /// Nothing where it was not needed, or could not be read.
+    std::optional<fitted::File> fitted_file{};
+    bool fitted_is_read = false;
 
     std::unordered_set<std::string> unknown_names{};
     std::unordered_set<std::string> used_constants{};

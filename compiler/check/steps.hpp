@@ -17,6 +17,7 @@ void check_predicates(Context& context);
 void check_lets(Context& context);
 void check_truths(Context& context);
 void check_fitted_frames(Context& context);
+void check_fitted_entries(Context& context);
 void check_monitors(Context& context);
 void check_thresholds(Context& context);
 void set_robustness(Context& context);

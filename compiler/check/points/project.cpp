@@ -109,9 +109,8 @@ bool rests_on_fitted(const Model& model, const Distance& distance) {
 std::string projection_hash(const Projection& projection) {
     std::vector<float> values = projection.matrix;
     values.insert(values.end(), projection.offset.begin(), projection.offset.end());
-    if (projection.offset.empty())
-        return data::content_hash({projection.rows, projection.dimension}, values);
-    return data::content_hash({projection.rows, projection.dimension, 1}, values);
+    const std::uint64_t more = projection.offset.empty() ? 0 : 1;
+    return data::content_hash({projection.rows + more, projection.dimension}, values);
 }
 
 }  // namespace etlc::check

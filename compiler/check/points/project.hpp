@@ -35,7 +35,7 @@ std::optional<Index> fill(Model& model, Index fitted, const Filling& filling);
 /// The distance depends on something that is fitted.
 bool rests_on_fitted(const Model& model, const Distance& distance);
 
-/// Hash of a projection's numbers.
+/// Content hash of a projection's matrix, with the offset as one row more where there is one.
 std::string projection_hash(const Projection& projection);
 
 }  // namespace etlc::check

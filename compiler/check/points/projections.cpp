@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
 #include "check/points/project.hpp"
 #include "check/predicates/matrices.hpp"
 #include "check/steps.hpp"
@@ -69,6 +70,12 @@ bool set_fitted(Context& c, const ast::Fitted& written, Projection& projection) 
     projection.rows = fitted.rows;
     projection.dimension = fitted.columns;
     projection.origin = "fitted";
+    if (const fitted::Entry* const entry = fitted_entry(c, projection.fitted)) {
+        projection.matrix = entry->matrix;
+        projection.offset = entry->offset;
+        projection.hash = entry->hash;
+        c.model.fitted[projection.fitted].filled = true;
+    }
     return true;
 }
 

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
 #include "check/points/points.hpp"
 #include "check/predicates/matrices.hpp"
 #include "check/steps.hpp"
@@ -99,6 +100,11 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
     target.rows = fitted.rows;
     target.dimension = fitted.columns;
     target.origin = "fitted";
+    if (const fitted::Entry* const entry = fitted_entry(c, target.fitted)) {
+        target.values = entry->matrix;
+        target.hash = entry->hash;
+        c.model.fitted[target.fitted].filled = true;
+    }
     if (c.model.points[fitted.point].is_projected()) target.space = fitted.point;
     return true;
 }

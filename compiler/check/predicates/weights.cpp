@@ -7,6 +7,7 @@
 
 #include "check/numbers/decimal.hpp"
 #include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
 #include "check/predicates/matrices.hpp"
 
 namespace etlc::check {
@@ -158,6 +159,12 @@ std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, In
     Weights weights;
     weights.text = fitted.declaration;
     weights.fitted = index;
+    const fitted::Entry* const entry = fitted_entry(c, index);
+    if (entry == nullptr) return weights;
+    Matrix matrix{entry->rows, entry->columns, false, entry->matrix, "fitted", "", entry->hash};
+    if (!check_definite(c, matrix, false, written.span)) return std::nullopt;
+    weights.values = std::move(matrix.values);
+    c.model.fitted[index].filled = true;
     return weights;
 }
 
