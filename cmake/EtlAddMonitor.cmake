@@ -1,12 +1,13 @@
-# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
-#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE]
-#                  [SET name=value ...])
+# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
+#                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
+#                  [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
 #   TARGET          an executable or a library made in this directory; it may have several monitors
 #   SPEC            the .etl file
 #   THRESHOLDS      the thresholds file; default: SPEC.thresholds.json beside the spec, if it exists
+#   FITTED          the file of what is fitted; default: SPEC.fitted.npz beside the spec, if it exists
 #   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
 #                   only the distances that matter
 #   NAMESPACE       of the generated code; default: the name after `spec`
@@ -18,15 +19,15 @@
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
 # Relative paths are relative to the current source directory. The header lies in the build folder
-# and is made again when the spec, a file that the spec loads, the thresholds or etlc itself change.
-# Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
+# and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
+# itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
 # generators (3.21 for the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
-    "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
+    "SPEC;THRESHOLDS;FITTED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -71,6 +72,11 @@ function(etlc_add_monitor target)
     __etlc_input("${call}" THRESHOLDS "${arg_THRESHOLDS}" thresholds)
     list(APPEND options --thresholds "${thresholds}")
     list(APPEND depends "${thresholds}")
+  endif()
+  if(arg_FITTED)
+    __etlc_input("${call}" FITTED "${arg_FITTED}" fitted)
+    list(APPEND options --fitted "${fitted}")
+    list(APPEND depends "${fitted}")
   endif()
   if(arg_VALUES)
     list(APPEND options --values ${arg_VALUES})

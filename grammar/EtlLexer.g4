@@ -67,6 +67,16 @@ RISE : 'rise' ;
 FALL : 'fall' ;
 HELD : 'held' ;
 
+// ---- contextual: maps of embeddings, and what is taken or fitted from demonstrations
+
+PROJECTION : 'projection' ;
+OFFSET     : 'offset' ;
+FITTED     : 'fitted' ;
+FRAMES     : 'frames' ;
+STRIDE     : 'stride' ;
+OF         : 'of' ;
+WHERE      : 'where' ;
+
 // ---- contextual: how durations are rounded
 
 DURATIONS : 'durations' ;

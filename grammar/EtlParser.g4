@@ -19,7 +19,10 @@ declaration
     | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
     | CONST name ASSIGN MINUS? NUMBER timeUnit? SEMICOLON                 # ConstDeclaration
     | INPUT name (COMMA name)* COLON type range? hold? missing? SEMICOLON # InputDeclaration
-    | TARGET name ASSIGN (load | literal) SEMICOLON                       # TargetDeclaration
+    | PROJECTION name ASSIGN (fitted | numbers (OFFSET numbers)?) SEMICOLON
+                                                                          # ProjectionDeclaration
+    | TARGET name ASSIGN (fitted | source (COMMA source)* (OF point)?) SEMICOLON
+                                                                          # TargetDeclaration
     | PREDICATE name ASSIGN sum comparisonOperator threshold missing? SEMICOLON
                                                                           # PredicateDeclaration
     | TRUTH name ASSIGN formula SEMICOLON                                 # TruthDeclaration
@@ -127,11 +130,12 @@ metric
 weights
     : load      # LoadedWeights
     | literal   # LiteralWeights
+    | fitted    # FittedWeights
     | name      # NamedWeights
     ;
 
 point
-    : name                                          # EmbeddingPoint
+    : name (LPAREN point RPAREN)?                   # NamedPoint
     | LBRACKET name (COMMA name)* RBRACKET          # VectorPoint
     ;
 
@@ -181,6 +185,33 @@ missing
 
 // ---- data
 
+numbers
+    : load | literal
+    ;
+
+source
+    : load | literal | frames
+    ;
+
+frames
+    : FRAMES LPAREN path=STRING COMMA key=STRING COMMA LBRACKET amount (COMMA amount)* RBRACKET
+      stride? RPAREN
+    ;
+
+stride
+    : COMMA STRIDE ASSIGN amount
+    ;
+
+fitted
+    : FITTED LPAREN name (COMMA fittedArgument)* RPAREN
+    ;
+
+fittedArgument
+    : OF ASSIGN point               # PointArgument
+    | WHERE ASSIGN formula          # FormulaArgument
+    | IDENTIFIER ASSIGN amount      # NumberArgument
+    ;
+
 load
     : LOAD LPAREN path=STRING (COMMA key=STRING)? RPAREN
     ;
@@ -215,6 +246,7 @@ name
     | F32 | F16 | I8 | BOOL
     | RESTARTABLE | REPEATING
     | RISE | FALL | HELD
+    | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
     | DISTANCE | MAHALANOBIS

@@ -54,8 +54,42 @@ struct VectorLiteral {
     Span span;
 };
 
-/// M of mahalanobis(M): loaded, a literal matrix or diagonal, or the name of a target.
-using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Name>;
+/// frames("file.npz", "z", [120, 180]), or frames("file.npz", "z", [10, 50], stride = 5)
+struct Frames {
+    std::string path;
+    std::string key;
+    std::vector<Number> frames;    ///< with a stride: the first and the last
+    std::optional<Number> stride;
+    Span path_span;
+    Span key_span;
+    Span frames_span;
+    Span span;
+};
+
+/// z, [px, py], P(z) or P(Q([px, py])).
+struct Point {
+    std::vector<Name> projections;  ///< from the outermost
+    std::vector<Name> inputs;       ///< one embedding input, or the scalars of a vector
+    bool is_vector = false;         ///< written with brackets
+    Span span;
+};
+
+struct Formula;
+using FormulaPtr = std::unique_ptr<Formula>;
+
+/// fitted(METHOD, of = POINT, where = FORMULA, NAME = NUMBER)
+struct Fitted {
+    struct Argument {
+        Name key;
+        std::variant<Number, Point, FormulaPtr> value;
+    };
+    Name method;
+    std::vector<Argument> arguments;
+    Span span;
+};
+
+/// M of mahalanobis(M): loaded, a literal matrix or diagonal, fitted, or the name of a target.
+using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Fitted, Name>;
 
 struct Aggregation {
     enum class Kind : std::uint8_t { min, max, mean, kth };
@@ -69,9 +103,7 @@ struct Distance {
     std::optional<Aggregation> aggregation;
     Name metric;  ///< a word of distances.def; its span is the word's
     std::optional<Weights> weights;
-    std::vector<Name> point;       ///< one embedding input, or the scalars of a vector [px, py]
-    bool point_is_vector = false;  ///< written with brackets
-    Span point_span;
+    Point point;
     Name target;
     Span span;
 };
@@ -126,9 +158,6 @@ struct Interval {
     Bound high;
     Span span;
 };
-
-struct Formula;
-using FormulaPtr = std::unique_ptr<Formula>;
 
 struct Formula {
     enum class Kind : std::uint8_t {
@@ -213,10 +242,23 @@ struct Input {
     Span span;
 };
 
-struct Target {
+/// P(z) = A (z - m)
+struct Projection {
+    using Numbers = std::variant<Load, MatrixLiteral, VectorLiteral>;
+
     Name name;
+    std::variant<Load, MatrixLiteral, VectorLiteral, Fitted> matrix;
+    std::optional<Numbers> offset;
+    Span span;
+};
+
+struct Target {
     /// A VectorLiteral is an error that check/ explains.
-    std::variant<Load, MatrixLiteral, VectorLiteral> value;
+    using Source = std::variant<Load, MatrixLiteral, VectorLiteral, Frames, Fitted>;
+
+    Name name;
+    std::vector<Source> sources;  ///< one that is fitted stands alone
+    std::optional<Point> space;   ///< `of P(z)`
     Span span;
 };
 
@@ -261,7 +303,8 @@ struct Monitor {
     Span span;
 };
 
-using Declaration = std::variant<Rate, Constant, Input, Target, Predicate, Truth, Let, Monitor>;
+using Declaration =
+    std::variant<Rate, Constant, Input, Projection, Target, Predicate, Truth, Let, Monitor>;
 
 struct Spec {
     Name name;  ///< empty text: missing or unreadable, already reported
@@ -275,6 +318,7 @@ struct Spec {
 /// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again
 /// gives the same tree.
 std::string print(const Spec& spec);
+std::string print(const Point& point);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);
 

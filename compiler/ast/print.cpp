@@ -49,7 +49,23 @@ std::string text_of(const Load& load) {
     return fmt::format("load(\"{}\", \"{}\")", load.path, load.key);
 }
 
+std::string text_of(const Frames& frames) {
+    const std::string stride =
+        frames.stride ? fmt::format(", stride = {}", frames.stride->text) : "";
+    return fmt::format("frames(\"{}\", \"{}\", {}{})", frames.path, frames.key,
+                       text_of(VectorLiteral{frames.frames, {}}), stride);
+}
+
 std::string text_of(const Calibrated& calibrated);
+std::string text_of(const Fitted& fitted);
+
+std::string text_of(const FormulaPtr& formula) {
+    return print(*formula);
+}
+
+std::string text_of(const Point& point) {
+    return print(point);
+}
 
 std::string text_of(const ExprPtr& expression) {
     return print(*expression);
@@ -74,10 +90,15 @@ std::string text_of(const Distance& distance) {
     const std::string aggregation = distance.aggregation ? text_of(*distance.aggregation) : "";
     const std::string weights =
         distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
-    const std::string names = joined(distance.point, ", ", [](const Name& n) { return n.text; });
-    const std::string point = distance.point_is_vector ? fmt::format("[{}]", names) : names;
-    return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights, point,
-                       distance.target.text);
+    return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights,
+                       print(distance.point), distance.target.text);
+}
+
+std::string text_of(const Fitted& fitted) {
+    std::string arguments;
+    for (const Fitted::Argument& a : fitted.arguments)
+        arguments += fmt::format(", {} = {}", a.key.text, text_of(a.value));
+    return fmt::format("fitted({}{})", fitted.method.text, arguments);
 }
 
 // ---- expressions --------------------------------------------------------------------------------
@@ -310,8 +331,18 @@ std::string text_of(const Input& input) {
     return result + text_of_missing(input.missing);
 }
 
+std::string text_of(const Projection& projection) {
+    const std::string offset =
+        projection.offset ? fmt::format(" offset {}", text_of(*projection.offset)) : "";
+    return fmt::format("projection {} = {}{}", projection.name.text, text_of(projection.matrix),
+                       offset);
+}
+
 std::string text_of(const Target& target) {
-    return fmt::format("target {} = {}", target.name.text, text_of(target.value));
+    const auto source = [](const Target::Source& one) { return text_of(one); };
+    const std::string space = target.space ? fmt::format(" of {}", print(*target.space)) : "";
+    return fmt::format("target {} = {}{}", target.name.text, joined(target.sources, ", ", source),
+                       space);
 }
 
 std::string text_of(const Predicate& predicate) {
@@ -348,6 +379,14 @@ std::string print(const Spec& spec) {
     if (!spec.name.text.empty()) text += fmt::format("spec {};\n", spec.name.text);
     for (const Declaration& declaration : spec.declarations)
         text += std::visit([](const auto& d) { return text_of(d); }, declaration) + ";\n";
+    return text;
+}
+
+std::string print(const Point& point) {
+    std::string text = joined(point.inputs, ", ", [](const Name& n) { return n.text; });
+    if (point.is_vector) text = fmt::format("[{}]", text);
+    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
+        text = fmt::format("{}({})", map->text, text);
     return text;
 }
 

@@ -37,11 +37,22 @@ double error(const Distance& distance, std::uint32_t rows, std::uint32_t dimensi
     return bound * kSlack;
 }
 
+/// How far a distance changes where its point moves by `moved` in the distance's norm, of cosine
+/// and angular at length 1: see etlmon/distance/enclosed.hpp. Concave in the distance.
+double change(const Distance& distance, double exact, double moved) {
+    switch (distance.metric) {
+        case check::Metric::l2sq: return moved * (2 * std::sqrt(exact) + moved);
+        case check::Metric::cosine: return moved * (std::sqrt(2 * exact) + moved / 2);
+        case check::Metric::angular: return moved <= 0.25 ? 1.6 * moved : 4.0;
+        default: return moved;
+    }
+}
+
 /// Two builds differ by twice the error of one. The greatest exact distance that may measure as
 /// `delta` solves exact = delta + error(exact); from below the iteration converges to it, because
-/// the error grows slower than exact.
+/// the error grows slower than exact. `moved`: between the points that two builds measure from.
 Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dimension, double delta,
-                double magnitude) {
+                double magnitude, double moved) {
     if (std::isinf(delta)) return {delta, delta};
     const auto error_at = [&](double exact) {
         return error(distance, rows, dimension, exact, magnitude);
@@ -57,19 +68,85 @@ Interval spread(const Distance& distance, std::uint32_t rows, std::uint32_t dime
     // With full weights the error falls at first as `exact` grows, from r: it is r^2 / exact above
     // r. Where delta is above 2 r the exact distance is at least delta / 2; below, no positive
     // number is a lower bound, nor comes out.
-    const double below = error_at(delta) + (magnitude > 0 ? error_at(delta / 2) : 0);
+    double below = error_at(delta) + (magnitude > 0 ? error_at(delta / 2) : 0);
+    if (moved > 0) {
+        const double changed = change(distance, greatest, moved) * kSlack;
+        // at zero it is the greatest, but for the part that grows
+        below += changed / 2 + (magnitude > 0 ? error_at(0) : 0);
+        greatest += changed;
+    }
     const bool cut_off =
         distance.metric == check::Metric::cosine && distance.aggregation != Aggregation::mean;
     const double ceiling = cut_off ? 2.0 : kInfinity;
     return {std::max(0.0, delta - 2 * below), std::min(ceiling, greatest + error_at(greatest))};
 }
 
-/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp.
+/// |a - b| of every element of a point, where two builds compute a and b; empty where both take it
+/// as it comes.
+std::vector<double> moves_of(const check::Model& model, Index index,
+                             const plan::Evaluator& measured) {
+    const check::Point& point = model.points[index];
+    if (!point.is_projected()) return {};
+    const check::Projection& map = model.projections[point.projection];
+    const std::vector<double> inner = moves_of(model, point.inner, measured);
+    const float* const z = measured.point(point.inner);
+    std::vector<double> moves;
+    for (std::size_t i = 0; i < map.rows; ++i) {
+        double magnitude = 0;
+        double size = 0;
+        double carried = 0;
+        for (std::size_t j = 0; j < map.dimension; ++j) {
+            const double a = std::abs(static_cast<double>(map.matrix[i * map.dimension + j]));
+            const double moved = inner.empty() ? 0 : inner[j];
+            const double offset = map.offset.empty() ? 0 : static_cast<double>(map.offset[j]);
+            const double difference = std::abs(static_cast<double>(z[j]) - offset) + moved;
+            magnitude += a * difference;
+            size += a + difference;
+            carried += a * moved;
+        }
+        moves.push_back(
+            (carried + 2 * etlmon::projection_bound(map.dimension, magnitude, size)) * kSlack);
+    }
+    return moves;
+}
+
+/// The moves of elements in the norm of the distance; of cosine and angular at length 1.
+double norm_of(const Distance& distance, const std::vector<double>& moves, const float* z) {
+    const std::size_t n = moves.size();
+    double sum = 0;
+    double squares = 0;
+    double greatest = 0;
+    double length = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double e = moves[i];
+        sum += e;
+        greatest = std::max(greatest, e);
+        length += static_cast<double>(z[i]) * static_cast<double>(z[i]);
+        if (distance.weights.empty() || distance.weights_diagonal) {
+            squares += e * e * (distance.weights.empty() ? 1.0 : distance.weights[i]);
+            continue;
+        }
+        for (std::size_t j = 0; j < n; ++j)
+            squares += e * std::abs(static_cast<double>(distance.weights[i * n + j])) * moves[j];
+    }
+    if (n == 0) return 0;
+    switch (distance.metric) {
+        case check::Metric::l1: return sum * kSlack;
+        case check::Metric::linf: return greatest * kSlack;
+        case check::Metric::cosine:  // |u/|u| - v/|v|| is at most 2 |u - v| / |u|
+        case check::Metric::angular: return 2 * std::sqrt(squares / length) * kSlack;
+        default: return std::sqrt(squares) * kSlack;
+    }
+}
+
+/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp. Each |d_i|
+/// as large as `moves` may make it.
 double magnitude_of(const Distance& distance, const float* z, const float* g,
-                    std::uint32_t dimension) {
+                    std::uint32_t dimension, const std::vector<double>& moves) {
     std::vector<double> d(dimension);
     for (std::uint32_t i = 0; i < dimension; ++i)
-        d[i] = std::abs(static_cast<double>(z[i]) - static_cast<double>(g[i]));
+        d[i] = std::abs(static_cast<double>(z[i]) - static_cast<double>(g[i])) +
+               (moves.empty() ? 0 : moves[i]);
     double sum = 0;
     for (std::size_t i = 0; i < dimension; ++i) {
         const float* row = distance.weights.data() + i * dimension;
@@ -82,16 +159,19 @@ double magnitude_of(const Distance& distance, const float* z, const float* g,
 }
 
 /// Row by row, since each has an error of its own: aggregates are monotonic in every row.
-Interval of_full_weights(const Distance& distance, const check::Target& target, const float* z) {
+Interval of_full_weights(const Distance& distance, const check::Target& target, const float* z,
+                         const std::vector<double>& moves) {
     Distance row = distance;
     row.aggregation = Aggregation::min;
+    const double moved = norm_of(distance, moves, z);
     std::vector<double> lows;
     std::vector<double> highs;
     for (std::uint32_t k = 0; k < target.rows; ++k) {
         const float* g = target.values.data() + static_cast<std::size_t>(k) * target.dimension;
         const float delta = plan::measure(row, z, g, 1, target.dimension, nullptr).delta;
-        const Interval one = spread(row, 1, target.dimension, static_cast<double>(delta),
-                                    magnitude_of(distance, z, g, target.dimension));
+        const Interval one =
+            spread(row, 1, target.dimension, static_cast<double>(delta),
+                   magnitude_of(distance, z, g, target.dimension, moves), moved);
         lows.push_back(one.low);
         highs.push_back(one.high);
     }
@@ -175,22 +255,21 @@ Interval Expression::of_distance(const check::Model& model, Index index,
     const Distance& distance = model.distances[index];
     const check::Target& target = model.targets[distance.target];
     const float delta = measured.measured(index).delta;
+    const float* const z = measured.point(distance.point);
     const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
-    if (!full || std::isinf(delta))
+    if (std::isinf(delta))
         return interval_of(distance, target.rows, target.dimension, static_cast<double>(delta));
-    std::vector<float> point;
-    if (distance.point_is_vector)
-        for (const Index input : distance.point) point.push_back(*measured.input(input));
-    return of_full_weights(
-        distance, target,
-        distance.point_is_vector ? point.data() : measured.input(distance.point[0]));
+    const std::vector<double> moves = moves_of(model, distance.point, measured);
+    if (full) return of_full_weights(distance, target, z, moves);
+    return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0,
+                  norm_of(distance, moves, z));
 }
 
 }  // namespace
 
 Interval interval_of(const Distance& distance, std::uint32_t rows, std::uint32_t dimension,
                      double delta) {
-    return spread(distance, rows, dimension, delta, 0);
+    return spread(distance, rows, dimension, delta, 0, 0);
 }
 
 std::optional<Interval> interval_of(const check::Model& model, Index predicate,

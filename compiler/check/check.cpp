@@ -14,10 +14,13 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     declare_names(context);
     check_rate(context);
     check_inputs(context);
+    check_projections(context);
     check_targets(context);
     check_predicates(context);
     check_lets(context);
     check_truths(context);
+    check_fitted_frames(context);
+    check_fitted_entries(context);
     check_monitors(context);
     check_thresholds(context);
     set_robustness(context);

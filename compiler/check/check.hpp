@@ -29,6 +29,10 @@ struct Options {
     bool allow_uncalibrated = false;
     /// Or before it has those of its monitors: their shift is then NaN.
     bool allow_uncalibrated_monitors = false;
+    /// File of what is fitted; empty: SPEC.fitted.npz beside the spec where it exists.
+    std::string fitted_path;
+    /// `etlc fit` reads a spec before it has what it fits: that has its shape and no values.
+    bool allow_unfitted = false;
     /// `--check` takes a spec before its files are there: a target file, a thresholds file or an
     /// entry of it that is missing is a note, and what builds on it is not checked.
     bool allow_missing = false;

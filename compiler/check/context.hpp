@@ -1,7 +1,7 @@
 // What the steps of check share while they build the model.
 // Takes: the tree. Gives: the model under construction, the names, and the one way to report.
-// Keeps true: model.inputs, .targets, .lets and .monitors and the named predicates have one element
-// a declaration, in file order, from the start; an element that had an error is marked broken in
+// Keeps true: model.inputs, .projections, .targets, .lets and .monitors and the named predicates
+// begin with one element a declaration, in file order; an element that had an error is marked broken in
 // `scope`.
 #pragma once
 
@@ -21,6 +21,7 @@
 #include "check/names/scope.hpp"
 #include "check/predicates/matrices.hpp"
 #include "diag/diag.hpp"
+#include "fitted/fitted.hpp"
 
 namespace etlc::check {
 
@@ -47,8 +48,17 @@ struct Context {
     std::vector<std::uint32_t> depths{};
 
     /// Canonical text of what stands once in the model, to where it stands.
+    std::unordered_map<std::string, Index> point_of_text{};
     std::unordered_map<std::string, Index> distance_of_text{};
     std::unordered_map<std::string, Index> predicate_of_text{};
+
+    /// By target and point, the target with its rows in the space of the point.
+    std::map<std::pair<Index, Index>, Index> projected_targets{};
+    /// Parallel to model.fitted: which frames.
+    std::vector<const ast::Formula*> fitted_where{};
+    /// Nothing where it was not needed, or could not be read.
+    std::optional<fitted::File> fitted_file{};
+    bool fitted_is_read = false;
 
     std::unordered_set<std::string> unknown_names{};
     std::unordered_set<std::string> used_constants{};
@@ -76,6 +86,8 @@ void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
         visit(NameKind::constant, constant->name);
     if (const auto* input = std::get_if<ast::Input>(&declaration))
         for (const ast::Name& name : input->names) visit(NameKind::input, name);
+    if (const auto* projection = std::get_if<ast::Projection>(&declaration))
+        visit(NameKind::projection, projection->name);
     if (const auto* target = std::get_if<ast::Target>(&declaration))
         visit(NameKind::target, target->name);
     if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))

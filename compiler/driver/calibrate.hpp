@@ -17,6 +17,7 @@ struct CalibrateRequest {
     calibrate::Request calibration;  ///< its version and progress are set here
     std::string output;              ///< empty: beside the spec
     std::vector<check::Setting> settings;
+    std::string fitted;      ///< the file of what is fitted; empty: beside the spec
     std::string thresholds;  ///< those of the predicates; empty: they are calibrated now
 };
 

@@ -119,6 +119,13 @@ void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec
         ->capture_default_str();
 }
 
+void add_fitted_option(CLI::App& app, std::string& path) {
+    app.add_option("--fitted", path,
+                   "what 'etlc fit' found (default: SPEC.fitted.npz beside the spec, where it "
+                   "exists)")
+        ->type_name("FILE");
+}
+
 void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     add_spec_options(app, call, spec);
     add_set_option(app, call.request.check.settings);
@@ -126,6 +133,7 @@ void add_common_options(CLI::App& app, Call& call, const std::string& spec = "sp
            "--thresholds", call.request.check.thresholds_path,
            "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
+    add_fitted_option(app, call.request.check.fitted_path);
     driver::add_choice<check::Values>(
         app, "--values", call.request.values,
         {{"robustness", check::Values::robustness}, {"boolean", check::Values::boolean}},
@@ -263,6 +271,7 @@ int calibrate_command(int argc, char** argv) {
                    "the thresholds of the predicates: then the monitors that are calibrated as a "
                    "whole are, on episodes that these thresholds have not seen")
         ->type_name("FILE");
+    add_fitted_option(app, call.calibrate.fitted);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //

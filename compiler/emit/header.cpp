@@ -45,6 +45,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert(header_of(context, d));
         if (context.enclosed(d)) headers.insert("distance/enclosed");
     }
+    if (!context.names.point_local.empty()) headers.insert("distance/project");
     for (Index p : plan.predicates) {
         if (context.model.predicates[p].equality()) headers.insert("temporal/equality");
         if (!context.model.predicates[p].plain_distance()) headers.insert("temporal/expression");

@@ -68,10 +68,33 @@ void print_numbers(Printer& out, const std::string& name, const std::string& siz
 }
 
 std::string rows_of(const check::Target& target, const check::Distance& distance) {
-    return fmt::format("{}: {} of {} elements{}", target.origin,
+    return fmt::format("{}: {} of {} elements{}{}", target.origin,
                        target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
-                       target.dimension,
+                       target.dimension, target.source == check::kNone ? "" : ", projected",
                        plan::rows_as_given(distance) ? "" : ", scaled to length 1");
+}
+
+/// The maps of the points that are projected.
+void print_projections(Printer& out, const Context& context) {
+    if (context.names.matrix_array.empty()) return;
+    out.line("/// Projections A (z - m): the rows of A, one after the other, and m.");
+    out.line("namespace projections {");
+    for (const auto& [index, name] : context.names.matrix_array) {
+        const check::Projection& projection = context.model.projections[index];
+        print_doc(out, fmt::format("{}: {} of {} elements", projection.origin,
+                                   projection.rows == 1 ? "one row"
+                                                        : fmt::format("{} rows", projection.rows),
+                                   projection.dimension));
+        print_numbers(out, name, fmt::format("{} * {}", projection.rows, projection.dimension),
+                      projection.matrix, projection.dimension);
+        const auto offset = context.names.offset_array.find(index);
+        if (offset == context.names.offset_array.end()) continue;
+        print_doc(out, fmt::format("what {} subtracts first", projection.name));
+        print_numbers(out, offset->second, fmt::format("{}", projection.dimension),
+                      projection.offset, projection.dimension);
+    }
+    out.line("}  // namespace projections");
+    out.line();
 }
 
 void print_rows(Printer& out, const Context& context, Index d) {
@@ -165,6 +188,7 @@ void print_constants(Printer& out, const Context& context) {
                  plan::stored_bytes(context.plan), plan::stored_hash(context.plan));
         out.line();
     }
+    print_projections(out, context);
     out.line("/// Target sets, a row after the other.");
     out.line("namespace targets {");
     std::set<std::string> done;

@@ -61,7 +61,7 @@ std::map<check::Index, int> scalar_uses(const plan::Plan& plan) {
             if (e.kind == check::Expr::Kind::scalar) ++uses[e.index];
         });
     for (check::Index d : plan.distances)
-        for (check::Index i : plan.model->distances[d].point) uses[i] += 2;
+        for (check::Index i : plan.model->point_of(d).inputs) uses[i] += 2;
     return uses;
 }
 
@@ -133,6 +133,11 @@ private:
             if (!predicate.threshold.adaptation) continue;
             names_.threshold_member[p] = member(members_, predicate.name + "_threshold");
             names_.adaptation_constant[p] = member(members_, predicate.name + "_adaptation");
+        }
+        for (check::Index p : plan::projected_points(model_, plan_.distances)) {
+            const std::string name = identifier(model_.points[p].text, "projected");
+            names_.point_local[p] = local(measure_, name);
+            names_.point_buffer[p] = local(measure_, name + "_values");
         }
         for (check::Index d : plan_.distances)
             names_.distance_local[d] =
@@ -281,7 +286,7 @@ private:
         for (check::Index d : plan_.distances) {
             const check::Distance& distance = model_.distances[d];
             const bool as_given = plan::rows_as_given(distance);
-            const std::string& target = model_.targets[distance.target].name;
+            const std::string target = array_name(model_.targets[distance.target]);
             auto [entry, added] = arrays.try_emplace({distance.target, as_given});
             if (added) entry->second = constants_.claim(as_given ? target : target + "_unit");
             names_.target_array[d] = entry->second;
@@ -297,6 +302,23 @@ private:
             if (!distance.weights.empty())
                 names_.weight_array[d] = constants_.claim(target + "_weights");
         }
+        for (check::Index p : plan::projected_points(model_, plan_.distances))
+            name_projection(model_.points[p].projection);
+    }
+
+    /// "anchors", or "anchors_in_Q_z": rows that were projected when the spec was compiled.
+    std::string array_name(const check::Target& target) const {
+        if (target.source == check::kNone) return target.name;
+        return target.name + "_in_" + identifier(model_.points[target.space].text, "projected");
+    }
+
+    /// In a namespace of their own.
+    void name_projection(check::Index index) {
+        if (names_.matrix_array.count(index) != 0) return;
+        const check::Projection& projection = model_.projections[index];
+        names_.matrix_array[index] = projections_.claim(projection.name);
+        if (!projection.offset.empty())
+            names_.offset_array[index] = projections_.claim(projection.name + "_offset");
     }
 
     const plan::Plan& plan_;
@@ -311,6 +333,7 @@ private:
     Scope atoms_;
     Scope members_;
     Scope constants_;
+    Scope projections_;
 };
 
 }  // namespace

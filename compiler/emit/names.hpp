@@ -86,6 +86,12 @@ struct Names {
     /// Per distance: its rows in float16 or int8.
     std::map<check::Index, std::string> narrow_array;
     std::map<check::Index, std::string> weight_array;  ///< per distance
+    /// Per projected point: where its elements lie, and the array that they lie in.
+    std::map<check::Index, std::string> point_local;
+    std::map<check::Index, std::string> point_buffer;
+    /// Per projection that such a point goes through; the offset where it has one.
+    std::map<check::Index, std::string> matrix_array;
+    std::map<check::Index, std::string> offset_array;
 };
 
 Names make_names(const plan::Plan& plan);

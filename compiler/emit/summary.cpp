@@ -9,6 +9,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/text/table.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
 
@@ -112,6 +113,18 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
         const check::Predicate& predicate = plan.model->predicates[p];
         rows.push_back({predicate.name.empty() ? "-" : predicate.name, predicate.text,
                         fmt::format("{}", predicate.threshold.value), origin(predicate.threshold)});
+    }
+    return rows;
+}
+
+/// The maps that points go through.
+std::vector<Row> projection_rows(const plan::Plan& plan) {
+    const check::Model& model = *plan.model;
+    std::vector<Row> rows{{"point", "projection", "rows", "elements"}};
+    for (const Index p : plan::projected_points(model, plan.distances)) {
+        const check::Projection& map = model.projections[model.points[p].projection];
+        rows.push_back({model.points[p].text, fmt::format("{}: {}", map.name, map.origin),
+                        number(map.rows), number(map.dimension)});
     }
     return rows;
 }
@@ -243,6 +256,10 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
         out.line(prefix + "targets B on x86-64 and 64-bit Arm; without SIMD: on microcontrollers");
     out.line(blank(prefix));
     if (!plan.predicates.empty()) print_table(out, prefix, threshold_rows(plan), 4);
+    if (const std::vector<Row> rows = projection_rows(plan); rows.size() > 1) {
+        out.line(blank(prefix));
+        print_table(out, prefix, rows, 2);
+    }
     if (!plan.narrow.empty()) {
         out.line(blank(prefix));
         print_table(out, prefix, storage_rows(plan), 2);

@@ -161,7 +161,7 @@ private:
     }
 
     bool of_scalars(const Leak& leak) const {
-        return model_.distances[leak.distance].point_is_vector;
+        return !model_.inputs[model_.point_of(leak.distance).inputs[0]].is_embedding();
     }
 
     const check::Model& model_;

@@ -32,17 +32,34 @@ double length(const float* v, std::size_t n) {
     return std::sqrt(square);
 }
 
+/// The rows as they were before they were projected.
+const check::Target& declared_target(const check::Model& model, const Distance& distance) {
+    const check::Target& target = model.targets[distance.target];
+    return target.source == check::kNone ? target : model.targets[target.source];
+}
+
+/// What the point is made of, however it is projected.
+const std::vector<Index>& inputs_of(const check::Model& model, const Distance& distance) {
+    return model.points[distance.point].inputs;
+}
+
+bool is_embedding(const check::Model& model, const Distance& distance) {
+    return model.inputs[inputs_of(model, distance)[0]].is_embedding();
+}
+
 /// A vector of scalars may well come to lie where somebody has written a target down: a robot stops
 /// at the origin. Rows of a file are looked for all the same, for they may have been recorded.
 bool may_be_recorded(const check::Model& model, const Distance& distance) {
-    return !distance.point_is_vector || !model.targets[distance.target].path.empty();
+    const check::Target& target = declared_target(model, distance);
+    if (target.space != check::kNone) return false;  // rows that no sample is compared with
+    return is_embedding(model, distance) || !target.path.empty();
 }
 
 /// The numbers of a vector of scalars; empty where one is missing.
 std::vector<float> gathered(const check::Model& model, const Distance& distance,
                             const std::vector<plan::Sample>& samples) {
     std::vector<float> point;
-    for (const Index input : distance.point) {
+    for (const Index input : inputs_of(model, distance)) {
         const plan::Sample& sample = samples[input];
         if (!sample.present || !model.inputs[input].range.contains(sample.values[0])) return {};
         point.push_back(sample.values[0]);
@@ -82,12 +99,14 @@ Leaks::Leaks(const check::Model& model, const std::vector<Index>& predicates) : 
 
 void Leaks::watch(Index predicate, Index index) {
     const Distance& distance = model_.distances[index];
-    const check::Target& target = model_.targets[distance.target];
+    const check::Target& target = declared_target(model_, distance);
     Watched watched{predicate, index, false, {}, {}};
-    watched.by_direction = target.dimension > 1 && check::is_of_directions(distance.metric);
+    watched.by_direction = target.dimension > 1 && check::is_of_directions(distance.metric) &&
+                           !model_.points[distance.point].is_projected();
     const bool known = std::any_of(watched_.begin(), watched_.end(), [&](const Watched& other) {
         const Distance& of = model_.distances[other.distance];
-        return of.point == distance.point && of.target == distance.target &&
+        return inputs_of(model_, of) == inputs_of(model_, distance) &&
+               &declared_target(model_, of) == &target &&
                other.by_direction == watched.by_direction;
     });
     if (known) return;
@@ -114,14 +133,15 @@ std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
 std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
                                            const std::vector<plan::Sample>& samples) const {
     const Distance& distance = model_.distances[watched.distance];
-    const check::Target& target = model_.targets[distance.target];
-    const plan::Sample& sample = samples[distance.point[0]];
-    const auto vector =
-        distance.point_is_vector ? gathered(model_, distance, samples) : std::vector<float>{};
-    const std::vector<float>& z = distance.point_is_vector ? vector : sample.values;
+    const check::Target& target = declared_target(model_, distance);
+    const Index first = inputs_of(model_, distance)[0];
+    const plan::Sample& sample = samples[first];
+    const bool embedding = is_embedding(model_, distance);
+    const auto vector = embedding ? std::vector<float>{} : gathered(model_, distance, samples);
+    const std::vector<float>& z = embedding ? sample.values : vector;
     if (!sample.present || z.empty()) return std::nullopt;
     const double size = watched.by_direction ? length(z.data(), z.size()) : 1;
-    Rounded rounded{model_.inputs[distance.point[0]]};
+    Rounded rounded{model_.inputs[first]};
     if (watched.by_direction) rounded.relative = rounding_of_length(rounded.input, z, size);
     for (std::uint32_t row = 0; row < target.rows; ++row) {
         if (!rounded.same(static_cast<double>(z[0]), watched.firsts[row] * size)) continue;

@@ -5,6 +5,7 @@
 #include <limits>
 #include <set>
 
+#include "check/points/project.hpp"
 #include "episodes/exact_distance.hpp"
 
 namespace etlc::episodes {
@@ -195,8 +196,9 @@ double TruthEvaluator::expression(const Expr& e) const {
 
 double TruthEvaluator::measure(const check::Distance& distance) const {
     std::vector<double> point;
-    for (const Index input : distance.point)
+    for (const Index input : model_.points[distance.point].inputs)
         point.insert(point.end(), values_[input].begin(), values_[input].end());
+    point = check::projected(model_, distance.point, std::move(point));
     return exact_distance(model_, distance, point).value_or(kUnknown);
 }
 

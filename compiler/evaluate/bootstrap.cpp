@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "episodes/random.hpp"
+
 namespace etlc::evaluate {
 
 namespace {
@@ -10,30 +12,11 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
-/// splitmix64 (Steele, Lea, Flood 2014): the same on every machine, unlike the distributions of the
-/// standard library.
-class Random {
-public:
-    explicit Random(std::uint64_t seed) : state_(seed) {}
-
-    /// 0 to n - 1, n below 2^32; the bias is below n / 2^64.
-    std::uint64_t below(std::uint64_t n) {
-        state_ += 0x9e3779b97f4a7c15U;
-        std::uint64_t x = state_;
-        x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9U;
-        x = (x ^ (x >> 27U)) * 0x94d049bb133111ebU;
-        return (x ^ (x >> 31U)) % n;
-    }
-
-private:
-    std::uint64_t state_;
-};
-
 }  // namespace
 
 Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {
     if (episodes == 0) return;
-    Random random(kSeed);
+    episodes::Random random(kSeed);
     resamples_.assign(kResamples, Weights(episodes, 0));
     for (Weights& weights : resamples_)
         for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)];

@@ -41,13 +41,20 @@ private:
     ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
     ast::Type type(Grammar::TypeContext& context) const;
     ast::Range range(Grammar::RangeContext& context) const;
+    ast::Projection projection(Grammar::ProjectionDeclarationContext& context,
+                               source::Span span) const;
     ast::Target target(Grammar::TargetDeclarationContext& context, source::Span span) const;
+    ast::Target::Source target_source(Grammar::SourceContext& context) const;
     ast::Predicate predicate(Grammar::PredicateDeclarationContext& context,
                              source::Span span) const;
     static std::optional<bool> missing(Grammar::MissingContext* context);  ///< null: not written
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
+    std::string content(const Token& string) const;  ///< without its quotes
     ast::Load load(Grammar::LoadContext& context) const;
+    ast::Frames frames(Grammar::FramesContext& context) const;
+    ast::Fitted fitted(Grammar::FittedContext& context) const;
+    ast::Projection::Numbers numbers(Grammar::NumbersContext& context) const;
     std::variant<ast::MatrixLiteral, ast::VectorLiteral> literal(
         Grammar::LiteralContext& context) const;
     ast::Name name(const Grammar::NameContext& context) const;
@@ -70,6 +77,7 @@ private:
     std::unique_ptr<ast::Distance> distance(Grammar::DistanceContext& context) const;
     ast::Aggregation aggregation(Grammar::AggregationContext& context) const;
     ast::Weights weights(Grammar::WeightsContext& context) const;
+    ast::Point point(Grammar::PointContext& context) const;
 
     // formulas.cpp
     Formula formula(Grammar::FormulaContext& context) const;

@@ -35,6 +35,8 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
         return constant(*d, span);
     if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context))
         return input(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::ProjectionDeclarationContext*>(&context))
+        return projection(*d, span);
     if (auto* const d = dynamic_cast<Grammar::TargetDeclarationContext*>(&context))
         return target(*d, span);
     if (auto* const d = dynamic_cast<Grammar::PredicateDeclarationContext*>(&context))
@@ -108,17 +110,36 @@ ast::Range Builder::range(Grammar::RangeContext& context) const {
     return {number(*context.limit(0)), number(*context.limit(1)), span_of(context)};
 }
 
+ast::Projection Builder::projection(Grammar::ProjectionDeclarationContext& context,
+                                    source::Span span) const {
+    ast::Projection result;
+    result.name = name(*context.name());
+    result.span = span;
+    if (auto* const fit = context.fitted()) {
+        result.matrix = fitted(*fit);
+        return result;
+    }
+    std::visit([&result](auto&& v) { result.matrix = std::move(v); }, numbers(*context.numbers(0)));
+    if (context.OFFSET() != nullptr) result.offset = numbers(*context.numbers(1));
+    return result;
+}
+
 ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::Span span) const {
     ast::Target result;
     result.name = name(*context.name());
     result.span = span;
-    if (auto* const loaded = context.load()) {
-        result.value = load(*loaded);
-    } else {
-        auto value = literal(*context.literal());
-        std::visit([&result](auto&& v) { result.value = std::move(v); }, std::move(value));
-    }
+    if (auto* const fit = context.fitted()) result.sources.emplace_back(fitted(*fit));
+    for (Grammar::SourceContext* const one : context.source())
+        result.sources.push_back(target_source(*one));
+    if (auto* const space = context.point()) result.space = point(*space);
     return result;
+}
+
+ast::Target::Source Builder::target_source(Grammar::SourceContext& context) const {
+    if (auto* const loaded = context.load()) return load(*loaded);
+    if (auto* const taken = context.frames()) return frames(*taken);
+    return std::visit([](auto&& v) -> ast::Target::Source { return std::move(v); },
+                      literal(*context.literal()));
 }
 
 ast::Predicate Builder::predicate(Grammar::PredicateDeclarationContext& context,
@@ -186,11 +207,12 @@ ast::Calibrated Builder::calibrated(Grammar::CalibratedContext& context) const {
     return result;
 }
 
+std::string Builder::content(const Token& string) const {
+    const source::Span span = span_of(string);
+    return std::string(file_.text({span.begin + 1, span.end - 1}));
+}
+
 ast::Load Builder::load(Grammar::LoadContext& context) const {
-    const auto content = [this](const Token& string) {
-        const source::Span span = span_of(string);
-        return std::string(file_.text({span.begin + 1, span.end - 1}));  // without its quotes
-    };
     ast::Load result;
     result.span = span_of(context);
     result.path = content(*context.path);
@@ -200,6 +222,45 @@ ast::Load Builder::load(Grammar::LoadContext& context) const {
         result.key_span = span_of(*context.key);
     }
     return result;
+}
+
+ast::Frames Builder::frames(Grammar::FramesContext& context) const {
+    ast::Frames result;
+    result.span = span_of(context);
+    result.path = content(*context.path);
+    result.path_span = span_of(*context.path);
+    result.key = content(*context.key);
+    result.key_span = span_of(*context.key);
+    result.frames_span = source::join(span_of(*context.LBRACKET()->getSymbol()),
+                                      span_of(*context.RBRACKET()->getSymbol()));
+    for (Grammar::AmountContext* const frame : context.amount())
+        result.frames.push_back(number(*frame));
+    if (auto* const stride = context.stride()) result.stride = number(*stride->amount());
+    return result;
+}
+
+ast::Fitted Builder::fitted(Grammar::FittedContext& context) const {
+    ast::Fitted result;
+    result.method = name(*context.name());
+    result.span = span_of(context);
+    for (Grammar::FittedArgumentContext* const argument : context.fittedArgument()) {
+        ast::Fitted::Argument& added = result.arguments.emplace_back();
+        added.key = {text(*argument->start), span_of(*argument->start)};
+        if (auto* const of = dynamic_cast<Grammar::PointArgumentContext*>(argument))
+            added.value = point(*of->point());
+        else if (auto* const where = dynamic_cast<Grammar::FormulaArgumentContext*>(argument))
+            added.value = formula(*where->formula()).root;
+        else
+            added.value =
+                number(*dynamic_cast<Grammar::NumberArgumentContext&>(*argument).amount());
+    }
+    return result;
+}
+
+ast::Projection::Numbers Builder::numbers(Grammar::NumbersContext& context) const {
+    if (auto* const loaded = context.load()) return load(*loaded);
+    return std::visit([](auto&& v) -> ast::Projection::Numbers { return std::move(v); },
+                      literal(*context.literal()));
 }
 
 std::variant<ast::MatrixLiteral, ast::VectorLiteral> Builder::literal(

@@ -101,12 +101,15 @@ std::string name_words(const Stuck& stuck) {
         case EtlParser::RuleDistance: return "the name of a target";
         case EtlParser::RulePoint:
             return has(stuck, EtlParser::LBRACKET)
-                       ? "the name of an input, or a vector [x, y] of scalar inputs"
+                       ? "the name of an input or a projection, or a vector [x, y] of scalar inputs"
                        : "the name of a scalar input";
         case EtlParser::RuleWeights:
-            return "load(\"FILE\"), a matrix, a diagonal [...] or the name of a target";
+            return "load(\"FILE\"), a matrix, a diagonal [...], fitted(...) or the name of a target";
         case EtlParser::RuleCalibrated:
             return "a method of calibration (f1, conformal or class_conditional)";
+        case EtlParser::RuleFitted:
+            return "a method of fitting (mean, medoids, kmeans, pca, whitened_pca, discriminant or "
+                   "logpzo)";
         case EtlParser::RuleArgument: return "a word";
         default: return "a name";
     }
@@ -139,6 +142,12 @@ std::string spelling(std::size_t type) {
         case EtlParser::IN: return "in";
         case EtlParser::HOLD: return "hold";
         case EtlParser::MISSING: return "missing";
+        case EtlParser::OFFSET: return "offset";
+        case EtlParser::FITTED: return "fitted";
+        case EtlParser::FRAMES: return "frames";
+        case EtlParser::STRIDE: return "stride";
+        case EtlParser::OF: return "of";
+        case EtlParser::WHERE: return "where";
         default: return {};
     }
 }

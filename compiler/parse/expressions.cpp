@@ -142,17 +142,24 @@ std::unique_ptr<ast::Distance> Builder::distance(Grammar::DistanceContext& conte
     if (auto* const weighted = dynamic_cast<Grammar::WeightedMetricContext*>(context.metric()))
         result->weights = weights(*weighted->weights());
 
-    Grammar::PointContext& point = *context.point();
-    result->point_span = span_of(point);
-    if (auto* const embedding = dynamic_cast<Grammar::EmbeddingPointContext*>(&point)) {
-        result->point.push_back(name(*embedding->name()));
-    } else {
-        result->point_is_vector = true;
-        for (const Grammar::NameContext* const n :
-             dynamic_cast<Grammar::VectorPointContext&>(point).name())
-            result->point.push_back(name(*n));
-    }
+    result->point = point(*context.point());
     result->target = name(*context.name());
+    return result;
+}
+
+ast::Point Builder::point(Grammar::PointContext& context) const {
+    ast::Point result;
+    result.span = span_of(context);
+    Grammar::PointContext* at = &context;
+    while (auto* const named = dynamic_cast<Grammar::NamedPointContext*>(at)) {
+        at = named->point();
+        (at == nullptr ? result.inputs : result.projections).push_back(name(*named->name()));
+        if (at == nullptr) return result;
+    }
+    result.is_vector = true;
+    for (const Grammar::NameContext* const n :
+         dynamic_cast<Grammar::VectorPointContext&>(*at).name())
+        result.inputs.push_back(name(*n));
     return result;
 }
 
@@ -178,6 +185,8 @@ ast::Weights Builder::weights(Grammar::WeightsContext& context) const {
         return load(*loaded->load());
     if (auto* const named = dynamic_cast<Grammar::NamedWeightsContext*>(&context))
         return name(*named->name());
+    if (auto* const fit = dynamic_cast<Grammar::FittedWeightsContext*>(&context))
+        return fitted(*fit->fitted());
     auto value = literal(*dynamic_cast<Grammar::LiteralWeightsContext&>(context).literal());
     return std::visit([](auto&& v) -> ast::Weights { return std::move(v); }, std::move(value));
 }

@@ -102,13 +102,30 @@ double aggregate(const check::Distance& distance, Vector distances) {
 }
 
 /// The embedding, or the scalars of a vector in order; empty where any of them is missing.
-Vector point_of(const check::Distance& distance, const Samples& samples) {
-    Vector point;
-    for (const Index input : distance.point) {
+Vector inputs_of(const check::Point& point, const Samples& samples) {
+    Vector elements;
+    for (const Index input : point.inputs) {
         if (samples[input].empty()) return {};
-        point.insert(point.end(), samples[input].begin(), samples[input].end());
+        elements.insert(elements.end(), samples[input].begin(), samples[input].end());
     }
-    return point;
+    return elements;
+}
+
+/// P(z) = A (z - m), from the inside out; empty where an input is missing.
+Vector point_of(const check::Model& model, Index index, const Samples& samples) {
+    const check::Point& point = model.points[index];
+    if (!point.is_projected()) return inputs_of(point, samples);
+    Vector z = point_of(model, point.inner, samples);
+    if (z.empty()) return {};
+    const check::Projection& projection = model.projections[point.projection];
+    if (!projection.offset.empty())
+        z = difference(z, Vector(projection.offset.begin(), projection.offset.end()));
+    Vector result;
+    for (std::size_t row = 0; row < projection.rows; ++row) {
+        const float* begin = projection.matrix.data() + row * z.size();
+        result.push_back(dot(Vector(begin, begin + z.size()), z));
+    }
+    return result;
 }
 
 bool is_zero(const Vector& point) {
@@ -119,7 +136,7 @@ bool is_zero(const Vector& point) {
 
 Measurement distance(const check::Model& model, const check::Distance& distance,
                      const Samples& samples) {
-    const Vector point = point_of(distance, samples);
+    const Vector point = point_of(model, distance.point, samples);
     if (point.empty()) return {};
     const bool needs_direction =
         distance.metric == Metric::cosine || distance.metric == Metric::angular;

@@ -21,8 +21,8 @@ constexpr int kNumberOverflow = 406;  ///< nlohmann's id of this error
 /// Builds the tree from nlohmann's events. Returning false stops the parser.
 class Builder {
 public:
-    Builder(const std::string& text, std::uint64_t max_values)
-        : text_(text), max_values_(max_values) {}
+    Builder(const std::string& text, std::uint64_t max_values, Code malformed, Code invalid)
+        : text_(text), max_values_(max_values), malformed_(malformed), invalid_(invalid) {}
 
     bool null() { return add({}) != nullptr; }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
@@ -45,9 +45,8 @@ public:
 
     bool key(std::string& name) {
         if (!seen_.back().insert(name).second) {
-            failure_ =
-                Failure{Code::invalid_thresholds,
-                        fmt::format("key {} stands twice in one object", data::in_quotes(name))};
+            failure_ = Failure{
+                invalid_, fmt::format("key {} stands twice in one object", data::in_quotes(name))};
             return false;
         }
         open_.back()->keys.push_back(std::move(name));
@@ -62,9 +61,8 @@ public:
         else if (position <= text_.size())  // counts the bytes read, the unexpected one included
             what = data::in_quotes(character(position > 0 ? position - 1 : 0));
         const source::Position place = place_of(position);
-        failure_ =
-            Failure{Code::malformed_thresholds, fmt::format("is no JSON: unexpected {}", what),
-                    place.line, place.column};
+        failure_ = Failure{malformed_, fmt::format("is no JSON: unexpected {}", what), place.line,
+                           place.column};
         return false;
     }
 
@@ -81,8 +79,8 @@ private:
 
     bool open(Json::Kind kind) {
         if (open_.size() == kMaxJsonDepth) {
-            failure_ = Failure{Code::malformed_thresholds,
-                               fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
+            failure_ =
+                Failure{malformed_, fmt::format("nests deeper than {} levels", kMaxJsonDepth)};
             return false;
         }
         Json json;
@@ -104,7 +102,7 @@ private:
     Json* add(Json json) {
         if (values_ == max_values_) {
             failure_ = Failure{
-                Code::malformed_thresholds,
+                malformed_,
                 fmt::format("holds more than {} values, the most that are read", max_values_)};
             return nullptr;
         }
@@ -141,6 +139,8 @@ private:
 
     const std::string& text_;
     std::uint64_t max_values_;
+    Code malformed_;
+    Code invalid_;
     std::uint64_t values_ = 0;
     Json root_;
     std::vector<Json*> open_;
@@ -155,8 +155,9 @@ const Json* Json::find(const std::string& key) const {
     return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
 }
 
-diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values) {
-    Builder builder(text, max_values);
+diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code malformed,
+                              Code invalid) {
+    Builder builder(text, max_values, malformed, invalid);
     nlohmann::json::sax_parse(text, &builder);
     if (auto failure = builder.failure()) return *failure;
     return builder.take();

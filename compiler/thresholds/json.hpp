@@ -24,8 +24,9 @@ struct Json {
 
 inline constexpr std::size_t kMaxJsonDepth = 16;
 
-/// Failures: malformed_thresholds with line and column.
-diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values);
+/// Failures: `malformed` with line and column; `invalid` where a key stands twice.
+diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values,
+                              diag::Code malformed, diag::Code invalid);
 
 /// "a string", "a number", ...: what a message calls it.
 std::string describe(const Json& json);

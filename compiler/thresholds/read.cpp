@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <limits>
-#include <optional>
 #include <set>
 
 #include "data/files/file.hpp"
 #include "data/number.hpp"
 #include "data/quote.hpp"
-#include "thresholds/json.hpp"
+#include "thresholds/fields.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
@@ -20,14 +18,11 @@ using data::in_quotes;
 using diag::Code;
 using diag::Failure;
 
-bool is_hash(const std::string& text) {
-    const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-    return text.size() == 16 && std::all_of(text.begin(), text.end(), hex);
-}
-
-/// Tree to File. The first thing wrong stays in `failure_`; what follows it is not looked at.
-class Reader {
+/// Tree to File.
+class Reader : private Fields {
 public:
+    Reader() : Fields(Code::invalid_thresholds) {}
+
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
         file.path = path;
@@ -132,19 +127,6 @@ private:
         return result;
     }
 
-    std::uint64_t count(const Json& json, const std::string& path, const std::string& key) {
-        const std::string expected = "a whole number";
-        const Json* value = member(json, path, key, Json::Kind::number, expected);
-        if (value == nullptr) return 0;
-        std::uint64_t result = 0;
-        const std::string& digits = value->text;
-        const auto [end, error] =
-            std::from_chars(digits.data(), digits.data() + digits.size(), result);
-        if (error != std::errc() || end != digits.data() + digits.size())
-            fail(path + "." + key, *value, expected);
-        return result;
-    }
-
     std::vector<double> scores(const Json& json, const std::string& path) {
         const Json* array = member(json, path, "scores", Json::Kind::array, "an array of numbers");
         std::vector<double> result;
@@ -175,121 +157,6 @@ private:
             fail(path + ".against", *json.find("against"), "'missed_alarm' or 'missed_success'");
         return value;
     }
-
-    std::vector<std::string> episodes(const Json& object, const std::string& path) {
-        const Json* array =
-            member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
-        std::vector<std::string> result;
-        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i)
-            result.push_back(hash(array->items[i], fmt::format("{}{}episodes[{}]", path,
-                                                               path.empty() ? "" : ".", i)));
-        return result;
-    }
-
-    std::map<std::string, data::EpisodeContent> recordings(const Json& root) {
-        const Json* object = member(root, "", "recordings", Json::Kind::object, "an object");
-        std::map<std::string, data::EpisodeContent> result;
-        for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i) {
-            const std::string place = "recordings." + object->keys[i];
-            const Json& inputs = object->items[i];
-            if (!is_hash(object->keys[i]) || inputs.kind != Json::Kind::object)
-                fail(place, inputs, "an object named by a content hash of 16 hex digits");
-            data::EpisodeContent& of_inputs = result[object->keys[i]];
-            for (std::size_t k = 0; k < inputs.keys.size() && !failure_; ++k)
-                of_inputs[inputs.keys[k]] = content(inputs.items[k], place + "." + inputs.keys[k]);
-        }
-        return result;
-    }
-
-    data::InputContent content(const Json& json, const std::string& path) {
-        constexpr std::size_t kHash = 16;
-        constexpr std::size_t kUnit = 8;
-        const std::string& digits = json.text;
-        data::InputContent result;
-        bool sound = json.kind == Json::Kind::string && digits.size() > kHash &&
-                     digits[kHash] == ':' && digits.size() % kUnit == 1 &&
-                     is_hash(digits.substr(0, kHash));
-        for (std::size_t at = kHash + 1; sound && at < digits.size(); at += kUnit) {
-            std::uint32_t unit = 0;
-            const char* end = digits.data() + at + kUnit;
-            sound = std::from_chars(digits.data() + at, end, unit, 16).ptr == end &&
-                    (result.sketch.empty() || result.sketch.back() < unit);
-            result.sketch.push_back(unit);
-        }
-        if (!sound)
-            fail(path, json, "16 hex digits, a colon, and ascending numbers of 8 hex digits");
-        else
-            result.hash = digits.substr(0, kHash);
-        return result;
-    }
-
-    std::vector<Allowance> allowances(const Json& root) {
-        const Json* array = member(root, "", "allowances", Json::Kind::array, "an array");
-        std::vector<Allowance> result;
-        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
-            const Json& item = array->items[i];
-            const std::string place = fmt::format("allowances[{}]", i);
-            if (item.kind != Json::Kind::object) {
-                fail(place, item, "an object");
-                break;
-            }
-            check_keys(item, place, {"reason", "overlapping", "leaked"});
-            result.push_back({text(item, place, "reason"), count(item, place, "overlapping"),
-                              count(item, place, "leaked")});
-        }
-        return result;
-    }
-
-    std::string hash(const Json& json, const std::string& path) {
-        if (json.kind != Json::Kind::string || !is_hash(json.text))
-            fail(path, json, "a content hash of 16 hex digits");
-        return json.text;
-    }
-
-    std::string text(const Json& object, const std::string& path, const std::string& key) {
-        const Json* value = member(object, path, key, Json::Kind::string, "a text");
-        return value != nullptr ? value->text : std::string();
-    }
-
-    /// The value of a key that has to be there and of this kind; null, after a failure, where it is
-    /// not.
-    const Json* member(const Json& object, const std::string& path, const std::string& key,
-                       Json::Kind kind, const std::string& expected) {
-        if (failure_) return nullptr;
-        const std::string place = path.empty() ? key : fmt::format("{}.{}", path, key);
-        const Json* value = object.find(key);
-        if (value == nullptr) {
-            failure_ =
-                Failure{Code::invalid_thresholds,
-                        fmt::format("key {} is missing, expected {}", in_quotes(place), expected)};
-            return nullptr;
-        }
-        if (value->kind == kind) return value;
-        fail(place, *value, expected);
-        return nullptr;
-    }
-
-    void check_keys(const Json& object, const std::string& path,
-                    const std::vector<std::string>& known) {
-        for (const std::string& key : object.keys) {
-            if (failure_) return;
-            if (std::find(known.begin(), known.end(), key) != known.end()) continue;
-            std::string message = fmt::format(
-                "unknown key {}", in_quotes(path.empty() ? key : fmt::format("{}.{}", path, key)));
-            if (auto nearest = diag::nearest_name(key, known))
-                message += fmt::format("; did you mean {}?", in_quotes(*nearest));
-            failure_ = Failure{Code::invalid_thresholds, message};
-        }
-    }
-
-    void fail(const std::string& place, const Json& found, const std::string& expected) {
-        if (failure_) return;
-        const std::string subject = place.empty() ? "the file" : in_quotes(place);
-        failure_ = Failure{Code::invalid_thresholds, fmt::format("{} is {}, expected {}", subject,
-                                                                 describe(found), expected)};
-    }
-
-    std::optional<Failure> failure_;
 };
 
 }  // namespace
@@ -327,7 +194,7 @@ diag::Result<File> read(const std::string& path) {
 }
 
 diag::Result<File> parse(const std::string& json, const std::string& path) {
-    auto root = parse_json(json, kMaxValues);
+    auto root = parse_json(json, kMaxValues, Code::malformed_thresholds, Code::invalid_thresholds);
     if (!root) return root.failure();
     return Reader().read(*root, path);
 }

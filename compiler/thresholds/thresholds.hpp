@@ -11,6 +11,7 @@
 
 #include "data/traces/overlap.hpp"
 #include "diag/diag.hpp"
+#include "thresholds/fields.hpp"
 
 namespace etlc::thresholds {
 
@@ -33,13 +34,6 @@ struct Entry {
     std::string against;                         ///< monitors: missed_alarm or missed_success
     /// Monitors: hashes of the episodes that it was calibrated on.
     std::vector<std::string> episodes;
-};
-
-/// That `etlc calibrate --allow-overlap REASON` passed over what it would have refused.
-struct Allowance {
-    std::string reason;
-    std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
-    std::uint64_t leaked = 0;       ///< episodes with a target among their frames
 };
 
 struct File {

@@ -57,9 +57,20 @@ std::string spec_text() {
         "sqrt(abs(s) + min l1(z, g)) > 1",
         "max(s * 3.1, min l2(v, h)) < 1",
         "s + 0.1 >= 1",
+        "min l2(P(z), g) <= 1",
+        "mean l1(P(z), g) <= 1",
+        "min cosine(P(z), g) <= 1",
+        "max angular(Q(P(z)), g) > 1",
+        "kth(2) linf(Q(P(z)), g) < 1",
+        "min l2sq(Q(v), h) <= 1",
+        "min mahalanobis([[2, 1.5, 0], [1.5, 2, 0.5], [0, 0.5, 1]])(P(z), g) <= 1",
+        "min l2(P(z), g) - min l2(Q(v), h) <= 0.5",
     };
     std::string text = fmt::format(
         "spec deployed; input z : f32[{}]; input v : f32[3]; input s : f32;\n", kDimension);
+    text += fmt::format("projection P = {} offset {}; projection Q = {};\n",
+                        matrix(random, 3, kDimension), matrix(random, 1, kDimension),
+                        matrix(random, 3, 3));
     text += fmt::format("target g = {}; target h = {};\n", matrix(random, 5, kDimension),
                         matrix(random, 3, 3));
     for (std::size_t i = 0; i < predicates.size(); ++i)

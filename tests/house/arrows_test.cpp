@@ -21,6 +21,7 @@ const std::map<std::string, Names> kArrows = {
     {"ast", {"source"}},
     {"data", {"diag"}},
     {"thresholds", {"data"}},
+    {"fitted", {"thresholds"}},
     {"parse", {"ast", "diag"}},
     {"check", {"ast", "data", "thresholds"}},
     {"reference", {"check"}},

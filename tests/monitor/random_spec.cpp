@@ -26,6 +26,8 @@ public:
         result += fmt::format("input v : {}{};\n", embedding(), hold());
         for (const char* name : {"near", "far"}) result += target(name, dimension_);
         result += target("spots", 2);
+        result += projections();
+        result += target("own", projected_, " of P(v)");
         const int count = random_.between(4, 6);
         for (int n = 0; n < count; ++n) {
             atoms_.push_back(fmt::format("p{}", n));
@@ -48,6 +50,7 @@ private:
     bool exact_;
     double missing_share_;
     int dimension_ = 1;
+    int projected_ = 1;  ///< of P(v)
     std::map<std::string, int> rows_;  // of each target
     std::vector<std::string> atoms_;
 
@@ -87,8 +90,30 @@ private:
         return fmt::format("f32[{}]", dimension_);
     }
 
+    std::string matrix(int rows, int columns) {
+        std::string text;
+        for (int row = 0; row < rows; ++row) {
+            std::string values;
+            for (int n = 0; n < columns; ++n) values += (n > 0 ? ", " : "") + number(-2, 2);
+            text += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
+        }
+        return fmt::format("[{}]", text);
+    }
+
+    std::string projection(const char* name, int rows, int columns) {
+        const std::string offset =
+            random_.chance(0.5) ? fmt::format(" offset {}", matrix(1, columns)) : "";
+        return fmt::format("projection {} = {}{};\n", name, matrix(rows, columns), offset);
+    }
+
+    std::string projections() {
+        projected_ = random_.between(1, 3);
+        return projection("P", projected_, dimension_) + projection("Q", 2, projected_) +
+               projection("T", 1, 2);
+    }
+
     /// Rows are 1, 2 or 4, so that their mean is exact.
-    std::string target(const char* name, int columns) {
+    std::string target(const char* name, int columns, const char* space = "") {
         std::string rows;
         const int count = 1 << random_.between(0, 2);
         rows_[name] = count;
@@ -99,7 +124,7 @@ private:
                 values += (n > 0 ? ", " : "") + (n > 0 ? number(-3, 3) : number(1, 3));
             rows += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
         }
-        return fmt::format("target {} = [{}];\n", name, rows);
+        return fmt::format("target {} = [{}]{};\n", name, rows, space);
     }
 
     std::string weights(int columns) {
@@ -132,7 +157,27 @@ private:
         return word == "kth" ? fmt::format("kth({})", random_.between(1, rows_[target])) : word;
     }
 
+    /// Between points that may be zero.
+    std::string metric_of_any(int columns) {
+        if (exact_) return metric(columns);
+        const std::string name = random_.word({"l1", "linf", "l2sq", "l2", "mahalanobis"});
+        return name == "mahalanobis" ? weights(columns) : name;
+    }
+
+    std::string projected_distance() {
+        if (random_.chance(0.3))
+            return fmt::format("{} {}(P(v), own)", aggregation("own"), metric(projected_));
+        if (random_.chance(0.3))
+            return fmt::format("{} {}(T([x, y]), spots)", aggregation("spots"), metric_of_any(1));
+        const std::string target = random_.word({"near", "far", "own"});
+        if (random_.chance(0.5))
+            return fmt::format("{} {}(Q(P(v)), {})", aggregation(target), metric_of_any(2), target);
+        return fmt::format("{} {}(P(v), {})", aggregation(target), metric_of_any(projected_),
+                           target);
+    }
+
     std::string distance() {
+        if (random_.chance(0.3)) return projected_distance();
         if (random_.chance(0.3))
             return fmt::format("{} {}([x, y], spots)", aggregation("spots"), metric(2));
         const std::string target = random_.word({"near", "far"});

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "kernel_cases.hpp"
 
@@ -111,14 +112,72 @@ TEST(KernelTwins, EveryOrderOfAdditions) {
     expect_twins<etlmon::Cosine, etlmon::Min, 17, 33>(MetricId::cosine, {});
 }
 
-#if !defined(__FAST_MATH__)
-
 /// A number in [-1, 1) for each i.
 constexpr float number(std::size_t i) {
     return static_cast<float>((static_cast<std::uint32_t>(i) * 2654435761u + 12345u) >> 8) /
                8388608.0f -
            1.0f;
 }
+
+std::vector<float> numbers(std::size_t count, std::size_t from) {
+    std::vector<float> result;
+    for (std::size_t i = 0; i < count; ++i) result.push_back(number(from + i));
+    return result;
+}
+
+template <std::uint32_t R, std::uint32_t D>
+void expect_projected_twins() {
+    const std::vector<float> z = numbers(D, 0), matrix = numbers(R * D, 1000),
+                             offset = numbers(D, 7);
+    float one[R], two[R], centred[D];
+    for (const float* const m : {offset.data(), static_cast<const float*>(nullptr)}) {
+        const float* const y = m == nullptr
+                                   ? etlmon::project<R, D>(z.data(), matrix.data(), one)
+                                   : etlmon::project<R, D>(z.data(), matrix.data(), m, one);
+        ASSERT_EQ(y, &one[0]);
+        ASSERT_TRUE(etlmon::project(z.data(), matrix.data(), m, R, D, centred, two));
+        for (std::uint32_t i = 0; i < R; ++i) {
+            EXPECT_EQ(bits(one[i]), bits(two[i])) << R << " x " << D << ", row " << i;
+            double exact = 0, magnitude = 0, size = 0;
+            for (std::uint32_t j = 0; j < D; ++j) {
+                const double difference = static_cast<double>(z[j]) -
+                                          (m == nullptr ? 0.0 : static_cast<double>(m[j]));
+                const double a = static_cast<double>(matrix[i * D + j]);
+                exact += a * difference;
+                magnitude += std::abs(a * difference);
+                size += std::abs(a) + std::abs(difference);
+            }
+            EXPECT_LE(std::abs(static_cast<double>(one[i]) - exact),
+                      etlmon::projection_bound(D, magnitude, size))
+                << R << " x " << D << ", row " << i;
+        }
+    }
+}
+
+TEST(KernelTwins, Projections) {
+    expect_projected_twins<1, 1>();
+    expect_projected_twins<5, 7>();
+    expect_projected_twins<1, 384>();
+    expect_projected_twins<3, 16>();
+    expect_projected_twins<16, 384>();
+    expect_projected_twins<33, 65>();
+    expect_projected_twins<64, 3>();
+}
+
+TEST(KernelTwins, ProjectionsThatAreUnknown) {
+    const std::vector<float> matrix{0, 0, 3e38f, 3e38f};
+    float z[2] = {1, 0.5f}, y[2];
+    const etlmon::Vector<float, 2> sample(z), missing;
+    EXPECT_EQ((etlmon::project<2, 2>(sample, matrix.data(), y)), nullptr);  // 4.5e38
+    z[0] = 0.25f;
+    EXPECT_EQ((etlmon::project<2, 2>(sample, matrix.data(), y)), &y[0]);
+    EXPECT_EQ((etlmon::project<2, 2>(missing, matrix.data(), y)), nullptr);
+    const etlmon::Point<2> partly{{0, etlmon::kMissing}};  // what is missing counts under a 0
+    EXPECT_EQ((etlmon::project<2, 2>(partly, matrix.data(), y)), nullptr);
+}
+
+#if !defined(__FAST_MATH__)
+
 template <class Indices>
 struct Numbers;
 template <std::size_t... I>

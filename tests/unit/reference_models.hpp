@@ -56,11 +56,21 @@ struct Spec {
         return static_cast<Index>(model.targets.size() - 1);
     }
 
+    Index point(std::vector<Index> inputs) {
+        check::Point point;
+        const bool scalars = model.inputs[inputs[0]].type == InputType::scalar;
+        point.kind = scalars ? check::Point::Kind::scalars : check::Point::Kind::embedding;
+        point.dimension = scalars ? static_cast<std::uint32_t>(inputs.size())
+                                  : model.inputs[inputs[0]].dimension;
+        point.inputs = std::move(inputs);
+        model.points.push_back(std::move(point));
+        return static_cast<Index>(model.points.size() - 1);
+    }
+
     Expr distance(std::vector<Index> point, Index target, Metric metric,
                   check::Aggregation aggregation = check::Aggregation::min) {
         check::Distance distance;
-        distance.point = std::move(point);
-        distance.point_is_vector = model.inputs[distance.point[0]].type == InputType::scalar;
+        distance.point = this->point(std::move(point));
         distance.target = target;
         distance.metric = metric;
         distance.aggregation = aggregation;

@@ -45,6 +45,38 @@ std::string word(const Calibrated& calibrated) {
     return list("calibrated", items);
 }
 
+std::string word(const Frames& frames) {
+    std::vector<std::string> items{"\"" + frames.path + "\"", "\"" + frames.key + "\""};
+    for (const Number& n : frames.frames) items.push_back(n.text);
+    if (frames.stride) items.push_back(list("stride", {frames.stride->text}));
+    return list("frames", items);
+}
+
+std::string word(const Point& point) {
+    std::vector<std::string> items;
+    for (const Name& n : point.inputs) items.push_back(n.text);
+    std::string text = list(point.is_vector ? "vector" : "input", items);
+    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
+        text = list(map->text, {text});
+    return text;
+}
+
+std::string word(const Number& number) {
+    return number.text;
+}
+
+std::string word(const FormulaPtr& formula) {
+    return of(*formula);
+}
+
+std::string word(const Fitted& fitted) {
+    std::vector<std::string> items{fitted.method.text};
+    for (const Fitted::Argument& a : fitted.arguments)
+        items.push_back(
+            list(a.key.text, {std::visit([](const auto& v) { return word(v); }, a.value)}));
+    return list("fitted", items);
+}
+
 std::string word(const ExprPtr& threshold) {
     return of(*threshold);
 }
@@ -72,9 +104,7 @@ std::string word(const Distance& distance) {
     if (distance.weights)
         items.push_back(std::visit([](const auto& w) { return list("weights", {word(w)}); },
                                    *distance.weights));
-    std::vector<std::string> point;
-    for (const Name& n : distance.point) point.push_back(n.text);
-    items.push_back(list(distance.point_is_vector ? "vector" : "input", point));
+    items.push_back(word(distance.point));
     items.push_back(distance.target.text);
     return list("distance", items);
 }
@@ -147,9 +177,19 @@ std::string word(const Input& d) {
     return list("input", items);
 }
 
+std::string word(const Projection& d) {
+    const auto text = [](const auto& v) { return word(v); };
+    std::vector<std::string> items{d.name.text, std::visit(text, d.matrix)};
+    if (d.offset) items.push_back(list("offset", {std::visit(text, *d.offset)}));
+    return list("projection", items);
+}
+
 std::string word(const Target& d) {
-    return list("target",
-                {d.name.text, std::visit([](const auto& v) { return word(v); }, d.value)});
+    std::vector<std::string> items{d.name.text};
+    for (const Target::Source& source : d.sources)
+        items.push_back(std::visit([](const auto& v) { return word(v); }, source));
+    if (d.space) items.push_back(list("of", {word(*d.space)}));
+    return list("target", items);
 }
 
 std::string word(const Predicate& d) {

@@ -5,6 +5,7 @@
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/guarantees.hpp"
+#include "check/points/project.hpp"
 #include "check/steps.hpp"
 
 namespace etlc::check {
@@ -178,6 +179,23 @@ Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Sp
     return kNone;
 }
 
+/// What is fitted is fitted to what is true.
+void refuse_fitted(Context& c, const Truth& truth) {
+    const Index at = predicate_node(c.model, truth.formula, [&](Index predicate) {
+        bool found = false;
+        for_each_distance(c.model.predicates[predicate].expression, [&](Index distance) {
+            found = found || rests_on_fitted(c.model, c.model.distances[distance]);
+        });
+        return found;
+    });
+    if (at == kNone) return;
+    c.report(Code::truth_of_fitted, c.model.formulas[at].span,
+             fmt::format("the truth of '{}' uses '{}', which measures with what is fitted; truth "
+                         "comes first",
+                         c.model.predicates[truth.predicate].name,
+                         c.model.predicates[c.model.formulas[at].index].shown()));
+}
+
 }  // namespace
 
 void check_truths(Context& c) {
@@ -191,6 +209,7 @@ void check_truths(Context& c) {
     });
     MonitorCheck check(c);
     for (const Truth& truth : truths) {
+        refuse_fitted(c, truth);
         check.truth(truth, first.at(truth.predicate));
         const Index calibrated = predicate_node(c.model, truth.formula, [&](Index predicate) {
             return c.model.predicates[predicate].threshold.origin != ThresholdOrigin::literal;

@@ -4,6 +4,7 @@
 
 #include <set>
 
+#include "check/guarantees/guarantees.hpp"
 #include "check/model/fingerprint.hpp"
 #include "data/arrays/array.hpp"
 
@@ -22,11 +23,22 @@ void add_input(const Input& input, Hashes& hashes) {
                                             {input.scale, input.range.low, input.range.high});
 }
 
+/// Those that the point goes through.
+void add_projections(const Model& model, Index point, Hashes& hashes) {
+    for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
+        const Projection& projection = model.projections[model.points[at].projection];
+        hashes[projection.name] = projection.hash;
+    }
+}
+
 void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     for_each_distance(model.predicates[predicate].expression, [&](Index index) {
         const Distance& distance = model.distances[index];
         const Target& target = model.targets[distance.target];
-        hashes[target.name] = target.hash;
+        const Target& declared =
+            target.source == kNone ? target : model.targets[target.source];
+        hashes[declared.name] = declared.hash;
+        add_projections(model, distance.point, hashes);
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
     });
     for (const Index input : model.predicates[predicate].inputs)
@@ -134,6 +146,37 @@ Provenance provenance(const Model& model, const Monitor& monitor) {
         if (!result.truth.empty()) result.truth += "; ";
         result.truth += model.predicates[predicate].name + ": " + of.truth;
     }
+    return result;
+}
+
+FittedProvenance provenance(const Model& model, const Fitted& fitted) {
+    FittedProvenance result;
+    Hashes maps;
+    add_projections(model, fitted.point, maps);
+    result.of = model.points[fitted.point].text;
+    for (const auto& [name, hash] : maps) result.of += fmt::format(", {} = {}", name, hash);
+    if (fitted.where == kNone) {
+        result.truth = "true";
+        return result;
+    }
+    Hashes measured;
+    const std::vector<bool> seen = reachable(model, fitted.where);
+    result.truth = print(model, fitted.where);
+    for (const Let& let : model.lets)
+        if (!lets_are_written_out(model, fitted.where) && let.formula < seen.size() &&
+            seen[let.formula])
+            result.truth += fmt::format("; {} = {}", let.name, print(model, let.formula));
+    add_flags(model, seen, measured);
+    for (const Index predicate : predicates_in(model, seen)) {
+        Provenance of = provenance(model, predicate);
+        const bool own = is_own_truth(model, predicate);
+        measured.merge(own ? of.targets : of.truth_targets);
+        if (own) of.truth = of.predicate + model.predicates[predicate].threshold.text;
+        if (!model.predicates[predicate].name.empty())
+            result.truth += fmt::format("; {}: {}", model.predicates[predicate].name,
+                                        of.truth.empty() ? "array" : of.truth);
+    }
+    for (const auto& [name, hash] : measured) result.truth += fmt::format("; {} = {}", name, hash);
     return result;
 }
 

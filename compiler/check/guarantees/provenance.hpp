@@ -36,6 +36,14 @@ std::string_view method_name(ThresholdOrigin origin);
 /// measures.
 Provenance provenance(const Model& model, const Monitor& monitor);
 
+/// What something is fitted to, besides the demonstrations: what `etlc fit` writes and check/
+/// compares.
+struct FittedProvenance {
+    std::string of;     ///< "Q(z), Q = 0123456789abcdef": the point, and the maps that it goes through
+    std::string truth;  ///< `where`, the truths of its predicates and what they measure; or "true"
+};
+FittedProvenance provenance(const Model& model, const Fitted& fitted);
+
 /// The predicates in a formula, ascending.
 std::vector<Index> predicates_of(const Model& model, Index formula);
 

@@ -144,7 +144,10 @@ private:
         const bool target =
             std::any_of(model_.targets.begin(), model_.targets.end(),
                         [&](const Target& declared) { return declared.name == name; });
-        return target ? "values" : is_input(name) ? "declaration" : "weights";
+        const bool projection =
+            std::any_of(model_.projections.begin(), model_.projections.end(),
+                        [&](const Projection& declared) { return declared.name == name; });
+        return target || projection ? "values" : is_input(name) ? "declaration" : "weights";
     }
 
     const Model& model_;

@@ -13,11 +13,13 @@ std::uint64_t hash_of(const std::string& lines) {
     return lines.empty() ? 0 : data::xxh64(lines);
 }
 
-/// A line a target set, and a line a distance with weights: its name, and the hash of the numbers.
+/// A line a projection and a line a target set, as declared, and a line a distance with weights: its name, and the hash of the numbers.
 std::string data_lines(const Model& model) {
     std::string lines;
+    for (const Projection& projection : model.projections)
+        lines += fmt::format("{} {}\n", projection.name, projection.hash);
     for (const Target& target : model.targets)
-        lines += fmt::format("{} {}\n", target.name, target.hash);
+        if (target.source == kNone) lines += fmt::format("{} {}\n", target.name, target.hash);
     for (const Distance& distance : model.distances)
         if (!distance.weights.empty())
             lines += fmt::format("{} {}\n", distance.text, weights_hash(distance));

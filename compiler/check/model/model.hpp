@@ -47,16 +47,49 @@ struct Input {
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }
 };
 
+/// A linear map of points: P(z) = A (z - m).
+struct Projection {
+    std::string name;
+    std::uint32_t rows = 0;       ///< R, the dimension of P(z)
+    std::uint32_t dimension = 0;  ///< D, that of z
+    std::vector<float> matrix;    ///< A: R x D, row-major, all finite; empty: not fitted yet
+    std::vector<float> offset;    ///< m: D, all finite; empty: none
+    std::string origin;           ///< "pca.npz:A", "literal" or "fitted", as in Target
+    std::string path;  ///< of the file that the matrix was read from; empty for a literal
+    std::string hash;  ///< content hash of shape and values
+    Index fitted = kNone;            ///< of Model::fitted
+    Span span;
+};
+
+/// What is measured: one embedding, a vector of scalars [px, py], or P(POINT).
+struct Point {
+    enum class Kind : std::uint8_t { embedding, scalars, projected };
+    Kind kind = Kind::embedding;
+    std::vector<Index> inputs;  ///< the embedding, or the scalars; of P(POINT) those of POINT
+    std::uint32_t dimension = 0;
+    Index projection = kNone;  ///< P
+    Index inner = kNone;       ///< POINT, which stands before it in Model::points
+    std::string text;          ///< canonical text: "Q(z)", "[px, py]"
+
+    bool is_vector() const { return kind == Kind::scalars; }
+    bool is_projected() const { return kind == Kind::projected; }
+};
+
 /// Z_target: rows x dimension float32, row-major, all finite.
 struct Target {
     std::string name;
     std::uint32_t rows = 0;
     std::uint32_t dimension = 0;
-    std::vector<float> values;
+    std::vector<float> values;  ///< empty: not fitted yet
     /// "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec.
     std::string origin;
-    std::string path;  ///< of the file it was read from, for dependency files; empty for a literal
+    std::string path;  ///< of a file it was read from; empty for a literal
     std::string hash;  ///< content hash of shape and values, data::content_hash
+    /// The point in whose space the rows are, of Model::points; kNone: in that of the inputs.
+    Index space = kNone;
+    /// The declared target whose rows these are, projected into `space`; kNone: declared itself.
+    Index source = kNone;
+    Index fitted = kNone;  ///< of Model::fitted
     Span span;
 };
 
@@ -86,15 +119,15 @@ enum class Aggregation : std::uint8_t { min, max, mean, kth };
 
 /// d aggregated over a target set: AGG DIST(point, target).
 struct Distance {
-    std::vector<Index> point;  ///< one embedding input, or the scalar inputs of a vector
-    bool point_is_vector = false;
+    Index point = 0;  ///< of Model::points
     Index target = 0;
     Metric metric = Metric::l2;
     Aggregation aggregation = Aggregation::min;
     std::uint32_t kth = 1;       ///< the n-th smallest, from 1, for Aggregation::kth
     std::vector<float> weights;  ///< mahalanobis: D x D row-major symmetric positive definite, or
-                                 ///< its D diagonal elements
+                                 ///< its D diagonal elements; empty: not fitted yet
     bool weights_diagonal = false;
+    Index weights_fitted = kNone;  ///< of Model::fitted
     std::string weights_path;  ///< file the weights came from, for dependency files; empty: literal
                                ///< or a target
     std::string text;          ///< canonical text, "min l2(z, goal_a)"
@@ -281,6 +314,36 @@ constexpr bool looks_one_step_away(Formula::Kind kind) {
     return kind == Kind::next || kind == Kind::previous || kind == Kind::rise || kind == Kind::fall;
 }
 
+// ---- what is fitted to episodes ------------------------------------------------------------------
+
+enum class FittedMethod : std::uint8_t {
+    mean,
+    medoids,
+    kmeans,
+    pca,
+    whitened_pca,
+    discriminant,
+    logpzo,
+};
+
+/// fitted(METHOD, of = POINT, where = FORMULA, ...): numbers that `etlc fit` computes.
+struct Fitted {
+    enum class Slot : std::uint8_t { target, projection, metric };
+    std::string name;         ///< of the target or projection; of a metric its declaration
+    std::string declaration;  ///< canonical text: "fitted(kmeans, k = 64, of = Q(z), where = true)"
+    FittedMethod method = FittedMethod::mean;
+    /// The shape of what it gives: rows of a target, R x D of a map or metric.
+    std::uint32_t rows = 0;
+    std::uint32_t columns = 0;
+    std::uint32_t away = 0;  ///< steps between the frames taken and a change of `where`
+    Index point = 0;         ///< of Model::points
+    Index where = kNone;     ///< of Model::formulas, over truths: a predicate stands for its truth
+    Slot slot = Slot::target;
+    Index index = kNone;  ///< of the target or projection; the distances of a metric name it
+    bool filled = false;
+    Span span;
+};
+
 /// Which error a calibrated monitor is guaranteed against.
 enum class Against : std::uint8_t { missed_alarm, missed_success };
 
@@ -335,7 +398,12 @@ struct Model {
     std::map<std::string, std::uint32_t> rounded;
     std::string rounding;  ///< "up", "down" or "to the nearest"; empty: none is
     std::vector<Input> inputs;
+    std::vector<Projection> projections;
+    std::vector<Point> points;  ///< equal ones stand once
+    /// Declared ones, then the projected rows of some of them, for the distances that need these.
     std::vector<Target> targets;
+    /// Each is fitted on the frames, and through projections that stand before it.
+    std::vector<Fitted> fitted;
     std::vector<Distance> distances;    ///< equal ones stand once
     std::vector<Predicate> predicates;  ///< named ones first, in order of declaration, then those
                                         ///< that stand in formulas
@@ -343,6 +411,9 @@ struct Model {
     std::vector<Let> lets;
     std::vector<Truth> truths;
     std::vector<Monitor> monitors;
+    /// What a distance is measured from.
+    const Point& point_of(Index distance) const { return points[distances[distance].point]; }
+
     std::vector<std::string> dependencies;  ///< paths of every file loaded, for --depfile, sorted
     /// What the thresholds' guarantees rest on besides exchangeable episodes, in words: that
     /// episodes which overlap were allowed, and why.

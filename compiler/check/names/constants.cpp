@@ -139,6 +139,17 @@ private:
     void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
     void replace(ast::VectorLiteral& vector) { replace(vector.values); }
 
+    void replace(ast::Point& /*point*/) {}
+
+    void replace(ast::Frames& frames) {
+        replace(frames.frames);
+        replace(frames.stride);
+    }
+
+    void replace(ast::Fitted& fitted) {
+        for (ast::Fitted::Argument& argument : fitted.arguments) replace(argument.value);
+    }
+
     void replace(ast::Distance& distance) {
         if (distance.aggregation) replace(distance.aggregation->n);
         replace(distance.weights);
@@ -198,7 +209,11 @@ private:
         replace(input.hold);
     }
 
-    void replace(ast::Target& target) { replace(target.value); }
+    void replace(ast::Projection& projection) {
+        replace(projection.matrix);
+        replace(projection.offset);
+    }
+    void replace(ast::Target& target) { replace(target.sources); }
     void replace(ast::Predicate& predicate) {
         replace(predicate.expression);
         replace(predicate.threshold);

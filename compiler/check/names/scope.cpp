@@ -14,6 +14,7 @@ struct Words {
 constexpr std::array<Words, kNameKinds> kWords{{
     {"const", "a constant"},
     {"input", "an input"},
+    {"projection", "a projection"},
     {"target", "a target"},
     {"predicate", "a predicate"},
     {"let", "a let"},

@@ -1,4 +1,5 @@
-// The names of a spec: one namespace for constants, inputs, targets, predicates, lets and monitors.
+// The names of a spec: one namespace for constants, inputs, projections, targets, predicates,
+// lets and monitors.
 // Takes: declarations, in file order. Gives: what a name means, and what was never used.
 // Keeps true: every declaration has an entity, also one that repeats a name; a name means its first
 // declaration.
@@ -21,13 +22,14 @@ namespace etlc::check {
 enum class NameKind : std::uint8_t {
     constant,
     input,
+    projection,
     target,
     predicate,
     let,
     monitor,
     unreadable,
 };
-inline constexpr std::size_t kNameKinds = 7;
+inline constexpr std::size_t kNameKinds = 8;
 
 std::string_view word(NameKind kind);               ///< "input"
 std::string_view word_with_article(NameKind kind);  ///< "an input"
@@ -42,7 +44,7 @@ struct Entity {
 
 struct Reference {
     NameKind kind = NameKind::unreadable;
-    Index index = 0;  ///< of the model's constants, inputs, targets, predicates, lets or monitors
+    Index index = 0;  ///< of the model's elements of that kind
 };
 
 class Scope {

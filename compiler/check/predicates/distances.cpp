@@ -6,6 +6,7 @@
 #include <cassert>
 
 #include "check/numbers/decimal.hpp"
+#include "check/points/points.hpp"
 #include "check/predicates/expressions.hpp"
 #include "check/predicates/weights.hpp"
 
@@ -44,10 +45,11 @@ public:
 
     Index run() {
         set_metric();
-        const bool point = set_point();
+        distance_.point = check_point(c_, written_.point);
         distance_.target = resolve(c_, written_.target, NameKind::target);
+        const bool point = distance_.point != kNone;
         const bool target = distance_.target != kNone;
-        bool fits = point && target && dimensions_agree();
+        bool fits = point && target && set_space();
         if (target) fits = set_aggregation() && fits;
         if (target) fits = rows_have_directions() && fits;
         if (point) fits = set_weights() && fits;
@@ -62,61 +64,17 @@ private:
         distance_.metric = found->metric;
     }
 
-    /// One element of the point; kNone with a diagnostic where it does not fit.
-    Index element(const ast::Name& name) {
-        const Index index = resolve(c_, name, NameKind::input);
-        if (index == kNone) return kNone;
-        const Input& input = c_.model.inputs[index];
-        const bool fits =
-            written_.point_is_vector ? input.type == InputType::scalar : input.is_embedding();
-        if (fits) return index;
-        const std::string_view found = input.is_embedding()              ? "an embedding"
-                                       : input.type == InputType::scalar ? "a scalar"
-                                                                         : "a bool";
-        auto& error = c_.report(
-            Code::point_form, name.span,
-            fmt::format("'{}' is {}; expected {}", name.text, found,
-                        written_.point_is_vector ? "the scalars of a vector"
-                                                 : "an embedding, or a vector of scalars"));
-        if (input.is_embedding())
-            error.note(fmt::format("an embedding stands without brackets: {}", name.text));
-        if (input.type == InputType::scalar)
-            error.note(fmt::format("for a point of one dimension write [{}]", name.text));
-        return kNone;
-    }
-
-    bool set_point() {
-        distance_.point_is_vector = written_.point_is_vector;
-        for (const ast::Name& name : written_.point) distance_.point.push_back(element(name));
-        if (distance_.point.empty()) return false;
-        return std::find(distance_.point.begin(), distance_.point.end(), kNone) ==
-               distance_.point.end();
-    }
-
-    std::uint32_t dimension() const {
-        return distance_.point_is_vector ? static_cast<std::uint32_t>(distance_.point.size())
-                                         : c_.model.inputs[distance_.point[0]].dimension;
-    }
+    std::uint32_t dimension() const { return c_.model.points[distance_.point].dimension; }
 
     const Target& target() const { return c_.model.targets[distance_.target]; }
 
-    bool dimensions_agree() {
-        if (dimension() == target().dimension) return true;
-        const std::string point =
-            distance_.point_is_vector
-                ? "the vector"
-                : fmt::format("'{}'", c_.model.inputs[distance_.point[0]].name);
-        auto& error = c_.report(Code::dimension_mismatch,
-                                source::join(written_.point_span, written_.target.span),
-                                fmt::format("{} has dimension {}, target '{}' has dimension {}",
-                                            point, dimension(), target().name, target().dimension));
-        if (!distance_.point_is_vector)
-            error.note(c_.model.inputs[distance_.point[0]].span,
-                       fmt::format("{} is declared here", point));
-        error.note(target().span,
-                   fmt::format("'{}' has {} of {}", target().name,
-                               diag::counted(target().rows, "row"), target().dimension));
-        return false;
+    /// Takes the target's rows where the point is.
+    bool set_space() {
+        const Index there =
+            target_in_space(c_, distance_.target, distance_.point,
+                            source::join(written_.point.span, written_.target.span));
+        if (there != kNone) distance_.target = there;
+        return there != kNone;
     }
 
     bool set_aggregation() {
@@ -155,7 +113,7 @@ private:
 
     /// cosine and angular compare directions, and a zero vector has none.
     bool rows_have_directions() {
-        if (!is_of_directions(distance_.metric)) return true;
+        if (!is_of_directions(distance_.metric) || target().values.empty()) return true;
         const std::size_t columns = target().dimension;
         for (std::size_t row = 0; row < target().rows; ++row) {
             const auto begin = target().values.begin() + static_cast<std::ptrdiff_t>(row * columns);
@@ -174,11 +132,13 @@ private:
 
     bool set_weights() {
         if (!written_.weights) return true;
-        auto weights = check_weights(c_, *written_.weights, dimension(), written_.metric.span);
+        auto weights =
+            check_weights(c_, *written_.weights, distance_.point, written_.metric.span);
         if (!weights) return false;
         distance_.weights = std::move(weights->values);
         distance_.weights_diagonal = weights->diagonal;
         distance_.weights_path = std::move(weights->path);
+        distance_.weights_fitted = weights->fitted;
         weights_text_ = std::move(weights->text);
         return true;
     }
@@ -197,11 +157,7 @@ private:
         }
         text += written_.metric.text;
         if (written_.weights) text += fmt::format("({})", weights_text_);
-        std::vector<std::string> names;
-        for (const Index index : distance_.point) names.push_back(c_.model.inputs[index].name);
-        const std::string point = fmt::format("{}", fmt::join(names, ", "));
-        return text + fmt::format("({}{}{}, {})", distance_.point_is_vector ? "[" : "", point,
-                                  distance_.point_is_vector ? "]" : "", target().name);
+        return text + fmt::format("({}, {})", c_.model.points[distance_.point].text, target().name);
     }
 
     Index add() {

@@ -119,7 +119,7 @@ std::vector<Index> inputs_of(const Model& model, const Expr& expression) {
         if (e.kind == Kind::scalar) inputs.insert(e.index);
     });
     for_each_distance(expression, [&](Index distance) {
-        const std::vector<Index>& point = model.distances[distance].point;
+        const std::vector<Index>& point = model.point_of(distance).inputs;
         inputs.insert(point.begin(), point.end());
     });
     return {inputs.begin(), inputs.end()};

@@ -15,10 +15,6 @@ namespace {
 
 using diag::Code;
 
-std::string beside_spec(const Context& c, const std::string& path) {
-    return (std::filesystem::path(c.file.path()).parent_path() / path).lexically_normal().string();
-}
-
 std::string origin_of(const ast::Load& load) {
     return load.key.empty() ? load.path : load.path + ":" + load.key;
 }
@@ -114,6 +110,10 @@ std::optional<Matrix> literal_matrix(Context& c,
 }
 
 }  // namespace
+
+std::string beside_spec(const Context& c, const std::string& path) {
+    return (std::filesystem::path(c.file.path()).parent_path() / path).lexically_normal().string();
+}
 
 std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {
     const std::string path = beside_spec(c, load.path);

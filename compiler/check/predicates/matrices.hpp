@@ -26,8 +26,14 @@ struct Matrix {
     std::string hash;
 };
 
+/// A path of the spec, relative to where etlc runs.
+std::string beside_spec(const Context& context, const std::string& path);
+
 std::optional<Matrix> read_matrix(Context& context, const ast::Load& load);
 std::optional<Matrix> read_matrix(Context& context, const ast::MatrixLiteral& literal);
 std::optional<Matrix> read_matrix(Context& context, const ast::VectorLiteral& literal);
+
+/// Frames of a recording: samples of the embedding input whose name is the key.
+std::optional<Matrix> read_frames(Context& context, const ast::Frames& frames);
 
 }  // namespace etlc::check

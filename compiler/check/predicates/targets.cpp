@@ -1,8 +1,14 @@
 // The target sets.
 #include <fmt/format.h>
 
+#include <limits>
+
+#include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
+#include "check/points/points.hpp"
 #include "check/predicates/matrices.hpp"
 #include "check/steps.hpp"
+#include "data/arrays/array.hpp"
 
 namespace etlc::check {
 
@@ -10,11 +16,16 @@ namespace {
 
 using diag::Code;
 
-std::optional<Matrix> target_matrix(Context& c, const ast::Target& declaration) {
-    if (const auto* load = std::get_if<ast::Load>(&declaration.value)) return read_matrix(c, *load);
-    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&declaration.value))
+Span span_of(const ast::Target::Source& source) {
+    return std::visit([](const auto& s) { return s.span; }, source);
+}
+
+std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source) {
+    if (const auto* load = std::get_if<ast::Load>(&source)) return read_matrix(c, *load);
+    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&source))
         return read_matrix(c, *literal);
-    const auto& vector = std::get<ast::VectorLiteral>(declaration.value);
+    if (const auto* frames = std::get_if<ast::Frames>(&source)) return read_frames(c, *frames);
+    const auto& vector = std::get<ast::VectorLiteral>(source);
     const std::string words{c.file.text(vector.span)};
     c.report(
          Code::target_is_vector, vector.span,
@@ -24,6 +35,80 @@ std::optional<Matrix> target_matrix(Context& c, const ast::Target& declaration) 
     return std::nullopt;
 }
 
+/// The rows of several places are one set.
+bool append(Context& c, Matrix& all, Matrix rows, Span span) {
+    if (rows.columns != all.columns) {
+        c.report(Code::dimension_mismatch, span,
+                 fmt::format("these rows have dimension {}, those before them {}", rows.columns,
+                             all.columns));
+        return false;
+    }
+    if (rows.rows > std::numeric_limits<std::uint32_t>::max() - all.rows) {
+        c.report(Code::matrix_shape, span,
+                 fmt::format("a target of more than {} rows",
+                             std::numeric_limits<std::uint32_t>::max()));
+        return false;
+    }
+    all.rows += rows.rows;
+    all.values.insert(all.values.end(), rows.values.begin(), rows.values.end());
+    all.origin += ", " + rows.origin;
+    if (all.path.empty()) all.path = std::move(rows.path);
+    all.hash = data::content_hash({all.rows, all.columns}, all.values);
+    return true;
+}
+
+bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
+    std::optional<Matrix> all;
+    bool good = true;
+    for (const ast::Target::Source& source : declaration.sources) {
+        auto rows = rows_of(c, source);
+        if (!rows)
+            good = false;
+        else if (!all)
+            all = std::move(rows);
+        else
+            good = append(c, *all, std::move(*rows), span_of(source)) && good;
+    }
+    if (!good) return false;
+    target.rows = all->rows;
+    target.dimension = all->columns;
+    target.values = std::move(all->values);
+    target.origin = std::move(all->origin);
+    target.path = std::move(all->path);
+    target.hash = std::move(all->hash);
+    return true;
+}
+
+/// `of P(z)`: the rows are in the space of P(z) as they are.
+bool set_space(Context& c, const ast::Point& written, Target& target) {
+    const Index index = check_point(c, written);
+    if (index == kNone) return false;
+    const Point& point = c.model.points[index];
+    if (point.is_projected()) target.space = index;
+    if (point.dimension == target.dimension) return true;
+    c.report(Code::dimension_mismatch, written.span,
+             fmt::format("{} has dimension {}, the rows of '{}' have {}", point.text,
+                         point.dimension, target.name, target.dimension));
+    return false;
+}
+
+bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
+    const auto index = static_cast<Index>(c.model.targets.size());
+    target.fitted = check_fitted(c, written, Fitted::Slot::target, target.name, index);
+    if (target.fitted == kNone) return false;
+    const Fitted& fitted = c.model.fitted[target.fitted];
+    target.rows = fitted.rows;
+    target.dimension = fitted.columns;
+    target.origin = "fitted";
+    if (const fitted::Entry* const entry = fitted_entry(c, target.fitted)) {
+        target.values = entry->matrix;
+        target.hash = entry->hash;
+        c.model.fitted[target.fitted].filled = true;
+    }
+    if (c.model.points[fitted.point].is_projected()) target.space = fitted.point;
+    return true;
+}
+
 }  // namespace
 
 void check_targets(Context& c) {
@@ -31,16 +116,11 @@ void check_targets(Context& c) {
         Target target;
         target.name = declaration.name.text;
         target.span = declaration.name.span;
-        if (auto matrix = target_matrix(c, declaration)) {
-            target.rows = matrix->rows;
-            target.dimension = matrix->columns;
-            target.values = std::move(matrix->values);
-            target.origin = std::move(matrix->origin);
-            target.path = std::move(matrix->path);
-            target.hash = std::move(matrix->hash);
-        } else {
-            c.scope.entity(NameKind::target, index).broken = true;
-        }
+        const auto* const fitted = std::get_if<ast::Fitted>(&declaration.sources[0]);
+        bool good = fitted != nullptr ? set_fitted(c, *fitted, target)
+                                      : set_rows(c, declaration, target);
+        good = good && (!declaration.space || set_space(c, *declaration.space, target));
+        if (!good) c.scope.entity(NameKind::target, index).broken = true;
         c.model.targets.push_back(std::move(target));
     });
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 
 #include "check/numbers/decimal.hpp"
+#include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
 #include "check/predicates/matrices.hpp"
 
 namespace etlc::check {
@@ -43,6 +45,13 @@ std::optional<Source> read_source(Context& c, const ast::Weights& weights) {
         const Index index = resolve(c, *name, NameKind::target);
         if (index == kNone) return std::nullopt;
         const Target& target = c.model.targets[index];
+        if (target.fitted != kNone) {
+            c.report(Code::fitting_argument, name->span,
+                     fmt::format("the rows of '{}' are fitted, and are no weights; expected a "
+                                 "matrix, or fitted(discriminant, of = POINT, where = FORMULA)",
+                                 name->text));
+            return std::nullopt;
+        }
         Matrix matrix{target.rows,   target.dimension, false,      target.values,
                       target.origin, target.path,      target.hash};
         return Source{std::move(matrix), target.name};
@@ -136,10 +145,36 @@ bool check_definite(Context& c, Matrix& w, bool diagonal, Span span) {
     return false;
 }
 
+/// They are for distances between the points that they are fitted to.
+std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, Index point) {
+    const Index index = check_fitted_metric(c, written);
+    if (index == kNone) return std::nullopt;
+    const Fitted& fitted = c.model.fitted[index];
+    if (fitted.point != point) {
+        c.report(Code::wrong_space, written.span,
+                 fmt::format("the weights are fitted to {}, the distance is from {}",
+                             c.model.points[fitted.point].text, c.model.points[point].text));
+        return std::nullopt;
+    }
+    Weights weights;
+    weights.text = fitted.declaration;
+    weights.fitted = index;
+    const fitted::Entry* const entry = fitted_entry(c, index);
+    if (entry == nullptr) return weights;
+    Matrix matrix{entry->rows, entry->columns, false, entry->matrix, "fitted", "", entry->hash};
+    if (!check_definite(c, matrix, false, written.span)) return std::nullopt;
+    weights.values = std::move(matrix.values);
+    c.model.fitted[index].filled = true;
+    return weights;
+}
+
 }  // namespace
 
-std::optional<Weights> check_weights(Context& c, const ast::Weights& weights,
-                                     std::uint32_t dimension, Span span) {
+std::optional<Weights> check_weights(Context& c, const ast::Weights& weights, Index point,
+                                     Span span) {
+    if (const auto* fitted = std::get_if<ast::Fitted>(&weights))
+        return fitted_weights(c, *fitted, point);
+    const std::uint32_t dimension = c.model.points[point].dimension;
     auto source = read_source(c, weights);
     if (!source) return std::nullopt;
     Matrix& w = source->matrix;

@@ -23,11 +23,12 @@ struct Weights {
     std::string path;
     std::string text;  ///< canonical: a name, load("w.npy"), or the numbers of a small literal
     std::string hash;
+    Index fitted = kNone;  ///< of model.fitted
 };
 
-/// The weights for points of `dimension` elements; nothing, with a diagnostic, where they do not
+/// The weights for distances from the model's `point`; nothing, with a diagnostic, where they do not
 /// fit.
 std::optional<Weights> check_weights(Context& context, const ast::Weights& weights,
-                                     std::uint32_t dimension, Span span);
+                                     Index point, Span span);
 
 }  // namespace etlc::check

@@ -181,13 +181,39 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
         return Failure{Code::no_such_array,
                        fmt::format("holds two arrays named {}", in_quotes(key))};
     const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
+    auto member = open_member(index);
+    if (!member) return in_array(member.failure(), key);
+    return member;
+}
+
+diag::Result<std::string> Archive::file(const std::string& name, std::uint64_t limit) const {
+    const zip_int64_t index = zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW);
+    if (index < 0)
+        return Failure{Code::no_such_array, fmt::format("has no member {}", in_quotes(name))};
+    auto member = open_member(static_cast<std::uint64_t>(index));
+    if (!member) return member.failure();
+    if ((*member)->size() > limit)
+        return malformed(fmt::format("member {} takes {} bytes, at most {} are read",
+                                     in_quotes(name), (*member)->size(), limit));
+    std::string bytes((*member)->size(), '\0');
+    const auto got = (*member)->read(bytes.data(), bytes.size());
+    if (!got) return got.failure();
+    char behind = 0;  // reading on to the end compares the checksum
+    const auto more = (*member)->read(&behind, 1);
+    if (!more) return more.failure();
+    if (*got < bytes.size() || *more > 0)
+        return malformed(
+            fmt::format("member {} has other than {} bytes", in_quotes(name), bytes.size()));
+    return bytes;
+}
+
+diag::Result<std::unique_ptr<ByteSource>> Archive::open_member(std::uint64_t index) const {
     zip_stat_t status;
     if (zip_stat_index(handle_.get(), index, 0, &status) != 0)
-        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
-    if (auto failure = check_method(status)) return in_array(*failure, key);
+        return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
+    if (auto failure = check_method(status)) return *failure;
     zip_file_t* file = zip_fopen_index(handle_.get(), index, 0);
-    if (file == nullptr)
-        return in_array(damaged(zip_error_code_zip(zip_get_error(handle_.get()))), key);
+    if (file == nullptr) return damaged(zip_error_code_zip(zip_get_error(handle_.get())));
     return std::unique_ptr<ByteSource>(std::make_unique<Member>(handle_, file, status.size));
 }
 

@@ -33,11 +33,14 @@ public:
     /// The array `key`. No such key, or two of them, is a failure that names the nearest and lists
     /// what there is.
     diag::Result<std::unique_ptr<ByteSource>> member(const std::string& key) const;
+    /// The bytes of the member with this whole name, "about.json", at most `limit`.
+    diag::Result<std::string> file(const std::string& name, std::uint64_t limit) const;
 
 private:
     explicit Archive(std::shared_ptr<zip> handle);
 
     diag::Failure missing(const std::string& key) const;
+    diag::Result<std::unique_ptr<ByteSource>> open_member(std::uint64_t index) const;
 
     std::shared_ptr<zip> handle_;
     std::vector<std::string> keys_;

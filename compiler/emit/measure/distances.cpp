@@ -111,10 +111,17 @@ std::string all_present(const Context& context, const std::vector<Index>& scalar
 }
 
 /// The elements of a point that is made of scalars.
-std::string scalars_of(const Context& context, const check::Distance& distance) {
+std::string scalars_of(const Context& context, const check::Point& point) {
     std::string text;
-    for (Index i : distance.point) text += (text.empty() ? "" : ", ") + sample(context, i);
+    for (Index i : point.inputs) text += (text.empty() ? "" : ", ") + sample(context, i);
     return text;
+}
+
+/// Where the elements lie of an embedding, or of a projected point.
+std::string elements_of(const Context& context, Index index) {
+    const check::Point& point = context.model.points[index];
+    if (!point.is_projected()) return sample(context, point.inputs[0]);
+    return context.names.point_local.at(index) + (context.on_demand ? "()" : "");
 }
 
 /// `into = ...`, the distance from the point that `z` names.
@@ -135,10 +142,12 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
 
 std::optional<std::string> measured_at_once(const Context& context, Index d) {
     const check::Distance& distance = context.model.distances[d];
-    if (distance.point_is_vector && plan::checks_point(context.plan, d))
-        return wide_call(context, d, '{' + scalars_of(context, distance) + '}');
-    const Index embedding = distance.point[0];
-    if (distance.point_is_vector || context.names.input_local.count(embedding) != 0)
+    const check::Point& point = context.model.point_of(d);
+    if (point.is_vector() && plan::checks_point(context.plan, d))
+        return wide_call(context, d, '{' + scalars_of(context, point) + '}');
+    const Index embedding = point.inputs[0];
+    if (point.kind != check::Point::Kind::embedding ||
+        context.names.input_local.count(embedding) != 0)
         return std::nullopt;
     const auto direction = context.names.direction_local.find(embedding);
     const bool shared =
@@ -146,27 +155,54 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
     return wide_call(context, d, shared ? direction->second : sample(context, embedding));
 }
 
+void print_projected(Printer& out, const Context& context, Index index) {
+    const check::Point& point = context.model.points[index];
+    const check::Point& inner = context.model.points[point.inner];
+    const check::Projection& map = context.model.projections[point.projection];
+    const std::string& buffer = context.names.point_buffer.at(index);
+    const std::string& local = context.names.point_local.at(index);
+    const auto offset = context.names.offset_array.find(point.projection);
+    const std::string numbers =
+        fmt::format("projections::{}{}", context.names.matrix_array.at(point.projection),
+                    offset == context.names.offset_array.end()
+                        ? ""
+                        : ", projections::" + offset->second);
+    const std::string z =
+        inner.is_vector()
+            ? fmt::format("etlmon::Point<{}>{{{{{}}}}}", inner.dimension, scalars_of(context, inner))
+            : elements_of(context, point.inner);
+    const std::string call = fmt::format("etlmon::project<{}, {}>({}, {}, {})", map.rows,
+                                         map.dimension, z, numbers, buffer);
+    out.gap();
+    print_comment(out, "//", fmt::format("{}, once for all distances from it", point.text), 4);
+    out.line("float {}[{}];", buffer, point.dimension);
+    print_wrapped(out, context.on_demand
+                           ? fmt::format("const etlmon::Lazy {}([&]() noexcept {{ return {}; }});",
+                                         local, call)
+                           : fmt::format("const float* const {} = {};", local, call));
+}
+
 void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
-    const check::Distance& distance = context.model.distances[d];
+    const Index index = context.model.distances[d].point;
+    const check::Point& point = context.model.points[index];
     const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
-    if (!distance.point_is_vector && !context.enclosed(d)) {
-        const std::string z = sample(context, distance.point[0]);
+    if (!point.is_vector() && !context.enclosed(d)) {
+        const std::string z = elements_of(context, index);
         print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into,
                                        only_call(context, d, z)));
         return;
     }
     std::string z = "point";
-    const std::string present = distance.point_is_vector
-                                    ? all_present(context, distance.point)
-                                    : sample(context, distance.point[0]) + " != nullptr";
+    const std::string present = point.is_vector() ? all_present(context, point.inputs)
+                                                  : elements_of(context, index) + " != nullptr";
     print_wrapped(out, fmt::format("if ({}{}) {{", ready, present));
     out.indent();
-    if (distance.point_is_vector) {
-        const std::string elements = scalars_of(context, distance);
-        print_wrapped(
-            out, fmt::format("const float point[{}] = {{{}}};", distance.point.size(), elements));
+    if (point.is_vector()) {
+        const std::string elements = scalars_of(context, point);
+        print_wrapped(out,
+                      fmt::format("const float point[{}] = {{{}}};", point.dimension, elements));
     } else {
-        z = sample(context, distance.point[0]);
+        z = elements_of(context, index);
     }
     print_measurement(out, context, d, z, into);
     out.close();

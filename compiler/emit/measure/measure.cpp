@@ -2,6 +2,7 @@
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
 #include "emit/measure/measurements.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
@@ -69,6 +70,8 @@ public:
 
     void print() {
         for (Index i : context_.plan.inputs) print_input(out_, context_, i);
+        for (Index p : plan::projected_points(context_.model, context_.plan.distances))
+            print_projected(out_, context_, p);
         for (Index d : context_.plan.distances)
             if (has_local(d)) print_shared(d);
         for (Index p : context_.plan.predicates) print_predicate(p);

@@ -24,6 +24,10 @@ void print_input(Printer& out, const Context& context, check::Index input);
 /// print_distance has more to say.
 std::optional<std::string> measured_at_once(const Context& context, check::Index distance);
 
+/// A projected point, by the name of names.point_local: where its elements lie, null where it is
+/// unknown.
+void print_projected(Printer& out, const Context& context, check::Index point);
+
 /// `into = ...` where the inputs are there: a Measured that was unmeasured, or an Enclosed.
 void print_distance(Printer& out, const Context& context, check::Index distance,
                     const std::string& into);

@@ -1,6 +1,7 @@
 #include "plan/decide/point_checks.hpp"
 
 #include <algorithm>
+#include <set>
 
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -9,14 +10,25 @@
 
 namespace etlc::plan {
 
+std::vector<Index> projected_points(const check::Model& model,
+                                    const std::vector<Index>& distances) {
+    std::set<Index> points;
+    for (const Index d : distances)
+        for (Index at = model.distances[d].point; model.points[at].is_projected();
+             at = model.points[at].inner)
+            points.insert(at);
+    return {points.begin(), points.end()};
+}
+
 bool checks_point(const Plan& plan, Index distance) {
     return stored_set(plan, distance) == nullptr && narrow_set(plan, distance) == nullptr;
 }
 
 bool left_to_kernels(const Plan& plan, Index embedding) {
     const auto leaves = [&](Index d) {
-        const check::Distance& distance = plan.model->distances[d];
-        return distance.point_is_vector || distance.point[0] != embedding || checks_point(plan, d);
+        const check::Point& point = plan.model->point_of(d);
+        return point.kind != check::Point::Kind::embedding || point.inputs[0] != embedding ||
+               checks_point(plan, d);  // a projection finds out as kernels do
     };
     const check::Input& input = plan.model->inputs[embedding];
     return input.is_embedding() && input.hold == 0 &&
@@ -25,9 +37,9 @@ bool left_to_kernels(const Plan& plan, Index embedding) {
 
 bool shares_direction(const Plan& plan, Index embedding) {
     const auto needs = [&](Index d) {
-        const check::Distance& distance = plan.model->distances[d];
-        return !distance.point_is_vector && distance.point[0] == embedding &&
-               !rows_as_given(distance);
+        const check::Point& point = plan.model->point_of(d);
+        return point.kind == check::Point::Kind::embedding && point.inputs[0] == embedding &&
+               !rows_as_given(plan.model->distances[d]);
     };
     return !value_type(plan.values).on_demand &&
            std::count_if(plan.distances.begin(), plan.distances.end(), needs) > 1;

@@ -62,6 +62,8 @@ public:
     /// null where it is missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+    /// The elements of a point of the model from which the plan measures; null where it is unknown.
+    const float* point(Index point) const { return point_at_[point]; }
 
     /// From now on formulas see, of predicates that are measured, this instead of their robustness:
     /// calibration reckons with what other builds measure. Both ends go through formulas
@@ -95,6 +97,8 @@ private:
     void reset_stream(Slot slot);
     static void reset_reading(const Reading& reading, ReadingState& state);
     void take_inputs(const std::vector<Sample>& samples);
+    void measure_points();
+    const float* take_point(Index point);
     void measure_distances();
     void measure_predicates();
     etlmon::Enclosed measure(Index distance, const float* z);
@@ -117,7 +121,10 @@ private:
 
     const Plan& plan_;
     const check::Model& model_;
-    std::vector<std::vector<float>> points_;  ///< per distance: scratch for vectors of scalars
+    std::vector<Index> measured_points_;      ///< of the model, each behind its inner one
+    std::vector<std::vector<float>> points_;  ///< per point: where vectors and projections lie
+    std::vector<const float*> point_at_;      ///< per point: its elements; null: unknown
+    std::vector<float> centred_;              ///< scratch of a projection
     /// Per target and distance: rows as the kernels want them.
     std::vector<std::vector<float>> prepared_;
     /// Per distance: what its narrow rows stand for, where it has some.

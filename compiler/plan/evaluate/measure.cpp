@@ -1,7 +1,9 @@
 // The measuring half of the evaluator: distances and expressions of one step, through the runtime's
 // own kernels.
 #include <algorithm>
+#include <set>
 
+#include "etlmon/hosted/dynamic.hpp"
 #include "etlmon/hosted/dynamic_enclosed.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/evaluate/evaluator.hpp"
@@ -21,12 +23,30 @@ bool doubtful(const etlmon::Enclosed& enclosed, const std::vector<Cut>& cuts) {
     });
 }
 
+/// The points that distances are measured from, and those that these are projected from, ascending.
+std::vector<Index> measured_points(const check::Model& model, const std::vector<Index>& distances) {
+    std::set<Index> points;
+    for (const Index d : distances)
+        for (Index at = model.distances[d].point; at != kNone; at = model.points[at].inner)
+            points.insert(at);
+    return {points.begin(), points.end()};
+}
+
 }  // namespace
 
 void Evaluator::prepare_distances() {
     prepared_.resize(model_.distances.size());
     widened_.resize(model_.distances.size());
-    points_.resize(model_.distances.size());
+    points_.resize(model_.points.size());
+    point_at_.resize(model_.points.size());
+    for (Index p = 0; p < model_.points.size(); ++p)
+        if (model_.points[p].kind != check::Point::Kind::embedding)
+            points_[p].resize(model_.points[p].dimension);
+    measured_points_ = measured_points(model_, plan_.distances);
+    for (Index p : measured_points_)
+        if (model_.points[p].is_projected())
+            centred_.resize(std::max<std::size_t>(
+                centred_.size(), model_.projections[model_.points[p].projection].dimension));
     std::size_t scratch = 0;
     for (Index d : plan_.distances) {
         const check::Distance& distance = model_.distances[d];
@@ -34,26 +54,42 @@ void Evaluator::prepare_distances() {
         if (const NarrowSet* set = narrow_set(plan_, d)) {
             widened_[d] = widened_rows(*set);
         }
-        points_[d].resize(distance.point_is_vector ? distance.point.size() : 0);
         scratch = std::max<std::size_t>(scratch, distance.kth);
     }
     scratch_.resize(scratch);
 }
 
+void Evaluator::measure_points() {
+    for (const Index p : measured_points_) point_at_[p] = take_point(p);
+}
+
+const float* Evaluator::take_point(Index index) {
+    const check::Point& point = model_.points[index];
+    float* const elements = points_[index].data();
+    if (point.is_projected()) {
+        const float* const z = point_at_[point.inner];
+        const check::Projection& map = model_.projections[point.projection];
+        const float* const offset = map.offset.empty() ? nullptr : map.offset.data();
+        const bool known =
+            z != nullptr && etlmon::project(z, map.matrix.data(), offset, map.rows, map.dimension,
+                                            centred_.data(), elements);
+        return known ? elements : nullptr;
+    }
+    if (!point.is_vector()) return inputs_[point.inputs[0]];
+    for (std::size_t i = 0; i < point.inputs.size(); ++i) {
+        if (inputs_[point.inputs[i]] == nullptr) return nullptr;
+        elements[i] = *inputs_[point.inputs[i]];
+    }
+    return elements;
+}
+
 void Evaluator::measure_distances() {
+    measure_points();
     for (Index d : plan_.distances) {
-        const check::Distance& distance = model_.distances[d];
-        const bool present = std::all_of(distance.point.begin(), distance.point.end(),
-                                         [&](Index input) { return inputs_[input] != nullptr; });
+        const float* const z = point_at_[model_.distances[d].point];
         distances_[d] = {etlmon::kMissing, 0};
         enclosed_[d] = {};
-        if (!present) continue;
-        const float* z = inputs_[distance.point[0]];
-        if (distance.point_is_vector) {
-            for (std::size_t i = 0; i < distance.point.size(); ++i)
-                points_[d][i] = *inputs_[distance.point[i]];
-            z = points_[d].data();
-        }
+        if (z == nullptr) continue;
         enclosed_[d] = measure(d, z);
         distances_[d] = enclosed_[d].measured;
     }

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/program/target_bytes.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
@@ -159,6 +160,15 @@ Cost distance_cost(const check::Model& model, const check::Distance& distance) {
     return {.distance_operations = full ? elements * (1 + target.dimension) : elements};
 }
 
+/// The array that a projected point lies in, and where there is an offset z without it.
+Cost projection_cost(const check::Model& model, const check::Point& point) {
+    const check::Projection& map = model.projections[point.projection];
+    const std::uint64_t centred = map.offset.empty() ? 0 : map.dimension;
+    return {.stack_bytes = (map.rows + centred) * kWord,
+            .code_bytes = kCodePerRing,
+            .distance_operations = std::uint64_t{map.rows} * map.dimension};
+}
+
 Cost hold_cost(const check::Input& input) {
     if (input.hold == 0) return {};
     return {.state_bytes = (std::uint64_t{input.dimension} + 1) * kWord,
@@ -197,6 +207,8 @@ public:
         for (std::uint32_t index : readings_)
             sum = sum + cost_of(plan_.readings[index], plan_.values);
         for (Index p : predicates_) sum = sum + telemetry(model.predicates[p]);
+        for (Index p : projected_points(model, {distances_.begin(), distances_.end()}))
+            sum = sum + projection_cost(model, model.points[p]);
         for (Index d : distances_) {
             sum = sum + distance_cost(model, model.distances[d]);
             if (searches(plan_, d))

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "etlmon/distance/layout.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/stored.hpp"
@@ -45,6 +46,12 @@ public:
         bytes_ += distance.weights.size() * sizeof(float);
     }
 
+    void add_projection(Index index) {
+        if (!projections_.insert(index).second) return;
+        const check::Projection& map = plan_.model->projections[index];
+        bytes_ += (map.matrix.size() + map.offset.size()) * sizeof(float);
+    }
+
     std::uint64_t bytes() const { return bytes_; }
 
 private:
@@ -71,6 +78,7 @@ private:
     bool vectors_;
     std::set<std::tuple<Rows, Storage, bool>> arrays_;
     std::set<const StoredSet*> stored_;
+    std::set<Index> projections_;
     std::uint64_t bytes_ = 0;
 };
 
@@ -79,6 +87,8 @@ private:
 std::uint64_t target_bytes(const Plan& plan, const std::set<Index>& distances, Vectors vectors) {
     Arrays arrays(plan, vectors == Vectors::with);
     for (Index d : distances) arrays.add(d);
+    for (Index p : projected_points(*plan.model, {distances.begin(), distances.end()}))
+        arrays.add_projection(plan.model->points[p].projection);
     return arrays.bytes();
 }
 

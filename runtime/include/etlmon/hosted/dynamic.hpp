@@ -7,6 +7,7 @@
 #pragma once
 
 #include "etlmon/distance/kernel.hpp"
+#include "etlmon/distance/project.hpp"
 #include "etlmon/hosted/table.hpp"
 
 namespace etlmon {
@@ -26,24 +27,6 @@ struct KthOf {
 };
 
 namespace detail {
-
-#if !defined(ETLMON_VECTORS)
-#define ETLMON_TARGET
-#define ETLMON_WIDE ETLMON_INLINE
-namespace baseline {
-// clang-format off
-#include "etlmon/distance/row_values.inc"
-// clang-format on
-}  // namespace baseline
-#undef ETLMON_WIDE
-#undef ETLMON_TARGET
-
-template <class Metric, class G>
-bool best_row_values(const float* z, G targets, const float* weights, uint32_t row, uint32_t end,
-                     Sizes size, float* values) noexcept {
-  return baseline::row_values<Metric>(z, targets, weights, row, end, size, values);
-}
-#endif
 
 /// `row_values`: best_row_values, or one version's.
 template <class Metric, class Aggregation, class G, class RowValues>
@@ -111,6 +94,14 @@ inline Measured measure(MetricId metric, AggregationId aggregation, uint32_t n, 
                         const float* targets, uint32_t K, uint32_t D, const float* weights,
                         float* scratch) noexcept {
   return detail::measure_as(metric, aggregation, n, z, targets, K, D, weights, scratch);
+}
+
+/// A (z - m) in y, R floats, with `centred`, D floats, as scratch where there is an offset (else
+/// null): what project<R, D> gives. False: it is unknown.
+inline bool project(const float* z, const float* matrix, const float* offset, uint32_t R,
+                    uint32_t D, float* centred, float* y) noexcept {
+  if (offset != nullptr) detail::subtract(z, offset, D, centred);
+  return detail::products(offset == nullptr ? z : centred, matrix, R, D, y) != nullptr;
 }
 
 }  // namespace ETLMON_BUILD

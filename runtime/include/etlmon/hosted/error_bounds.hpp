@@ -58,6 +58,19 @@ inline double rounding_bound(MetricId metric, uint32_t D, double exact, double m
   return 0;
 }
 
+/// |computed - exact| of one element i of A (z - m), as project.hpp computes it. `magnitude`: sum
+/// over j of |A_ij| |z_j - m_j|; `size`: sum over j of |A_ij| + |z_j - m_j|, by which flushed
+/// denormals count.
+inline double projection_bound(uint32_t D, double magnitude, double size,
+                               Denormals denormals = Denormals::flushed) noexcept {
+  constexpr double kLeastDenormal = 1.401298464324817e-45;
+  const double lost =
+      denormals == Denormals::flushed ? static_cast<double>(FLT_MIN) : kLeastDenormal;
+  const double d = D;
+  // u from the difference, one from the product, D - 1 from additions
+  return (d / 2 + 2) * static_cast<double>(FLT_EPSILON) * magnitude + 2 * (d + size) * lost;
+}
+
 /// What a mean over K rows adds to the mean of their bounds.
 inline double mean_bound(uint32_t K, double exact,
                          Denormals denormals = Denormals::flushed) noexcept {

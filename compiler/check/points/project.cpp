@@ -1,0 +1,116 @@
+#include "check/points/project.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/arrays/array.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+/// The projections between two points, from the innermost; `from` lies on the way of `to`.
+std::vector<Index> maps_between(const Model& model, Index from, Index to) {
+    std::vector<Index> maps;
+    for (Index at = to; at != from; at = model.points[at].inner)
+        maps.push_back(model.points[at].projection);
+    std::reverse(maps.begin(), maps.end());
+    return maps;
+}
+
+/// The point without its projections.
+Index innermost(const Model& model, Index point) {
+    while (model.points[point].is_projected()) point = model.points[point].inner;
+    return point;
+}
+
+bool is_finite(const std::vector<float>& values) {
+    return std::all_of(values.begin(), values.end(), [](float x) { return std::isfinite(x); });
+}
+
+}  // namespace
+
+std::vector<double> projected(const Projection& projection, const std::vector<double>& z) {
+    std::vector<double> result(projection.rows);
+    for (std::size_t i = 0; i < projection.rows; ++i) {
+        const float* row = projection.matrix.data() + i * projection.dimension;
+        for (std::size_t j = 0; j < projection.dimension; ++j) {
+            const double offset =
+                projection.offset.empty() ? 0 : static_cast<double>(projection.offset[j]);
+            result[i] += static_cast<double>(row[j]) * (z[j] - offset);
+        }
+    }
+    return result;
+}
+
+std::vector<double> projected(const Model& model, Index point, std::vector<double> z) {
+    for (const Index map : maps_between(model, innermost(model, point), point))
+        z = projected(model.projections[map], z);
+    return z;
+}
+
+std::optional<std::uint32_t> project_target(Model& model, Index index) {
+    Target& target = model.targets[index];
+    const Target& source = model.targets[target.source];
+    const Index from =
+        source.space == kNone ? innermost(model, target.space) : source.space;
+    const std::vector<Index> maps = maps_between(model, from, target.space);
+    target.values.clear();
+    const auto is_there = [&](Index map) { return !model.projections[map].matrix.empty(); };
+    if (source.values.empty() || !std::all_of(maps.begin(), maps.end(), is_there)) return {};
+    for (std::size_t row = 0; row < source.rows; ++row) {
+        const float* begin = source.values.data() + row * source.dimension;
+        std::vector<double> z(begin, begin + source.dimension);
+        for (const Index map : maps) z = projected(model.projections[map], z);
+        for (const double x : z) target.values.push_back(static_cast<float>(x));
+    }
+    target.hash = data::content_hash({target.rows, target.dimension}, target.values);
+    if (is_finite(target.values)) return {};
+    const auto first = std::find_if_not(target.values.begin(), target.values.end(),
+                                        [](float x) { return std::isfinite(x); });
+    return static_cast<std::uint32_t>((first - target.values.begin()) / target.dimension);
+}
+
+std::optional<Index> fill(Model& model, Index index, const Filling& filling) {
+    Fitted& fitted = model.fitted[index];
+    switch (fitted.slot) {
+        case Fitted::Slot::target:
+            model.targets[fitted.index].values = filling.matrix;
+            model.targets[fitted.index].hash =
+                data::content_hash({fitted.rows, fitted.columns}, filling.matrix);
+            break;
+        case Fitted::Slot::projection: {
+            Projection& projection = model.projections[fitted.index];
+            projection.matrix = filling.matrix;
+            projection.offset = filling.offset;
+            projection.hash = projection_hash(projection);
+            break;
+        }
+        case Fitted::Slot::metric:
+            for (Distance& distance : model.distances)
+                if (distance.weights_fitted == index) distance.weights = filling.matrix;
+            break;
+    }
+    fitted.filled = true;
+    for (Index target = 0; target < model.targets.size(); ++target)
+        if (model.targets[target].source != kNone && project_target(model, target)) return target;
+    return std::nullopt;
+}
+
+bool rests_on_fitted(const Model& model, const Distance& distance) {
+    const Target& target = model.targets[distance.target];
+    if (target.fitted != kNone || distance.weights_fitted != kNone) return true;
+    Index at = distance.point;
+    for (; model.points[at].is_projected(); at = model.points[at].inner)
+        if (model.projections[model.points[at].projection].fitted != kNone) return true;
+    return false;
+}
+
+std::string projection_hash(const Projection& projection) {
+    std::vector<float> values = projection.matrix;
+    values.insert(values.end(), projection.offset.begin(), projection.offset.end());
+    const std::uint64_t more = projection.offset.empty() ? 0 : 1;
+    return data::content_hash({projection.rows + more, projection.dimension}, values);
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,98 @@
+// The projections: matrices that are loaded, spelled out or fitted.
+#include <fmt/format.h>
+
+#include "check/points/fitted.hpp"
+#include "check/points/fitted_file.hpp"
+#include "check/points/project.hpp"
+#include "check/predicates/matrices.hpp"
+#include "check/steps.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+
+template <class... Alternatives>
+std::optional<Matrix> matrix_of(Context& c, const std::variant<Alternatives...>& numbers) {
+    if (const auto* load = std::get_if<ast::Load>(&numbers)) return read_matrix(c, *load);
+    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&numbers))
+        return read_matrix(c, *literal);
+    return read_matrix(c, std::get<ast::VectorLiteral>(numbers));
+}
+
+Span span_of(const ast::Projection::Numbers& numbers) {
+    return std::visit([](const auto& n) { return n.span; }, numbers);
+}
+
+/// False, with a diagnostic, where the offset is no point that the projection takes.
+bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
+    auto offset = matrix_of(c, written);
+    if (!offset) return false;
+    if (offset->rows != 1 || offset->columns != projection.dimension) {
+        c.report(Code::projection_form, span_of(written),
+                 fmt::format("the offset has shape ({}, {}); expected one row of {}, as the matrix "
+                             "has columns",
+                             offset->rows, offset->columns, projection.dimension));
+        return false;
+    }
+    projection.offset = std::move(offset->values);
+    return true;
+}
+
+bool set_numbers(Context& c, const ast::Projection& declaration, Projection& projection) {
+    if (const auto* vector = std::get_if<ast::VectorLiteral>(&declaration.matrix)) {
+        c.report(Code::projection_form, vector->span,
+                 "a projection is a matrix, a row for each number that it gives; this is a vector")
+            .note("for a projection to one number put it in another pair of brackets");
+        return false;
+    }
+    auto matrix = std::holds_alternative<ast::Load>(declaration.matrix)
+                      ? read_matrix(c, std::get<ast::Load>(declaration.matrix))
+                      : read_matrix(c, std::get<ast::MatrixLiteral>(declaration.matrix));
+    if (!matrix) return false;
+    projection.rows = matrix->rows;
+    projection.dimension = matrix->columns;
+    projection.matrix = std::move(matrix->values);
+    projection.origin = std::move(matrix->origin);
+    projection.path = std::move(matrix->path);
+    if (declaration.offset && !set_offset(c, *declaration.offset, projection)) return false;
+    projection.hash = projection_hash(projection);
+    return true;
+}
+
+bool set_fitted(Context& c, const ast::Fitted& written, Projection& projection) {
+    const auto index = static_cast<Index>(c.model.projections.size());
+    projection.fitted =
+        check_fitted(c, written, Fitted::Slot::projection, projection.name, index);
+    if (projection.fitted == kNone) return false;
+    const Fitted& fitted = c.model.fitted[projection.fitted];
+    projection.rows = fitted.rows;
+    projection.dimension = fitted.columns;
+    projection.origin = "fitted";
+    if (const fitted::Entry* const entry = fitted_entry(c, projection.fitted)) {
+        projection.matrix = entry->matrix;
+        projection.offset = entry->offset;
+        projection.hash = entry->hash;
+        c.model.fitted[projection.fitted].filled = true;
+    }
+    return true;
+}
+
+}  // namespace
+
+void check_projections(Context& c) {
+    for_each_declaration<ast::Projection>(
+        c.spec, [&](const ast::Projection& declaration, Index index) {
+            Projection projection;
+            projection.name = declaration.name.text;
+            projection.span = declaration.name.span;
+            const auto* const fitted = std::get_if<ast::Fitted>(&declaration.matrix);
+            const bool good = fitted != nullptr ? set_fitted(c, *fitted, projection)
+                                                : set_numbers(c, declaration, projection);
+            if (!good) c.scope.entity(NameKind::projection, index).broken = true;
+            c.model.projections.push_back(std::move(projection));
+        });
+}
+
+}  // namespace etlc::check

@@ -1,0 +1,23 @@
+// Arrays and texts as the bytes of .npy and .npz files.
+// Takes: shapes and values; named members. Gives: what numpy.save and numpy.savez write. Keeps
+// true: the same members give the same bytes, on every machine and at any time.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace etlc::data {
+
+/// Values in row-major order, one for each element of the shape, as little-endian float32.
+std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
+
+struct ArchiveMember {
+    std::string name;  ///< with its ending: "goal.npy"
+    std::string bytes;
+};
+
+/// A zip archive that stores its members, in this order, without times.
+std::string npz_bytes(const std::vector<ArchiveMember>& members);
+
+}  // namespace etlc::data

@@ -1,0 +1,75 @@
+// The file of fitted things: what `etlc fit` found, with where it came from.
+// Takes: an .npz archive of format 1: the member fitted.json, and an array for every entry. Gives:
+// one entry per fitted projection, target or metric. Keeps true: writing what was read gives the
+// same bytes; all numbers are finite; whether an entry fits the spec is check/'s question, which
+// compares `declaration`, `of` and `truth`.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/traces/overlap.hpp"
+#include "diag/diag.hpp"
+#include "thresholds/thresholds.hpp"
+
+namespace etlc::fitted {
+
+/// Files whose arrays take more are refused, and so are descriptions that take more or hold more
+/// JSON values.
+inline constexpr std::uint64_t kMaxArrayBytes = 256ULL << 20U;
+inline constexpr std::uint64_t kMaxDescriptionBytes = thresholds::kMaxFileBytes;
+inline constexpr std::uint64_t kMaxValues = thresholds::kMaxValues;
+
+/// A frame of an episode.
+struct Frame {
+    std::string episode;  ///< content hash, 16 hex digits
+    std::uint64_t step = 0;
+};
+
+struct Entry {
+    std::string name;         ///< of the projection or target; of a metric its declaration
+    std::string declaration;  ///< canonical text of `fitted(...)`
+    /// What the point goes through: canonical text, and content hashes of the projections in it.
+    std::string of;
+    std::string truth;  ///< canonical text of `where` with truths written out, or "array"
+    std::uint32_t rows = 0;
+    std::uint32_t columns = 0;
+    std::vector<float> matrix;   ///< rows x columns, row-major
+    std::vector<float> offset;   ///< of projections: columns; else empty
+    std::string hash;            ///< of matrix and offset, content_hash(); not in the file
+    std::uint64_t frames = 0;    ///< that it was fitted on
+    std::vector<Frame> medoids;  ///< where the rows come from, if they are frames; else empty
+};
+
+struct File {
+    std::string path;
+    std::string spec;
+    std::string etlc;  ///< version that wrote it
+    std::map<std::string, Entry> entries;
+    /// Content hashes of the episodes behind the entries, 16 hex digits each.
+    std::vector<std::string> episodes;
+    /// By content hash, what tells them apart.
+    std::map<std::string, data::EpisodeContent> recordings;
+    std::vector<thresholds::Allowance> allowances;
+};
+
+/// data::content_hash of the matrix, with the offset as one row more where there is one.
+std::string content_hash(const Entry& entry);
+
+/// Where the fitted things of a spec are looked for: SPEC.fitted.npz beside SPEC.etl.
+std::string default_path(const std::string& spec_path);
+
+/// Failures are E04 and E06; their messages name the key, not the path: `data::in_file`
+/// (data/files/file.hpp) adds it.
+diag::Result<File> read(const std::string& path);
+/// The same from memory.
+diag::Result<File> parse(std::string_view bytes, const std::string& path);
+
+/// The bytes of the archive: fitted.json, and float32 arrays. The array of a projection or target
+/// has its name, and its offset that name and "-offset"; metrics are "metric-1", "metric-2", ...
+std::string write(const File& file);
+
+}  // namespace etlc::fitted

@@ -1,0 +1,216 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "data/arrays/archive.hpp"
+#include "data/arrays/array.hpp"
+#include "data/arrays/npy.hpp"
+#include "data/files/file.hpp"
+#include "data/quote.hpp"
+#include "fitted/fitted.hpp"
+#include "thresholds/fields.hpp"
+
+namespace etlc::fitted {
+namespace {
+
+using data::in_quotes;
+using diag::Code;
+using diag::Failure;
+using thresholds::Json;
+
+bool is_name(const std::string& text) {
+    constexpr std::size_t kLongest = 1000;
+    const auto letter = [](char c) {
+        return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || c == '_';
+    };
+    const auto inner = [&](char c) { return letter(c) || (c >= '0' && c <= '9'); };
+    return !text.empty() && text.size() <= kLongest && letter(text[0]) &&
+           std::all_of(text.begin(), text.end(), inner);
+}
+
+/// The description and the arrays that it names to File.
+class Reader : private thresholds::Fields {
+public:
+    explicit Reader(const data::Archive& archive)
+        : Fields(Code::invalid_fitted), archive_(archive) {}
+
+    diag::Result<File> read(const Json& root, const std::string& path) {
+        File file;
+        file.path = path;
+        if (root.kind != Json::Kind::object) {
+            fail("", root, "an object");
+            return *failure_;
+        }
+        check_format(root);
+        check_keys(root, "",
+                   {"format", "spec", "entries", "episodes", "recordings", "allowances", "etlc"});
+        file.spec = text(root, "", "spec");
+        file.etlc = text(root, "", "etlc");
+        const Json* entries = member(root, "", "entries", Json::Kind::object, "an object");
+        for (std::size_t i = 0; entries != nullptr && i < entries->keys.size() && !failure_; ++i)
+            file.entries.emplace(entries->keys[i], entry(entries->items[i], entries->keys[i]));
+        file.episodes = episodes(root, "");
+        file.recordings = recordings(root);
+        if (root.find("allowances") != nullptr) file.allowances = allowances(root);
+        if (failure_) return *failure_;
+        return file;
+    }
+
+private:
+    void check_format(const Json& root) {
+        const Json* format = member(root, "", "format", Json::Kind::number, "1");
+        if (format != nullptr && format->text != "1")
+            failure_ = Failure{Code::unknown_fitted_format,
+                               fmt::format("'format' is {}, expected 1, the one this version reads",
+                                           in_quotes(format->text))};
+    }
+
+    Entry entry(const Json& json, const std::string& name) {
+        Entry result;
+        result.name = name;
+        const std::string path = "entries." + name;
+        if (json.kind != Json::Kind::object) {
+            fail(path, json, "an object");
+            return result;
+        }
+        check_keys(json, path,
+                   {"declaration", "of", "truth", "array", "offset", "frames", "medoids"});
+        result.declaration = text(json, path, "declaration");
+        if (!failure_ && name != result.declaration && !is_name(name))
+            failure_ = Failure{Code::invalid_fitted,
+                               fmt::format("{} is no name of a projection or target, nor the "
+                                           "declaration of a metric",
+                                           in_quotes(path))};
+        result.of = text(json, path, "of");
+        result.truth = text(json, path, "truth");
+        result.frames = count(json, path, "frames");
+        read_matrix(result, text(json, path, "array"));
+        if (json.find("offset") != nullptr) read_offset(result, text(json, path, "offset"));
+        if (json.find("medoids") != nullptr) read_medoids(result, json, path);
+        if (!failure_) result.hash = content_hash(result);
+        return result;
+    }
+
+    void read_matrix(Entry& entry, const std::string& key) {
+        const auto array = floats(key, 2, "rows x dimension");
+        if (failure_) return;
+        entry.rows = static_cast<std::uint32_t>(array.shape[0]);
+        entry.columns = static_cast<std::uint32_t>(array.shape[1]);
+        entry.matrix.assign(array.values.begin(), array.values.end());
+    }
+
+    void read_offset(Entry& entry, const std::string& key) {
+        const auto array = floats(key, 1, "dimension");
+        if (failure_) return;
+        entry.offset.assign(array.values.begin(), array.values.end());
+        if (entry.offset.size() == entry.columns) return;
+        failure_ = Failure{Code::invalid_fitted,
+                           fmt::format("array {} has {}, expected {}, as many as the columns of "
+                                       "its matrix",
+                                       in_quotes(key), diag::counted(entry.offset.size(), "number"),
+                                       entry.columns)};
+    }
+
+    /// Finite float32 values, none of its dimensions 0.
+    data::Array floats(const std::string& key, std::size_t rank, std::string_view meaning) {
+        if (failure_) return {};
+        auto array = read(key);
+        if (!array) {
+            failure_ = array.failure();
+            return {};
+        }
+        const auto wrong = [&](const std::string& what) {
+            failure_ =
+                Failure{Code::invalid_fitted, fmt::format("array {} {}", in_quotes(key), what)};
+        };
+        if (array->element != data::Element::f32)
+            wrong(fmt::format("has elements of {}, expected float32", name(array->element)));
+        else if (array->shape.size() != rank || array->values.empty())
+            wrong(fmt::format("has shape {}, expected {}", array->shape_text(), meaning));
+        for (std::size_t i = 0; i < array->values.size() && !failure_; ++i)
+            if (!std::isfinite(array->values[i]))
+                wrong(fmt::format("holds {} at element {}, expected finite numbers",
+                                  array->values[i], i));
+        return std::move(*array);
+    }
+
+    diag::Result<data::Array> read(const std::string& key) {
+        const auto source = archive_.member(key);
+        if (!source) return source.failure();
+        bytes_ += (*source)->size();
+        if ((*source)->size() > kMaxArrayBytes || bytes_ > kMaxArrayBytes)
+            return Failure{Code::array_too_large,
+                           fmt::format("the arrays up to {} take more than {} bytes, the most "
+                                       "that are read",
+                                       in_quotes(key), kMaxArrayBytes)};
+        auto array = data::read_npy_from(**source);
+        if (!array) return data::in_array(array.failure(), key);
+        return array;
+    }
+
+    void read_medoids(Entry& entry, const Json& json, const std::string& path) {
+        const Json* array =
+            member(json, path, "medoids", Json::Kind::array, "an array with a frame a row");
+        if (array != nullptr && array->items.size() != entry.rows)
+            fail(path + ".medoids", *array,
+                 fmt::format("one of {}, as many as rows", diag::counted(entry.rows, "frame")));
+        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
+            const Json& frame = array->items[i];
+            const std::string place = fmt::format("{}.medoids[{}]", path, i);
+            if (frame.kind != Json::Kind::object) {
+                fail(place, frame, "an object");
+                return;
+            }
+            check_keys(frame, place, {"episode", "step"});
+            const Json* episode =
+                member(frame, place, "episode", Json::Kind::string, "a content hash");
+            if (episode == nullptr) return;
+            entry.medoids.push_back(
+                {hash(*episode, place + ".episode"), count(frame, place, "step")});
+        }
+    }
+
+    const data::Archive& archive_;
+    std::uint64_t bytes_ = 0;  ///< of the arrays so far
+};
+
+diag::Result<File> read_from(const data::ArchivePlace& place, const std::string& path) {
+    const auto archive = data::Archive::open(place);
+    if (!archive) return archive.failure();
+    const auto description = archive->file("fitted.json", kMaxDescriptionBytes);
+    if (!description && description.failure().code == Code::no_such_array)
+        return Failure{Code::malformed_fitted,
+                       "has no member 'fitted.json', expected a file that 'etlc fit' wrote"};
+    if (!description) return description.failure();
+    const auto root = thresholds::parse_json(*description, kMaxValues, Code::malformed_fitted,
+                                             Code::invalid_fitted);
+    if (!root) return root.failure();
+    return Reader(*archive).read(*root, path);
+}
+
+}  // namespace
+
+std::string content_hash(const Entry& entry) {
+    if (entry.offset.empty()) return data::content_hash({entry.rows, entry.columns}, entry.matrix);
+    std::vector<float> all = entry.matrix;
+    all.insert(all.end(), entry.offset.begin(), entry.offset.end());
+    return data::content_hash({std::uint64_t{entry.rows} + 1, entry.columns}, all);
+}
+
+std::string default_path(const std::string& spec_path) {
+    constexpr std::string_view kEnding = ".etl";
+    std::string stem = spec_path;
+    if (stem.ends_with(kEnding)) stem.resize(stem.size() - kEnding.size());
+    return stem + ".fitted.npz";
+}
+
+diag::Result<File> read(const std::string& path) {
+    return data::within_memory([&] { return read_from({path, {}, false}, path); });
+}
+
+diag::Result<File> parse(std::string_view bytes, const std::string& path) {
+    return read_from({{}, bytes, true}, path);
+}
+
+}  // namespace etlc::fitted

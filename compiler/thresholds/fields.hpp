@@ -1,0 +1,63 @@
+// Reading the fields of a JSON tree, and those that every file with episodes behind it has: their
+// hashes, what tells them apart, and what --allow-overlap passed over.
+// Takes: the tree. Gives: values of the kinds asked for. Keeps true: the first thing wrong stays in
+// `failure_`, and what follows it is not looked at; its message names the key, what was found and
+// what was expected.
+#pragma once
+
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "data/traces/overlap.hpp"
+#include "diag/diag.hpp"
+#include "thresholds/json.hpp"
+
+namespace etlc::thresholds {
+
+/// That `--allow-overlap REASON` passed over what would have been refused.
+struct Allowance {
+    std::string reason;
+    std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
+    std::uint64_t leaked = 0;       ///< episodes with a target among their frames
+};
+
+class Fields {
+protected:
+    /// `invalid`: the code of what is not as expected.
+    explicit Fields(diag::Code invalid) : invalid_(invalid) {}
+
+    /// The value of a key that has to be there and of this kind; null, after a failure, where it is
+    /// not. `path`: of the object, in messages.
+    const Json* member(const Json& object, const std::string& path, const std::string& key,
+                       Json::Kind kind, const std::string& expected);
+    std::string text(const Json& object, const std::string& path, const std::string& key);
+    std::uint64_t count(const Json& object, const std::string& path, const std::string& key);
+    std::string hash(const Json& json, const std::string& path);
+
+    /// The content hashes in the array "episodes".
+    std::vector<std::string> episodes(const Json& object, const std::string& path);
+    std::map<std::string, data::EpisodeContent> recordings(const Json& root);
+    std::vector<Allowance> allowances(const Json& root);
+
+    void check_keys(const Json& object, const std::string& path,
+                    const std::vector<std::string>& known);
+    void fail(const std::string& place, const Json& found, const std::string& expected);
+
+    std::optional<diag::Failure> failure_;
+
+private:
+    data::InputContent content(const Json& json, const std::string& path);
+
+    diag::Code invalid_;
+};
+
+/// The other way: JSON text of what the functions of the same names read, `indent` blanks deep.
+std::string json_text(const std::string& value);
+std::string json_object(const std::map<std::string, std::string>& members, std::size_t indent);
+std::string json_episodes(const std::vector<std::string>& hashes, std::size_t indent);
+std::string json_recordings(const std::map<std::string, data::EpisodeContent>& all);
+std::string json_allowances(const std::vector<Allowance>& all);
+
+}  // namespace etlc::thresholds

@@ -1,0 +1,71 @@
+// SPDX-License-Identifier: MIT
+// Points of distances that are projected first: y = A (z - m), by the kernels' own sums. Takes: z
+// of D floats, or a view of them; A, R x D row-major; m, D or none. Gives: y, R floats, or nothing
+// where z is missing. Keeps true: y is unknown as a whole where an element of z is not finite or one
+// of y exceeds FLT_MAX; the order of additions depends on R and D alone, so generated code and
+// `etlc run` agree bit for bit on one machine; nothing is allocated. Errors: projection_bound() in
+// hosted/error_bounds.hpp.
+#pragma once
+
+#include "etlmon/distance/row_values.hpp"
+#include "etlmon/views.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+namespace detail {
+/// The rows of A times z; nullptr where one of them is not finite.
+ETLMON_INLINE const float* products(const float* z, const float* matrix, uint32_t R, uint32_t D,
+                                    float* y) noexcept {
+  best_row_values<Product>(unforeseen(z), matrix, nullptr, 0, R, Sizes{R, D}, y);
+  return finite(y, R) ? y : nullptr;
+}
+
+ETLMON_INLINE void subtract(const float* z, const float* offset, uint32_t D,
+                            float* centred) noexcept {
+  for (uint32_t i = 0; i < D; ++i) centred[i] = z[i] - offset[i];
+}
+}  // namespace detail
+
+/// A z, in `y`, which it returns; nullptr where it is unknown or z is null.
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(const float* z, const float* matrix, float (&y)[R]) noexcept {
+  return z == nullptr ? nullptr : detail::products(z, matrix, R, D, y);
+}
+
+/// A (z - m), likewise.
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(const float* z, const float* matrix, const float* offset,
+                                   float (&y)[R]) noexcept {
+  if (z == nullptr) return nullptr;
+  float centred[D];
+  detail::subtract(z, offset, D, centred);
+  return detail::products(centred, matrix, R, D, y);
+}
+
+/// The same for a sample of this step.
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(Vector<float, D> z, const float* matrix,
+                                   float (&y)[R]) noexcept {
+  return project<R, D>(z.data(), matrix, y);
+}
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(Vector<float, D> z, const float* matrix, const float* offset,
+                                   float (&y)[R]) noexcept {
+  return project<R, D>(z.data(), matrix, offset, y);
+}
+
+/// The same for scalars of this step, each NaN where it is missing.
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix,
+                                   float (&y)[R]) noexcept {
+  return project<R, D>(z.elements, matrix, y);
+}
+template <uint32_t R, uint32_t D>
+ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix, const float* offset,
+                                   float (&y)[R]) noexcept {
+  return project<R, D>(z.elements, matrix, offset, y);
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
