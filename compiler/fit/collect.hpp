@@ -51,6 +51,7 @@ struct Counts {
     std::uint64_t missing = 0;   ///< frames whose point is missing or not finite
     std::uint64_t episodes = 0;  ///< in which it holds at some frame with a point
 
+    std::uint64_t frames() const { return holds + others + unknown + missing; }
     void add(const Counts& other);
 };
 

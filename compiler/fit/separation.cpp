@@ -1,5 +1,7 @@
 #include "fit/separation.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <memory>

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
 
@@ -67,12 +68,9 @@ public:
         if (solution_.counts.holds == 0)
             return Refusal{
                 Code::too_few_frames,
-                fmt::format("no frame to fit it on: of {}, {} with a point, and at none "
-                            "of these does 'where' hold",
-                            counted(solution_.counts.holds + solution_.counts.others +
-                                        solution_.counts.unknown + solution_.counts.missing,
-                                    "frame"),
-                            counted_have(solution_.counts.others))};
+                fmt::format("there is no frame to fit it on: of {}, none has a point and "
+                            "'where' holds at it",
+                            counted(solution_.counts.frames(), "frame"))};
         switch (fitted_.method) {
             case FittedMethod::mean: return mean();
             case FittedMethod::kmeans:
@@ -86,10 +84,6 @@ public:
     }
 
 private:
-    static std::string counted_have(std::uint64_t n) {
-        return fmt::format("{} {}", n, n == 1 ? "is" : "are");
-    }
-
     Moments moments_of(const Collected& fold) const {
         Moments result = fold.moments;
         for (const Affine& map : maps_) result = result.mapped(map);

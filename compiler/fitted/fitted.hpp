@@ -56,8 +56,7 @@ struct File {
     std::vector<thresholds::Allowance> allowances;
 };
 
-/// data::content_hash of the matrix, with the offset behind it where there is one, and then of the
-/// shape R x D x 1.
+/// data::content_hash of the matrix, with the offset as one row more where there is one.
 std::string content_hash(const Entry& entry);
 
 /// Where the fitted things of a spec are looked for: SPEC.fitted.npz beside SPEC.etl.

@@ -195,7 +195,7 @@ std::string content_hash(const Entry& entry) {
     if (entry.offset.empty()) return data::content_hash({entry.rows, entry.columns}, entry.matrix);
     std::vector<float> all = entry.matrix;
     all.insert(all.end(), entry.offset.begin(), entry.offset.end());
-    return data::content_hash({entry.rows, entry.columns, 1}, all);
+    return data::content_hash({std::uint64_t{entry.rows} + 1, entry.columns}, all);
 }
 
 std::string default_path(const std::string& spec_path) {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <set>
 
 #include "check/guarantees/guarantees.hpp"
@@ -125,30 +124,6 @@ Provenance provenance(const Model& model, Index predicate) {
         for (const Index index : predicates_in(model, seen))
             add_predicate(model, index, result.truth_targets);
         add_flags(model, seen, result.truth_targets);
-    }
-    return result;
-}
-
-FittedProvenance provenance(const Model& model, const Fitted& fitted,
-                            const std::vector<Index>& from_arrays) {
-    FittedProvenance result{model.points[fitted.point].text, "true"};
-    for (Index at = fitted.point; model.points[at].is_projected(); at = model.points[at].inner) {
-        const Projection& projection = model.projections[model.points[at].projection];
-        result.of += fmt::format("; {}: {}", projection.name, projection.hash);
-    }
-    if (fitted.where == kNone) return result;
-    result.truth = print(model, fitted.where);
-    for (const Index predicate : predicates_of(model, fitted.where)) {
-        if (model.predicates[predicate].name.empty()) continue;
-        const bool is_array =
-            std::find(from_arrays.begin(), from_arrays.end(), predicate) != from_arrays.end();
-        const std::string truth = is_array ? "" : provenance(model, predicate).truth;
-        const bool own = !is_array && truth.empty() && is_own_truth(model, predicate);
-        result.truth += fmt::format(
-            "; {}: {}", model.predicates[predicate].name,
-            own ? model.predicates[predicate].text + model.predicates[predicate].threshold.text
-            : truth.empty() ? "array"
-                            : truth);
     }
     return result;
 }

@@ -28,17 +28,6 @@ struct Provenance {
 
 Provenance provenance(const Model& model, Index predicate);
 
-/// What a fitted thing depends on, besides the demonstrations.
-struct FittedProvenance {
-    std::string of;     ///< the point, and the hash of every projection that it goes through
-    std::string truth;  ///< `where`, and the truth of every predicate in it: its formula or "array"
-};
-
-/// `from_arrays`: predicates whose labels came from arrays in the episodes, although they have a
-/// truth.
-FittedProvenance provenance(const Model& model, const Fitted& fitted,
-                            const std::vector<Index>& from_arrays);
-
 /// How a thresholds file calls the method: "conformal"; empty for a literal threshold.
 std::string_view method_name(ThresholdOrigin origin);
 
