@@ -16,6 +16,7 @@
 #include "driver/compile.hpp"
 #include "driver/evaluate.hpp"
 #include "driver/explain/options.hpp"
+#include "driver/fit.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/options/compile_options.hpp"
 #include "driver/options/names.hpp"
@@ -47,6 +48,7 @@ struct Call {
     bool check_only = false;
     driver::Request request;
     driver::RunRequest run;
+    driver::FitRequest fit;
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
     driver::ExplainRequest explain;
@@ -193,9 +195,9 @@ int compile_command(int argc, char** argv) {
     Call call;
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
-        "Other commands: etlc run SPEC.etl --trace FILE, etlc calibrate SPEC.etl --data FILE...,\n"
-        "etlc evaluate SPEC.etl --data FILE..., etlc explain SPEC.etl --trace FILE,\n"
-        "etlc incident FILE --spec SPEC.etl",
+        "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
+        "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl --data FILE...,\n"
+        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
@@ -249,6 +251,29 @@ int run_command(int argc, char** argv) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
     });
+}
+
+int fit_command(int argc, char** argv) {
+    Call call;
+    fit::Request& fitting = call.fit.fit;
+    CLI::App app(
+        "Finds the projections, targets and metrics that a spec declares fitted(...) from labelled "
+        "demonstrations,\none episode a file, and says how well its predicates then separate.",
+        "etlc fit");
+    add_spec_options(app, call);
+    add_set_option(app, call.fit.settings);
+    driver::add_episode_options(app, fitting.data, fitting.groups, fitting.allow_overlap,
+                                fitting.jobs);
+    driver::add_map_option(app, fitting.names);
+    app.add_option("-o,--output", call.fit.output,
+                   "where to write what is fitted (default: SPEC.fitted.npz beside the spec); "
+                   "- is standard output")
+        ->type_name("FILE");
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    return with_spec(call, SpecWarnings::dropped,
+                     [&](const source::File& file, diag::Sink& sink) {  //
+                         driver::fit(file, call.fit, sink);
+                     });
 }
 
 int calibrate_command(int argc, char** argv) {
@@ -349,6 +374,7 @@ int execute(int argc, char** argv) {
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
     if (command == "incident") return incident_command(argc - 1, argv + 1);
+    if (command == "fit") return fit_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
 }

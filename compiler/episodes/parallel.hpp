@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <condition_variable>
 #include <exception>
 #include <functional>
 #include <memory>
@@ -66,6 +67,40 @@ std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& path
     report(faults, paths.size(), sink);
     if (!faults.empty()) return std::nullopt;
     return all;
+}
+
+/// The same, where what was made of an episode is too large to be kept: `take(i, result)` gets each
+/// in the order of the paths, never two at once, and no more than one a thread wait for their turn.
+/// False where an episode cannot be read: the sink then says why.
+template <class T, class Request, class Make, class Take>
+bool in_order(const std::vector<std::string>& paths, const Request& request, diag::Sink& sink,
+              Make make, Take take) {
+    std::atomic<std::size_t> next = 0;
+    std::size_t turn = 0;
+    std::mutex taking;
+    std::condition_variable moved;
+    std::vector<Fault> faults;
+    const auto work = [&] {
+        const auto reader = make();
+        for (std::size_t i = next++; i < paths.size(); i = next++) {
+            auto result = data::within_memory([&] { return reader->score(paths[i]); });
+            std::unique_lock lock(taking);
+            moved.wait(lock, [&] { return turn == i; });
+            auto taken = data::within_memory([&]() -> diag::Result<bool> {
+                if (!result) return result.failure();
+                take(i, std::move(*result));
+                return true;
+            });
+            ++turn;
+            moved.notify_all();
+            if (!taken) faults.push_back({paths[i], taken.failure()});
+            if (request.progress) request.progress(turn, paths.size());
+        }
+    };
+    const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);
+    if (failure && turn < paths.size()) std::rethrow_exception(failure);
+    report(faults, paths.size(), sink);
+    return faults.empty();
 }
 
 }  // namespace etlc::episodes

@@ -32,14 +32,15 @@ const std::map<std::string, Names> kArrows = {
     {"explain", {"plan"}},
     {"pipeline", {"opt", "plan"}},
     {"episodes", {"plan"}},
+    {"fit", {"episodes", "pipeline", "fitted"}},
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
-    {"driver", {"parse", "emit", "explain", "calibrate", "evaluate"}},
+    {"driver", {"parse", "emit", "explain", "fit", "calibrate", "evaluate"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
-const Names kBelowTheModel = {"reference", "ir",       "opt",      "plan",      "emit",
-                              "explain",   "pipeline", "episodes", "calibrate", "evaluate"};
+const Names kBelowTheModel = {"reference", "ir",       "opt", "plan",      "emit",    "explain",
+                              "pipeline",  "episodes", "fit", "calibrate", "evaluate"};
 
 /// The judge in tests shares no arithmetic with what it judges.
 const Names kWithoutRuntime = {"reference"};

@@ -1,0 +1,47 @@
+#include "driver/fit.hpp"
+
+#include "data/traces/episodes.hpp"
+#include "driver/options/names.hpp"
+#include "driver/output_file.hpp"
+#include "driver/progress.hpp"
+#include "driver/version.hpp"
+#include "fit/fit.hpp"
+#include "parse/parse.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) {
+    ast::Spec spec = parse::parse(file, sink);
+    check::Options options;
+    options.settings = request.settings;
+    options.allow_uncalibrated = true;
+    options.allow_uncalibrated_monitors = true;
+    options.allow_unfitted = true;
+    const auto model = check::check(std::move(spec), file, options, sink);
+    if (!model || sink.refused()) return false;
+
+    fit::Request asked = request.fit;
+    if (!check_names(*model, asked.names, sink)) return false;
+    asked.version = kVersion;
+    asked.progress = episodes_progress();
+    const std::string output =
+        request.output.empty() ? fitted::default_path(file.path()) : request.output;
+    diag::Sink told_later;
+    std::vector<std::string> inputs = data::find_episodes(asked.data, "", told_later);
+    inputs.push_back(file.path());
+    inputs.insert(inputs.end(), model->dependencies.begin(), model->dependencies.end());
+    if (!check_outputs({output}, inputs, sink)) return false;
+    const auto result = fit::fit(*model, asked, sink);
+    if (!result || sink.refused()) return false;
+
+    // The report comes before the file takes its name: where a part of it is lost, nothing has
+    // changed.
+    OutputFiles files(sink);
+    return files.add(output, fitted::write(result->file)) &&
+           files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
+                     source::visible_lines(result->report)) &&
+           files.commit();
+}
+
+}  // namespace etlc::driver

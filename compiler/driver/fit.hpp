@@ -1,0 +1,25 @@
+// `etlc fit`: spec and demonstrations in, file of fitted things out.
+// Takes: the spec's text. Gives: the file, and a report on standard output, or on standard error
+// where the file goes to standard output. Keeps true: the file appears whole or not at all.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "check/check.hpp"
+#include "diag/diag.hpp"
+#include "fit/request.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+struct FitRequest {
+    fit::Request fit;    ///< its version and progress are set here
+    std::string output;  ///< empty: beside the spec
+    std::vector<check::Setting> settings;
+};
+
+/// False where the sink now says why not.
+bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink);
+
+}  // namespace etlc::driver

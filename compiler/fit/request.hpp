@@ -1,0 +1,24 @@
+// What `etlc fit` is asked for.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "data/traces/trace.hpp"
+
+namespace etlc::fit {
+
+struct Request {
+    std::vector<std::string> data;  ///< files, folders and patterns
+    std::string groups;  ///< of .h5 files, those that are episodes; empty: the file is one
+    data::NamesInFile names;
+    /// The reason for which overlaps are passed over; empty: they are not.
+    std::string allow_overlap;
+    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
+    std::string version;  ///< of etlc
+    /// Called now and then, by any thread, never by two at once.
+    std::function<void(std::size_t done, std::size_t total)> progress;
+};
+
+}  // namespace etlc::fit

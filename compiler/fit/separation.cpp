@@ -1,0 +1,230 @@
+#include "fit/separation.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <set>
+#include <unordered_map>
+
+#include "episodes/leaks.hpp"
+#include "episodes/parallel.hpp"
+#include "episodes/replay.hpp"
+#include "plan/plan.hpp"
+
+namespace etlc::fit {
+
+namespace {
+
+using check::kNone;
+using episodes::Label;
+using episodes::RankedFrame;
+
+/// What one fold is measured with.
+struct Fold {
+    check::Model model;
+    plan::Plan plan;
+    std::vector<std::optional<Vector>> means;  ///< per predicate: of the plain distance
+};
+
+/// The two scores of a predicate in an episode.
+struct Ranked {
+    std::vector<RankedFrame> before;
+    std::vector<RankedFrame> after;
+};
+using Episode = std::vector<Ranked>;  ///< per predicate
+
+/// Fitted without the fold `left_out`; why not, where that cannot be.
+std::string fill(check::Model& model, const Needs& needs, const Collection& collection,
+                 std::size_t left_out) {
+    for (Index i = 0; i < model.fitted.size(); ++i) {
+        const auto outcome = solve(model, i, collection, needs.of[i], left_out);
+        if (const auto* refusal = std::get_if<Refusal>(&outcome))
+            return fmt::format("'{}': {}", model.fitted[i].name, refusal->message);
+        if (check::fill(model, i, std::get<Solution>(outcome).filling))
+            return fmt::format("'{}': a target is beyond float32", model.fitted[i].name);
+    }
+    return "";
+}
+
+std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& need,
+                              const Collection& collection, std::size_t left_out) {
+    if (!need) return std::nullopt;
+    const auto at = static_cast<std::size_t>(std::find(needs.all.begin(), needs.all.end(), *need) -
+                                             needs.all.begin());
+    Moments all;
+    for (std::size_t f = 0; f < collection.folds.size(); ++f) {
+        if (f == left_out) continue;
+        const Moments& fold = collection.folds[f][at].moments;
+        if (all.dimension() == 0)
+            all = fold;
+        else
+            all.merge(fold);
+    }
+    if (all.frames(1) == 0) return std::nullopt;
+    return all.mean(1);
+}
+
+/// Measures an episode with what was fitted without its fold.
+class Measurer {
+public:
+    Measurer(const check::Model& model, const std::vector<std::unique_ptr<Fold>>& folds,
+             const std::unordered_map<std::string, std::size_t>& index,
+             const Collection& collection, const std::vector<Index>& predicates,
+             const data::NamesInFile& names)
+        : folds_(folds),
+          index_(index),
+          collection_(collection),
+          predicates_(predicates),
+          no_leaks_(model, {}),
+          names_(names) {
+        for (const auto& fold : folds) {
+            followers_.push_back(std::make_unique<episodes::Follower>(fold->plan));
+            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan}, predicates, no_leaks_));
+        }
+        for (const Index predicate : predicates) plain_.push_back(plain_need(model, predicate));
+    }
+
+    diag::Result<Episode> score(const std::string& path) {
+        const std::size_t episode = index_.at(path);
+        const std::size_t at = collection_.fold_of(episode);
+        auto recording = episodes::Recording::open(wanted_[at], path, names_);
+        if (!recording) return recording.failure();
+        Episode result(predicates_.size());
+        const auto done = episodes::replay(*recording, {followers_[at].get()}, [&] {
+            for (std::size_t i = 0; i < predicates_.size(); ++i)
+                add(*folds_[at], *followers_[at], *recording, episode, i, result[i]);
+            return true;
+        });
+        if (!done) return done.failure();
+        return result;
+    }
+
+private:
+    void add(const Fold& fold, const episodes::Follower& follower,
+             const episodes::Recording& recording, std::size_t episode, std::size_t i,
+             Ranked& ranked) {
+        const Label label = recording.label(predicates_[i]);
+        if (label == Label::unknown) return;
+        const bool positive = label == Label::yes;
+        const std::size_t step = recording.frames() - 1;
+        const float delta = follower.evaluator().distance(predicates_[i]);
+        const bool upper = fold.model.predicates[predicates_[i]].upper_bound();
+        if (!std::isnan(delta))
+            ranked.after.push_back({upper ? delta : -delta, positive, episode, step});
+        if (!plain_[i] || !fold.means[i] ||
+            !read_point(fold.model, plain_[i]->point, recording.samples(), point_))
+            return;
+        const Eigen::Map<const Eigen::VectorXf> point(point_.data(),
+                                                      static_cast<Eigen::Index>(point_.size()));
+        const double squared = (point.cast<double>() - *fold.means[i]).squaredNorm();
+        ranked.before.push_back({static_cast<float>(squared), positive, episode, step});
+    }
+
+    const std::vector<std::unique_ptr<Fold>>& folds_;
+    const std::unordered_map<std::string, std::size_t>& index_;
+    const Collection& collection_;
+    const std::vector<Index>& predicates_;
+    episodes::Leaks no_leaks_;
+    const data::NamesInFile& names_;
+    std::vector<std::unique_ptr<episodes::Follower>> followers_;  ///< per fold
+    std::vector<episodes::Wanted> wanted_;                        ///< per fold
+    std::vector<std::optional<Need>> plain_;                      ///< per predicate
+    std::vector<float> point_;
+};
+
+/// One of an episode, of those that are ranked on the wrong side of most others.
+std::vector<WorstFrame> worst(const std::vector<std::vector<RankedFrame>>& groups) {
+    constexpr std::size_t kShown = 3;
+    std::vector<const RankedFrame*> frames;
+    for (const auto& group : groups)
+        for (const RankedFrame& frame : group)
+            if (frame.ordered < 0.5) frames.push_back(&frame);
+    std::sort(frames.begin(), frames.end(), [](const RankedFrame* a, const RankedFrame* b) {
+        if (a->ordered != b->ordered) return a->ordered < b->ordered;
+        return a->episode != b->episode ? a->episode < b->episode : a->step < b->step;
+    });
+    std::vector<WorstFrame> result;
+    std::set<std::size_t> told;
+    for (const RankedFrame* frame : frames)
+        if (result.size() < kShown && told.insert(frame->episode).second)
+            result.push_back({frame->episode, frame->step, frame->positive, frame->ordered});
+    return result;
+}
+
+}  // namespace
+
+std::vector<Index> separating_predicates(const check::Model& model,
+                                         const std::vector<Index>& labelled) {
+    std::vector<Index> result;
+    for (const Index predicate : labelled) {
+        bool rests = false;
+        check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
+            rests = rests || check::rests_on_fitted(model, model.distances[distance]);
+        });
+        if (rests && !model.predicates[predicate].equality()) result.push_back(predicate);
+    }
+    return result;
+}
+
+std::optional<Need> plain_need(const check::Model& model, Index predicate) {
+    std::set<Index> points;
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
+        points.insert(innermost(model, model.distances[distance].point));
+    });
+    if (points.size() != 1) return std::nullopt;
+    return Need{Need::Kind::mean, *points.begin(), kNone, predicate};
+}
+
+std::optional<Separations> separate(const check::Model& model, const Needs& needs,
+                                    const Collection& collection,
+                                    const std::vector<Index>& predicates, const Request& request,
+                                    diag::Sink& sink) {
+    Separations result;
+    if (predicates.empty()) return result;
+    if (collection.folds.size() < 2) {
+        result.why_not = "there is one episode";
+        return result;
+    }
+    std::vector<std::unique_ptr<Fold>> folds;
+    for (std::size_t f = 0; f < collection.folds.size(); ++f) {
+        folds.push_back(std::make_unique<Fold>(Fold{model, {}, {}}));
+        result.why_not = fill(folds[f]->model, needs, collection, f);
+        if (!result.why_not.empty()) return result;
+        folds[f]->plan = plan::measuring(folds[f]->model, predicates);
+        for (const Index predicate : predicates)
+            folds[f]->means.push_back(mean_of(needs, plain_need(model, predicate), collection, f));
+    }
+    std::unordered_map<std::string, std::size_t> index;
+    std::vector<std::string> paths;
+    for (const episodes::Recorded& episode : collection.episodes) {
+        index.emplace(episode.path, paths.size());
+        paths.push_back(episode.path);
+    }
+    const auto measured = episodes::over_episodes<Episode>(paths, request, sink, [&] {
+        return std::make_unique<Measurer>(model, folds, index, collection, predicates,
+                                          request.names);
+    });
+    if (!measured) return std::nullopt;
+    for (std::size_t i = 0; i < predicates.size(); ++i) {
+        std::vector<std::vector<RankedFrame>> before(folds.size());
+        std::vector<std::vector<RankedFrame>> after(folds.size());
+        for (std::size_t e = 0; e < measured->size(); ++e) {
+            const Ranked& ranked = (*measured)[e][i];
+            auto& to_before = before[collection.fold_of(e)];
+            auto& to_after = after[collection.fold_of(e)];
+            to_before.insert(to_before.end(), ranked.before.begin(), ranked.before.end());
+            to_after.insert(to_after.end(), ranked.after.begin(), ranked.after.end());
+        }
+        Separation separation{predicates[i],
+                              episodes::auroc(before, paths.size()),
+                              episodes::auroc(after, paths.size()),
+                              {}};
+        separation.worst = worst(after);
+        result.all.push_back(std::move(separation));
+    }
+    return result;
+}
+
+}  // namespace etlc::fit

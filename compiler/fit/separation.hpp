@@ -1,0 +1,52 @@
+// How well predicates tell frames apart on episodes that nothing was fitted on.
+// Takes: what was collected. Gives: per predicate the area under the ROC curve of its distance, of
+// the plain distance, and the frames that rank worst. Keeps true: each episode is measured with
+// what was fitted on the folds without it, by the kernels of the monitor; scores are compared
+// within a fold alone.
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "episodes/auroc.hpp"
+#include "fit/collect.hpp"
+#include "fit/solve.hpp"
+
+namespace etlc::fit {
+
+struct WorstFrame {
+    std::size_t episode = 0;
+    std::size_t step = 0;
+    bool positive = false;
+    double ordered =
+        0;  ///< part of the frames of the other class that it ranks on the right side of
+};
+
+struct Separation {
+    Index predicate = 0;
+    /// Of l2 to the mean of the frames at which it holds, in the space of the input; nothing where
+    /// it measures from several inputs, or where there are no such frames.
+    std::optional<episodes::Auroc> before;
+    std::optional<episodes::Auroc> after;
+    std::vector<WorstFrame> worst;  ///< worst first, one of an episode
+};
+
+/// The predicates to ask about: their distance rests on something fitted, and they have labels.
+std::vector<Index> separating_predicates(const check::Model& model,
+                                         const std::vector<Index>& labelled);
+
+/// The mean that the plain distance is measured from; nothing where there is none.
+std::optional<Need> plain_need(const check::Model& model, Index predicate);
+
+/// `why_not`: set where some fold cannot be fitted. Nothing where the sink now says why.
+struct Separations {
+    std::vector<Separation> all;
+    std::string why_not;
+};
+std::optional<Separations> separate(const check::Model& model, const Needs& needs,
+                                    const Collection& collection,
+                                    const std::vector<Index>& predicates, const Request& request,
+                                    diag::Sink& sink);
+
+}  // namespace etlc::fit

@@ -1,0 +1,271 @@
+#include "fit/solve.hpp"
+
+#include <fmt/format.h>
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+
+#include "fit/clusters.hpp"
+#include "fit/linear.hpp"
+
+namespace etlc::fit {
+
+namespace {
+
+using check::Fitted;
+using check::FittedMethod;
+using diag::Code;
+using diag::counted;
+using Outcome = std::variant<Solution, Refusal>;
+
+/// The maps of a point, from the innermost.
+std::vector<Affine> maps_of(const check::Model& model, Index point) {
+    std::vector<Affine> maps;
+    for (; model.points[point].is_projected(); point = model.points[point].inner) {
+        const check::Projection& map = model.projections[model.points[point].projection];
+        using RowMajor = Eigen::Matrix<float, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+        Affine affine;
+        affine.a =
+            Eigen::Map<const RowMajor>(map.matrix.data(), map.rows, map.dimension).cast<double>();
+        affine.offset = Vector::Zero(map.dimension);
+        if (!map.offset.empty())
+            affine.offset =
+                Eigen::Map<const Eigen::VectorXf>(map.offset.data(), map.dimension).cast<double>();
+        maps.push_back(std::move(affine));
+    }
+    std::reverse(maps.begin(), maps.end());
+    return maps;
+}
+
+/// Row-major, rounded.
+std::vector<float> floats(const Matrix& matrix) {
+    std::vector<float> result;
+    result.reserve(static_cast<std::size_t>(matrix.size()));
+    for (Eigen::Index i = 0; i < matrix.rows(); ++i)
+        for (Eigen::Index j = 0; j < matrix.cols(); ++j)
+            result.push_back(static_cast<float>(matrix(i, j)));
+    return result;
+}
+
+check::Filling filling(const Affine& map) {
+    return {floats(map.a), floats(map.offset.transpose())};
+}
+
+class Solving {
+public:
+    Solving(const check::Model& model, Index fitted, const Collection& collection, std::size_t need,
+            std::optional<std::size_t> left_out)
+        : fitted_(model.fitted[fitted]),
+          collection_(collection),
+          maps_(maps_of(model, fitted_.point)) {
+        for (std::size_t f = 0; f < collection.folds.size(); ++f)
+            if (left_out != f) folds_.push_back(&collection.folds[f][need]);
+        for (const Collected* fold : folds_) solution_.counts.add(fold->counts);
+    }
+
+    Outcome run() {
+        if (solution_.counts.holds == 0)
+            return Refusal{
+                Code::too_few_frames,
+                fmt::format("there is no frame to fit it on: of {}, none has a point and "
+                            "'where' holds at it",
+                            counted(solution_.counts.frames(), "frame"))};
+        switch (fitted_.method) {
+            case FittedMethod::mean: return mean();
+            case FittedMethod::kmeans:
+            case FittedMethod::medoids: return clusters();
+            case FittedMethod::pca: return components(false);
+            case FittedMethod::whitened_pca: return components(true);
+            case FittedMethod::discriminant: return of_two_classes();
+            case FittedMethod::logpzo: break;
+        }
+        return of_covariance();
+    }
+
+private:
+    Moments moments_of(const Collected& fold) const {
+        Moments result = fold.moments;
+        for (const Affine& map : maps_) result = result.mapped(map);
+        return result;
+    }
+
+    /// Of all folds together.
+    Moments moments() const {
+        Moments result = folds_.front()->moments;
+        for (std::size_t f = 1; f < folds_.size(); ++f) result.merge(folds_[f]->moments);
+        for (const Affine& map : maps_) result = result.mapped(map);
+        return result;
+    }
+
+    Outcome finished(check::Filling numbers) {
+        const auto is_number = [](float x) { return std::isfinite(x); };
+        if (!std::all_of(numbers.matrix.begin(), numbers.matrix.end(), is_number) ||
+            !std::all_of(numbers.offset.begin(), numbers.offset.end(), is_number))
+            return Refusal{Code::fit_out_of_range, "its numbers are beyond those of float32"};
+        solution_.filling = std::move(numbers);
+        return std::move(solution_);
+    }
+
+    Outcome mean() { return finished({floats(moments().mean(kHolds).transpose()), {}}); }
+
+    std::optional<Refusal> too_few_for(std::uint64_t needed, const std::string& what) const {
+        if (solution_.counts.holds >= needed) return std::nullopt;
+        return Refusal{
+            Code::too_few_frames,
+            fmt::format("{} takes at least {}; there {} {}", what, counted(needed, "frame"),
+                        solution_.counts.holds == 1 ? "is" : "are", solution_.counts.holds)};
+    }
+
+    void count_constants(const Moments& of_all) {
+        solution_.constant =
+            static_cast<std::uint64_t>((of_all.scatter().diagonal().array() == 0).count());
+    }
+
+    Outcome components(bool whitened) {
+        if (auto refusal =
+                too_few_for(std::uint64_t{fitted_.rows} + 1, fmt::format("r = {}", fitted_.rows)))
+            return *refusal;
+        const Moments all = moments();
+        count_constants(all);
+        const Components found = principal_components(all, fitted_.rows, whitened);
+        if (found.rank < fitted_.rows)
+            return Refusal{
+                Code::degenerate_frames,
+                fmt::format("r = {}, and the frames vary in {} only", fitted_.rows,
+                            counted(static_cast<std::uint64_t>(found.rank), "direction"))};
+        solution_.explained = found.explained;
+        return finished(filling(found.map));
+    }
+
+    Outcome of_covariance() {
+        if (auto refusal = too_few_for(2, "a covariance")) return *refusal;
+        const Moments all = moments();
+        count_constants(all);
+        return finished(filling(logpzo(all)));
+    }
+
+    Outcome of_two_classes() {
+        if (solution_.counts.others == 0)
+            return Refusal{Code::class_without_frames,
+                           fmt::format("'where' holds at all {} with a point; a discriminant "
+                                       "needs others as well",
+                                       counted(solution_.counts.holds, "frame"))};
+        std::vector<Moments> folds;
+        for (const Collected* fold : folds_) folds.push_back(moments_of(*fold));
+        std::vector<const Moments*> parts;
+        for (const Moments& fold : folds) parts.push_back(&fold);
+        solution_.shrinkage = best_shrinkage(parts);
+        if (!solution_.shrinkage)
+            return Refusal{
+                Code::too_few_frames,
+                fmt::format("how far a covariance is shrunk is chosen by cross-validation: that "
+                            "takes frames of both classes in two episodes at least, and a "
+                            "variance within the classes; 'where' holds in {} of {}",
+                            solution_.counts.episodes,
+                            counted(collection_.episodes.size(), "episode"))};
+        Moments all = folds.front();
+        for (std::size_t f = 1; f < folds.size(); ++f) all.merge(folds[f]);
+        count_constants(all);
+        if (fitted_.slot == Fitted::Slot::metric) {
+            const auto inverse = metric(all, *solution_.shrinkage);
+            if (inverse && is_definite(*inverse)) return finished({floats(*inverse), {}});
+        } else if (const auto map = discriminant(all, *solution_.shrinkage)) {
+            return finished(filling(*map));
+        }
+        return Refusal{Code::degenerate_frames,
+                       "the covariance within the classes has no inverse in float32, or the "
+                       "classes have the same mean"};
+    }
+
+    /// As it is once it is rounded.
+    static bool is_definite(const Matrix& metric) {
+        return metric.cast<float>().cast<double>().llt().info() == Eigen::Success;
+    }
+
+    Outcome clusters() {
+        std::vector<const Source*> sources;
+        for (const Collected* fold : folds_)
+            for (const Source& source : fold->frames) sources.push_back(&source);
+        std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
+            return a->episode != b->episode ? a->episode < b->episode
+                                            : a->frame.step < b->frame.step;
+        });
+        solution_.taken = sources.size();
+        const auto k = static_cast<Eigen::Index>(fitted_.rows);
+        if (sources.size() < fitted_.rows) return too_few_taken(sources.size(), "");
+        Matrix points(static_cast<Eigen::Index>(sources.front()->frame.values.size()),
+                      static_cast<Eigen::Index>(sources.size()));
+        for (std::size_t i = 0; i < sources.size(); ++i)
+            points.col(static_cast<Eigen::Index>(i)) =
+                Eigen::Map<const Eigen::VectorXf>(sources[i]->frame.values.data(), points.rows())
+                    .cast<double>();
+        for (const Affine& map : maps_) points = map(points);
+        const auto found = k_means(points, k);
+        if (!found) return too_few_taken(sources.size(), " different");
+        if (fitted_.method == FittedMethod::kmeans)
+            return finished({floats(found->centres.transpose()), {}});
+        Matrix rows(points.rows(), k);
+        for (const Eigen::Index i : nearest_points(points, found->centres)) {
+            rows.col(static_cast<Eigen::Index>(solution_.medoids.size())) = points.col(i);
+            solution_.medoids.push_back(sources[static_cast<std::size_t>(i)]);
+        }
+        return finished({floats(rows.transpose()), {}});
+    }
+
+    Refusal too_few_taken(std::size_t taken, std::string_view different) const {
+        return {Code::too_few_frames,
+                fmt::format("k = {} takes as many{} frames; {} can be taken{}", fitted_.rows,
+                            different, taken,
+                            fitted_.away == 0
+                                ? ""
+                                : fmt::format(", {} or more away from where 'where' changes",
+                                              counted(fitted_.away, "step")))};
+    }
+
+    const Fitted& fitted_;
+    const Collection& collection_;
+    std::vector<Affine> maps_;
+    std::vector<const Collected*> folds_;
+    Solution solution_;
+};
+
+Need::Kind kind_of(FittedMethod method) {
+    switch (method) {
+        case FittedMethod::mean: return Need::Kind::mean;
+        case FittedMethod::medoids:
+        case FittedMethod::kmeans: return Need::Kind::frames;
+        case FittedMethod::discriminant: return Need::Kind::classes;
+        case FittedMethod::pca:
+        case FittedMethod::whitened_pca:
+        case FittedMethod::logpzo: break;
+    }
+    return Need::Kind::scatter;
+}
+
+}  // namespace
+
+std::size_t Needs::add(const Need& need) {
+    const auto found = std::find(all.begin(), all.end(), need);
+    if (found == all.end()) {
+        all.push_back(need);
+        return all.size() - 1;
+    }
+    return static_cast<std::size_t>(found - all.begin());
+}
+
+Needs needs_of(const check::Model& model) {
+    Needs result;
+    for (const Fitted& fitted : model.fitted)
+        result.of.push_back(result.add({kind_of(fitted.method), innermost(model, fitted.point),
+                                        fitted.where, check::kNone, fitted.away}));
+    return result;
+}
+
+std::variant<Solution, Refusal> solve(const check::Model& model, Index fitted,
+                                      const Collection& collection, std::size_t need,
+                                      std::optional<std::size_t> left_out) {
+    return Solving(model, fitted, collection, need, left_out).run();
+}
+
+}  // namespace etlc::fit
