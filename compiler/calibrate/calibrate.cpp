@@ -5,12 +5,13 @@
 #include <algorithm>
 
 #include "calibrate/doubts.hpp"
+#include "calibrate/folds.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "data/traces/episodes.hpp"
 #include "episodes/admission.hpp"
+#include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 
 namespace etlc::calibrate {
@@ -137,12 +138,12 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 "alpha = 0.1);");
         return std::nullopt;
     }
-    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
-    if (sink.has_errors()) return std::nullopt;
+    if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
+        return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
-    const auto demonstrations = episodes::over_episodes<Demonstration>(paths, request, sink, [&] {
-        return std::make_unique<Scorer>(model, leaks, predicates, request.names);
-    });
+    const auto demonstrations = episodes::over_episodes<Demonstration>(
+        request.episodes, request, sink,
+        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
     if (!demonstrations) return std::nullopt;
     const thresholds::Allowance allowance = episodes::admit(
         model, episodes::recorded(*demonstrations), {}, request.allow_overlap, sink);
@@ -185,8 +186,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (sink.has_errors()) return std::nullopt;
     for (const Demonstration& demonstration : *demonstrations)
         result.file.episodes.push_back(demonstration.hash);
-    result.report =
-        report(calibrated, predicates, *demonstrations, all) + episodes::remark_on(allowance);
+    result.report = report(calibrated, predicates, *demonstrations, all) +
+                    report_of_folds(model, predicates, *demonstrations, request.folds) +
+                    episodes::remark_on(allowance);
     return result;
 }
 

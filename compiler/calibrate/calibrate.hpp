@@ -5,6 +5,7 @@
 // that is given twice, one that is its own target) is refused.
 #pragma once
 
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -19,13 +20,13 @@
 namespace etlc::calibrate {
 
 struct Request {
-    std::vector<std::string> data;  ///< files, folders and patterns
-    std::string groups;  ///< of .h5 files, those that are episodes; empty: the file is one
+    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
     /// The reason for which overlaps are passed over; empty: they are not.
     std::string allow_overlap;
-    unsigned jobs = 0;    ///< threads; 0: as many as the machine has
-    std::string version;  ///< of etlc
+    unsigned jobs = 0;        ///< threads; 0: as many as the machine has
+    std::uint32_t folds = 0;  ///< without each of which thresholds are taken too; 0: none
+    std::string version;      ///< of etlc
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
 };

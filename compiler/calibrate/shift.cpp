@@ -5,14 +5,15 @@
 #include <algorithm>
 #include <set>
 
+#include "calibrate/folds.hpp"
 #include "calibrate/shift_scores.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "data/traces/episodes.hpp"
 #include "episodes/admission.hpp"
+#include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "pipeline/compile.hpp"
 
@@ -125,8 +126,8 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
 /// All that are not their own truth, and those that the first episode has an array of labels for.
 std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 const std::vector<Index>& monitors,
-                                                const std::string& first, const Request& request,
-                                                diag::Sink& sink) {
+                                                const Request& request, diag::Sink& sink) {
+    const std::string& first = request.episodes[0];
     const auto labelled = episodes::labelled_in(model, first, request.names);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), first));
@@ -158,9 +159,9 @@ check::Model unshifted(check::Model model) {
 std::optional<Calibration> calibrate_monitors(const check::Model& model, thresholds::File before,
                                               const Request& request, diag::Sink& sink) {
     const std::vector<Index> monitors = calibrated_monitors(model);
-    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
-    if (sink.has_errors()) return std::nullopt;
-    const auto labelled = find_labelled(model, monitors, paths[0], request, sink);
+    if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
+        return std::nullopt;
+    const auto labelled = find_labelled(model, monitors, request, sink);
     if (!labelled) return std::nullopt;
     const check::Model plain = unshifted(model);
     const episodes::GroundTruth truth = episodes::ground_truth(plain, *labelled);
@@ -171,9 +172,10 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 
     const episodes::Leaks leaks(model, *labelled);
-    const auto scored = episodes::over_episodes<MonitorEpisode>(paths, request, sink, [&] {
-        return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
-    });
+    const auto scored =
+        episodes::over_episodes<MonitorEpisode>(request.episodes, request, sink, [&] {
+            return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
+        });
     if (!scored) return std::nullopt;
     const auto recorded = episodes::recorded(*scored);
     const thresholds::Allowance allowance =
@@ -203,6 +205,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         result.report += monitor_report(model, monitor, totals, fitted, scored->size());
     }
     if (sink.has_errors()) return std::nullopt;
+    result.report += report_of_folds(model, monitors, *scored, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

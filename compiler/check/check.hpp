@@ -11,6 +11,7 @@
 #include "ast/ast.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "thresholds/thresholds.hpp"
 
 namespace etlc::check {
 
@@ -24,6 +25,8 @@ struct Setting {
 struct Options {
     /// Thresholds file; empty: SPEC.thresholds.json beside the spec where it exists.
     std::string thresholds_path;
+    /// Thresholds that are in no file: then none is looked for.
+    const thresholds::File* thresholds = nullptr;
     /// `etlc calibrate` reads a spec before it has thresholds: epsilon is then NaN and no file is
     /// looked for.
     bool allow_uncalibrated = false;

@@ -31,6 +31,13 @@ Diagnostic& Sink::report(Diagnostic diagnostic) {
     return diagnostics_.emplace_back(std::move(diagnostic));
 }
 
+void Sink::add(const Sink& other, const std::string& note) {
+    for (const Diagnostic& found : other.diagnostics_) {
+        Diagnostic& added = report(found);
+        if (!note.empty()) added.note(note);
+    }
+}
+
 void Sink::drop_warnings_of_spec() {
     std::erase_if(diagnostics_, [this](const Diagnostic& found) {
         return severity(found) == Severity::warning && found.file.empty();

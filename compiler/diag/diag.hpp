@@ -72,6 +72,9 @@ public:
     Diagnostic& report(Code code, source::Span span, std::string message);
     Diagnostic& report(Diagnostic diagnostic);
 
+    /// What another sink has collected, each with this note; empty: none.
+    void add(const Sink& other, const std::string& note);
+
     /// What was found in the spec and is no error, is not told: for commands that use a spec, of
     /// which `etlc SPEC --check` tells it. Warnings that are errors stay.
     void drop_warnings_of_spec();

@@ -4,6 +4,7 @@
 #include "check/check.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
+#include "data/traces/trace.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
@@ -51,9 +52,10 @@ std::optional<Calibration> calibrate_model(const check::Model& model,
 /// What may not be written over. Thresholds may: those of the monitors come to those of the
 /// predicates.
 std::vector<std::string> inputs(const check::Model& model, const source::File& file,
-                                const CalibrateRequest& request) {
-    diag::Sink told_later;
-    std::vector<std::string> paths = data::find_episodes(request.calibration.data, "", told_later);
+                                const CalibrateRequest& request,
+                                const std::vector<std::string>& episodes) {
+    std::vector<std::string> paths;
+    for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
     paths.push_back(file.path());
     for (const std::string& path : model.dependencies)
         if (path != request.thresholds) paths.push_back(path);
@@ -74,12 +76,15 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     if (!model || sink.refused()) return false;
 
     calibrate::Request calibration = request.calibration;
-    if (!check_names(*model, calibration.names, sink)) return false;
+    if (!check_names({&*model}, calibration.names, sink)) return false;
+    calibration.episodes = data::find_episodes(request.data, request.groups, sink);
+    if (sink.has_errors()) return false;
     calibration.version = kVersion;
     calibration.progress = episodes_progress();
     const std::string output =
         request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
-    if (!check_outputs({output}, inputs(*model, file, request), sink)) return false;
+    if (!check_outputs({output}, inputs(*model, file, request, calibration.episodes), sink))
+        return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
     if (!result || sink.refused()) return false;
 

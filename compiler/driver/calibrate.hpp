@@ -14,7 +14,9 @@
 namespace etlc::driver {
 
 struct CalibrateRequest {
-    calibrate::Request calibration;  ///< its version and progress are set here
+    std::vector<std::string> data;   ///< files, folders and patterns
+    std::string groups;              ///< of .h5 files that are episodes
+    calibrate::Request calibration;  ///< its episodes, version and progress are set here
     std::string output;              ///< empty: beside the spec
     std::vector<check::Setting> settings;
     std::string fitted;      ///< the file of what is fitted; empty: beside the spec

@@ -19,6 +19,7 @@
 #include "driver/fit.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/options/compile_options.hpp"
+#include "driver/options/evaluate_options.hpp"
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
 #include "driver/options/recording_options.hpp"
@@ -42,6 +43,7 @@ constexpr char kExitStatus[] =
 
 struct Call {
     std::string spec;
+    std::vector<std::string> specs;  ///< of evaluate and crossvalidate
     driver::OutputPaths output;
     std::string diagnostics = "text";
     std::vector<std::string> warnings;
@@ -75,26 +77,43 @@ bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
 
 enum class SpecWarnings : std::uint8_t { told, dropped };
 
-/// Reads the spec and does `work` with it; the exit status.
+/// Reads the specs and does `work` with them; the exit status.
 template <class Work>
-int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
+int with_specs(const Call& call, const std::vector<std::string>& paths, SpecWarnings of_spec,
+               const Work& work) {
     const bool warnings_are_errors = !call.warnings.empty();
-    diag::Sink sink(warnings_are_errors);
-    source::File file;
+    std::vector<diag::Sink> sinks(paths.size(), diag::Sink(warnings_are_errors));
+    std::vector<source::File> files(paths.size());
     // What was found so far is told as well.
     const auto report_lack = [&] {
-        sink.report(data::in_file(
-            {diag::Code::out_of_memory, "there is not enough memory for this"}, call.spec));
+        sinks[0].report(data::in_file(
+            {diag::Code::out_of_memory, "there is not enough memory for this"}, paths[0]));
     };
     try {
-        if (read_spec(call.spec, file, sink)) work(file, sink);
+        bool all_read = true;
+        for (std::size_t i = 0; i < paths.size(); ++i)
+            all_read = read_spec(paths[i], files[i], sinks[i]) && all_read;
+        if (all_read) work(files, sinks);
     } catch (const std::bad_alloc&) {
         report_lack();
     } catch (const std::length_error&) {
         report_lack();
     }
-    if (of_spec == SpecWarnings::dropped) sink.drop_warnings_of_spec();
-    return conclude(call, file, sink);
+    int status = driver::kDone;
+    for (std::size_t i = 0; i < paths.size(); ++i) {
+        if (of_spec == SpecWarnings::dropped) sinks[i].drop_warnings_of_spec();
+        status = std::max(status, conclude(call, files[i], sinks[i]));
+    }
+    return status;
+}
+
+/// The same with one spec.
+template <class Work>
+int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
+    return with_specs(call, {call.spec}, of_spec,
+                      [&](const std::vector<source::File>& files, std::vector<diag::Sink>& sinks) {
+                          work(files[0], sinks[0]);
+                      });
 }
 
 void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
@@ -110,8 +129,7 @@ void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
         ->allow_extra_args(false);
 }
 
-void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
-    app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
+void add_diagnostics_options(CLI::App& app, Call& call) {
     app.add_option("-W", call.warnings, "-Werror: warnings are errors")
         ->type_name("error")
         ->check(driver::one_of({"error"}));
@@ -128,8 +146,12 @@ void add_fitted_option(CLI::App& app, std::string& path) {
         ->type_name("FILE");
 }
 
-void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
-    add_spec_options(app, call, spec);
+void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
+    app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
+    add_diagnostics_options(app, call);
+}
+
+void add_compiler_options(CLI::App& app, Call& call) {
     add_set_option(app, call.request.check.settings);
     app.add_option(
            "--thresholds", call.request.check.thresholds_path,
@@ -151,6 +173,11 @@ void add_common_options(CLI::App& app, Call& call, const std::string& spec = "sp
                       "most bytes of code, estimated, targets aside");
     driver::add_limit(app, "--max-work", call.request.limits.operations,
                       "most operations of the temporal part a step");
+}
+
+void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
+    add_spec_options(app, call, spec);
+    add_compiler_options(app, call);
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
@@ -196,7 +223,8 @@ int compile_command(int argc, char** argv) {
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
         "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
-        "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl --data FILE...,\n"
+        "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
+        "etlc crossvalidate SPEC.etl... --data FILE...,\n"
         "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl",
         "etlc");
     app.footer(kExitStatus);
@@ -285,7 +313,7 @@ int calibrate_command(int argc, char** argv) {
         "etlc calibrate");
     add_spec_options(app, call);
     add_set_option(app, call.calibrate.settings);
-    driver::add_episode_options(app, calibration.data, calibration.groups,
+    driver::add_episode_options(app, call.calibrate.data, call.calibrate.groups,
                                 calibration.allow_overlap, calibration.jobs);
     driver::add_map_option(app, calibration.names);
     app.add_option("-o,--output", call.calibrate.output,
@@ -297,6 +325,9 @@ int calibrate_command(int argc, char** argv) {
                    "whole are, on episodes that these thresholds have not seen")
         ->type_name("FILE");
     add_fitted_option(app, call.calibrate.fitted);
+    driver::add_folds_option(app, calibration.folds,
+                             "also say what the thresholds would be without each of N folds of the "
+                             "episodes");
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //
@@ -304,25 +335,33 @@ int calibrate_command(int argc, char** argv) {
                      });
 }
 
-int evaluate_command(int argc, char** argv) {
+int evaluate_command(int argc, char** argv, bool crossvalidates) {
     Call call;
     CLI::App app(
-        "Compares a spec's predicates and monitors with ground truth on recorded episodes.",
-        "etlc evaluate");
-    add_common_options(app, call);
-    driver::add_episode_options(app, call.evaluate.data, call.evaluate.groups,
-                                call.evaluate.evaluation.allow_overlap,
-                                call.evaluate.evaluation.jobs);
-    driver::add_map_option(app, call.evaluate.evaluation.names);
-    app.add_option("--json", call.evaluate.json,
-                   "also write the result as JSON; - is standard output")
-        ->type_name("FILE");
-    app.add_option("--csv", call.evaluate.csv, "also write the result as CSV; - is standard output")
-        ->type_name("FILE");
+        crossvalidates
+            ? "Calibrates and evaluates specs on the same recorded episodes, in folds: each "
+              "episode "
+              "is judged\nby monitors that have not seen it."
+            : "Compares predicates and monitors of specs with ground truth on recorded episodes.",
+        crossvalidates ? "etlc crossvalidate" : "etlc evaluate");
+    app.add_option("spec", call.specs, "the specs, .etl files; several are set side by side")
+        ->type_name("SPEC.etl")
+        ->required();
+    add_diagnostics_options(app, call);
+    add_compiler_options(app, call);
+    driver::add_evaluate_options(app, call.evaluate, crossvalidates);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
-        driver::evaluate(file, call.request, call.evaluate, sink);
-    });
+    if (const std::string mistake =
+            driver::mistake_in_evaluate_call(app, call.specs, call.evaluate);
+        !mistake.empty())
+        return complain(app, mistake);
+    return with_specs(call, call.specs, SpecWarnings::dropped,
+                      [&](const std::vector<source::File>& files, std::vector<diag::Sink>& sinks) {
+                          std::vector<driver::SpecToJudge> specs;
+                          for (std::size_t i = 0; i < files.size(); ++i)
+                              specs.push_back({files[i], sinks[i]});
+                          driver::evaluate(specs, call.request, call.evaluate);
+                      });
 }
 
 int explain_command(int argc, char** argv) {
@@ -371,7 +410,8 @@ int incident_command(int argc, char** argv) {
 int execute(int argc, char** argv) {
     const std::string_view command = argc > 1 ? argv[1] : "";
     if (command == "run") return run_command(argc - 1, argv + 1);
-    if (command == "evaluate") return evaluate_command(argc - 1, argv + 1);
+    if (command == "evaluate") return evaluate_command(argc - 1, argv + 1, false);
+    if (command == "crossvalidate") return evaluate_command(argc - 1, argv + 1, true);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
     if (command == "incident") return incident_command(argc - 1, argv + 1);
     if (command == "fit") return fit_command(argc - 1, argv + 1);

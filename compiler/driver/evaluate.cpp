@@ -1,18 +1,48 @@
 #include "driver/evaluate.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <numeric>
 
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
+#include "driver/crossvalidate.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
+#include "driver/version.hpp"
+#include "parse/parse.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {
 
 namespace {
+
+/// A spec that is about to be judged: compiled, or without thresholds where folds give them.
+struct Candidate {
+    SpecToJudge spec;
+    std::optional<Compiled> compiled;
+    std::optional<check::Model> untrained;
+
+    const check::Model& model() const { return compiled ? *compiled->model : *untrained; }
+};
+
+std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& request, bool trains) {
+    Candidate result{spec, {}, {}};
+    if (trains) {
+        check::Options options = request.check;
+        options.allow_uncalibrated = true;
+        options.allow_uncalibrated_monitors = true;
+        result.untrained =
+            check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
+    } else {
+        result.compiled = compile(spec.file, request, spec.sink);
+    }
+    if (spec.sink.refused() || (!result.compiled && !result.untrained)) return std::nullopt;
+    return result;
+}
 
 /// The file that the spec's thresholds were read from; nothing where nothing is calibrated.
 std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
@@ -27,43 +57,135 @@ std::optional<thresholds::File> thresholds_of(const check::Model& model, const s
     return std::move(*file);
 }
 
-std::vector<std::string> inputs(const check::Model& model, const source::File& file,
+std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
                                 const std::vector<std::string>& episodes) {
-    std::vector<std::string> paths = model.dependencies;
-    paths.push_back(file.path());
+    std::vector<std::string> paths;
+    for (const Candidate& one : candidates) {
+        const auto& loaded = one.model().dependencies;
+        paths.insert(paths.end(), loaded.begin(), loaded.end());
+        paths.push_back(one.spec.file.path());
+    }
     for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
     return paths;
 }
 
-}  // namespace
+/// The episodes, in order, of a fold.
+std::vector<std::size_t> episodes_of(const Folds& folds, std::uint32_t fold) {
+    std::vector<std::size_t> episodes;
+    for (std::size_t e = 0; e < folds.of.size(); ++e)
+        if (folds.of[e] == fold) episodes.push_back(e);
+    return episodes;
+}
 
-bool evaluate(const source::File& file, const Request& request, const EvaluateRequest& evaluation,
-              diag::Sink& sink) {
-    const auto compiled = compile(file, request, sink);
-    if (!compiled || sink.refused()) return false;
-    const check::Model& model = *compiled->model;
-    evaluate::Request asked = evaluation.evaluation;
-    if (!check_names(model, asked.names, sink)) return false;
-    asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
-    if (sink.has_errors()) return false;
-    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(model, file, asked.episodes),
-                       sink))
-        return false;
-    asked.progress = episodes_progress();
+class Judging {
+public:
+    Judging(const Request& request, const evaluate::Request& asked)
+        : request_(request), asked_(asked) {
+        calibration_.episodes = asked.episodes;
+        calibration_.names = asked.names;
+        calibration_.allow_overlap = asked.allow_overlap;
+        calibration_.jobs = asked.jobs;
+        calibration_.version = kVersion;
+        calibration_.progress = asked.progress;
+    }
 
-    asked.limits = request.limits;
-    const auto result =
-        evaluate::evaluate(*compiled, asked, thresholds_of(model, file.path(), request), sink);
-    if (!result) return false;
-    // What is printed comes before the files take their names: where a part of it is lost, nothing
-    // has changed.
+    /// By the thresholds that it has.
+    std::optional<evaluate::Judgement> as_it_is(const Candidate& one, diag::Sink& sink) const {
+        std::vector<std::size_t> all(asked_.episodes.size());
+        std::iota(all.begin(), all.end(), std::size_t{0});
+        auto seen = thresholds_of(one.model(), one.spec.file.path(), request_);
+        return evaluate::judge({{*one.compiled, std::move(seen), std::move(all)}}, asked_, sink);
+    }
+
+    /// Every fold by what the others give. The folds are those of the first spec.
+    std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
+                                                diag::Sink& sink) {
+        if (!folds_) folds_ = deal(one.model(), calibration_, count, sink);
+        if (!folds_) return std::nullopt;
+        const auto trained = train(one.spec.file, request_, calibration_, *folds_, sink);
+        if (!trained) return std::nullopt;
+        std::vector<evaluate::Trial> trials;
+        for (std::uint32_t fold = 0; fold < count; ++fold) {
+            const Trained& others = (*trained)[fold];
+            trials.push_back({others.spec, others.thresholds, episodes_of(*folds_, fold)});
+        }
+        auto result = evaluate::judge(trials, asked_, sink);
+        if (result && folds_->allowance.overlapping > 0)
+            result->reservations.push_back(thresholds::text(folds_->allowance));
+        return result;
+    }
+
+private:
+    const Request& request_;
+    const evaluate::Request& asked_;
+    calibrate::Request calibration_;
+    std::optional<Folds> folds_;
+};
+
+std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candidates,
+                                           const Request& request,
+                                           const EvaluateRequest& evaluation,
+                                           const evaluate::Request& asked) {
+    Judging judging(request, asked);
+    evaluate::SideBySide result;
+    std::optional<evaluate::Judgement> first;
+    for (const Candidate& one : candidates) {
+        const std::string& path = one.spec.file.path();
+        diag::Sink found;  // of an episode, too, say for which spec
+        auto judgement = evaluation.folds > 0 ? judging.in_folds(one, evaluation.folds, found)
+                                              : judging.as_it_is(one, found);
+        one.spec.sink.add(found, candidates.size() > 1 ? fmt::format("for the spec {}", path) : "");
+        if (!judgement) return std::nullopt;
+        auto& spec = result.specs.emplace_back();
+        spec.path = path;
+        spec.evaluation = evaluate::summarise(*judgement);
+        if (evaluation.by_episode) spec.evaluation.by_episode = evaluate::by_episode(*judgement);
+        if (first)
+            spec.differences = evaluate::differences(*first, *judgement);
+        else
+            first = std::move(judgement);
+    }
+    return result;
+}
+
+/// What is printed comes before the files take their names: where a part of it is lost, nothing has
+/// changed.
+bool write(const evaluate::SideBySide& specs, const EvaluateRequest& evaluation, diag::Sink& sink) {
     OutputFiles files(sink);
     const bool prints = evaluation.json != kStandardOutput && evaluation.csv != kStandardOutput;
-    return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(*result))) &&
-           (evaluation.csv.empty() || files.add(evaluation.csv, evaluate::csv(*result))) &&
+    const auto csv = [&] {
+        return evaluation.by_episode ? evaluate::csv_by_episode(specs) : evaluate::csv(specs);
+    };
+    return (evaluation.json.empty() || files.add(evaluation.json, evaluate::json(specs))) &&
+           (evaluation.csv.empty() || files.add(evaluation.csv, csv())) &&
            (!prints || files.add(std::string(kStandardOutput),
-                                 source::visible_lines(evaluate::table(*result)))) &&
+                                 source::visible_lines(evaluate::table(specs)))) &&
            files.commit();
+}
+
+}  // namespace
+
+bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request,
+              const EvaluateRequest& evaluation) {
+    std::vector<Candidate> candidates;
+    std::vector<const check::Model*> models;
+    for (const SpecToJudge& spec : specs) {
+        auto next = candidate(spec, request, evaluation.folds > 0);
+        if (!next) return false;
+        candidates.push_back(std::move(*next));
+    }
+    for (const Candidate& one : candidates) models.push_back(&one.model());
+    diag::Sink& sink = specs[0].sink;
+    evaluate::Request asked = evaluation.evaluation;
+    if (!check_names(models, asked.names, sink)) return false;
+    asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
+    if (sink.has_errors()) return false;
+    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(candidates, asked.episodes), sink))
+        return false;
+    asked.progress = episodes_progress();
+    asked.limits = request.limits;
+    const auto result = judged(candidates, request, evaluation, asked);
+    return result && write(*result, evaluation, sink);
 }
 
 }  // namespace etlc::driver

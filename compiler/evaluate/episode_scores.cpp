@@ -62,23 +62,22 @@ diag::Result<EpisodeResult> EpisodeScorer::score(const std::string& path) {
     if (!recording) return recording.failure();
     EpisodeResult result;
     result.predicates.resize(subject_.labelled.size());
-    result.scored.resize(subject_.labelled.size());
-    result.unmeasured.resize(subject_.labelled.size());
     tracks_.assign(subject_.monitors.size(), {});
     const auto rest = [&] {
         note_verdicts();
         return true;
     };
     const auto frame = [&] {
-        count_predicates(*recording, result);
+        for (std::size_t i = 0; i < result.predicates.size(); ++i)
+            note_frame(*recording, i, result.predicates[i]);
         return rest();
     };
     const auto done = episodes::replay(*recording, {&monitors_, &truths_, &measured_}, frame, rest);
     if (!done) return done.failure();
     for (std::size_t m = 0; m < subject_.monitors.size(); ++m)
         result.monitors.push_back(conclude(subject_.monitors[m], tracks_[m]));
-    for (const Index predicate : subject_.labelled)
-        result.from_array.push_back(recording->from_array(predicate));
+    for (std::size_t i = 0; i < result.predicates.size(); ++i)
+        result.predicates[i].from_array = recording->from_array(subject_.labelled[i]);
     static_cast<episodes::Recorded&>(result) = recording->recorded();
     return result;
 }
@@ -88,25 +87,25 @@ float EpisodeScorer::distance(Index predicate) const {
                                       : measured_.evaluator().distance(predicate);
 }
 
-void EpisodeScorer::count_predicates(const episodes::Recording& recording,
-                                     EpisodeResult& result) const {
-    for (std::size_t i = 0; i < subject_.labelled.size(); ++i) {
-        const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
-        const Label is = recording.label(subject_.labelled[i]);
-        const float delta = distance(subject_.labelled[i]);
-        if (std::isnan(delta)) {
-            result.predicates[i].add(Label::unknown, is);
-            result.unmeasured[i] += is == Label::unknown ? 0 : 1;
-            continue;
-        }
-        const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
-        result.predicates[i].add(holds ? Label::yes : Label::no, is);
-        if (is == Label::unknown) continue;
-        const float score = predicate.equality()      ? static_cast<float>(holds)
-                            : predicate.upper_bound() ? -delta
-                                                      : delta;
-        result.scored[i].push_back({score, 0, is == Label::yes});
+void EpisodeScorer::note_frame(const episodes::Recording& recording, std::size_t i,
+                               PredicateEpisode& result) const {
+    const check::Predicate& predicate = model().predicates[subject_.labelled[i]];
+    const Label is = recording.label(subject_.labelled[i]);
+    const float delta = distance(subject_.labelled[i]);
+    const bool holds = check::holds(predicate.comparison, delta, predicate.threshold.value);
+    const Label said = std::isnan(delta) ? Label::unknown : holds ? Label::yes : Label::no;
+    result.frames.add(said, is);
+    result.truth.add(is);
+    if (is == Label::unknown) return;
+    if (said != is && !result.first_error) result.first_error = recording.frames() - 1;
+    if (said == Label::unknown) {
+        ++result.unmeasured;
+        return;
     }
+    const float score = predicate.equality()      ? static_cast<float>(holds)
+                        : predicate.upper_bound() ? -delta
+                                                  : delta;
+    result.scored.push_back({score, 0, is == Label::yes});
 }
 
 /// Both plans delay a sliding monitor alike: by the horizon of its formula as written.
@@ -131,8 +130,12 @@ void EpisodeScorer::follow(std::size_t m) {
 MonitorEpisode EpisodeScorer::conclude(const MonitorSubject& subject, const Tracks& tracks) const {
     MonitorEpisode result;
     if (tracks.said.empty()) return result;
-    for (std::size_t i = 0; i < tracks.said.size(); ++i)
+    for (std::size_t i = 0; i < tracks.said.size(); ++i) {
         result.steps.add(tracks.said[i], tracks.is[i]);
+        result.truth.add(tracks.is[i]);
+        const bool errs = tracks.is[i] != Label::unknown && tracks.said[i] != tracks.is[i];
+        if (errs && !result.first_error) result.first_error = i;
+    }
     const bool sliding = model().monitors[subject.monitor].sliding;
     const auto verdict = [&](const Track& track, bool alarm) {
         if (alarm) return Label::no;

@@ -11,6 +11,7 @@
 
 #include "episodes/replay.hpp"
 #include "evaluate/counts.hpp"
+#include "evaluate/duration.hpp"
 #include "evaluate/ranking.hpp"
 #include "evaluate/subject.hpp"
 
@@ -31,14 +32,23 @@ struct MonitorEpisode {
     std::optional<Turn> turn;
     /// One: of sequential formulas, where every stage was truly visited.
     std::optional<Counts> ordering;
+    LabelRuns truth;  ///< what was true of the steps
+    /// The step, or the position of a sliding monitor, at which it first disagrees with a known
+    /// truth.
+    std::optional<std::uint64_t> first_error;
+};
+
+struct PredicateEpisode {
+    Counts frames;
+    std::vector<Scored> scored;    ///< `episode` is not yet set
+    std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown
+    bool from_array = false;
+    LabelRuns truth;  ///< of the frames
+    std::optional<std::uint64_t> first_error;
 };
 
 struct EpisodeResult : episodes::Recorded {
-    std::vector<Counts> predicates;           ///< per labelled predicate
-    std::vector<std::vector<Scored>> scored;  ///< per labelled predicate; `episode` is not yet set
-    /// Per labelled predicate: labelled frames whose distance is unknown.
-    std::vector<std::uint64_t> unmeasured;
-    std::vector<bool> from_array;  ///< per labelled predicate
+    std::vector<PredicateEpisode> predicates;  ///< per labelled predicate
     /// Per monitor; of those that cannot be evaluated all is zero.
     std::vector<MonitorEpisode> monitors;
 };
@@ -65,7 +75,8 @@ private:
         bool is_alarm = false;
     };
 
-    void count_predicates(const episodes::Recording& recording, EpisodeResult& result) const;
+    void note_frame(const episodes::Recording& recording, std::size_t i,
+                    PredicateEpisode& result) const;
     void note_verdicts();
     void follow(std::size_t m);
     float distance(Index predicate) const;

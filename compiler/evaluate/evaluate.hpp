@@ -1,24 +1,37 @@
 // `etlc evaluate`: the monitors of a spec against ground truth, on recorded episodes.
-// Takes: the compiled spec and the episodes. Gives: counts and rates per predicate and monitor,
-// each with its interval and next to the baselines that ignore the data. Keeps true: the result is
-// the same whatever the number of threads; one episode a thread is open at a time; episodes that
-// thresholds were calibrated on are refused.
+// Takes: the compiled spec, or one for every fold, and the episodes. Gives: counts and rates per
+// predicate and monitor, each with its interval and next to the baselines that ignore the data;
+// the same of every episode; and how much specs differ on the same episodes. Keeps true: the
+// result is the same whatever the number of threads; one episode a thread is open at a time;
+// episodes that thresholds were calibrated on are refused.
 #pragma once
 
 #include <functional>
 #include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "diag/diag.hpp"
 #include "evaluate/bootstrap.hpp"
+#include "evaluate/by_episode.hpp"
+#include "evaluate/differences.hpp"
 #include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
 #include "pipeline/compile.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::evaluate {
+
+/// A compiled spec and the episodes that it is judged on. Several where episodes are dealt into
+/// folds.
+struct Trial {
+    const pipeline::Compiled& spec;
+    /// The thresholds that its plan has, where they were calibrated: episodes in it are refused.
+    std::optional<thresholds::File> seen;
+    std::vector<std::size_t> episodes;  ///< which of those of the request
+};
 
 struct Request {
     std::vector<std::string> episodes;  ///< as data::find_episodes gives them
@@ -31,6 +44,31 @@ struct Request {
     std::function<void(std::size_t done, std::size_t total)> progress;
 };
 
+/// What a spec said of the episodes, and what was true.
+struct Judgement {
+    struct Predicate {
+        std::string name;
+        bool adaptive = false;
+    };
+    struct Monitor {
+        std::string name;
+        std::vector<std::string> lacking;  ///< predicates without truth
+        bool sequential = false;
+    };
+    /// What was held out, and the thresholds of the rest by what they are of; of one fold nothing.
+    struct Fold {
+        std::uint64_t episodes = 0;
+        std::vector<std::pair<std::string, float>> thresholds;
+    };
+    std::vector<Predicate> predicates;  ///< those with labels
+    std::vector<Monitor> monitors;
+    std::vector<EpisodeResult> episodes;    ///< in the order of the request
+    std::vector<std::uint32_t> fold_of;     ///< per episode
+    std::vector<Fold> folds;                ///< empty: no spec was made for a fold
+    double step_seconds = 0;                ///< 0: the spec has no rate
+    std::vector<std::string> reservations;  ///< what was passed over, in words
+};
+
 /// Counts of claims, with intervals over episodes.
 struct Score {
     Counts counts;
@@ -38,6 +76,7 @@ struct Score {
     Figure precision;
     Figure recall;
     Figure agreement;
+    std::optional<Counts> duration;  ///< what the duration alone gets right: evaluate/duration.hpp
 };
 
 struct PredicateScore {
@@ -77,19 +116,37 @@ struct Evaluation {
     std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
     std::vector<std::string> reservations;  ///< what was passed over, in words
     double step_seconds = 0;                ///< 0: the spec has no rate
+    std::vector<Judgement::Fold> folds;
     std::vector<PredicateScore> predicates;
     std::vector<MonitorScore> monitors;
+    std::vector<EpisodeRow> by_episode;  ///< empty: not asked for
 };
 
-/// Predicates are held to the truth that the spec has, or an array in the first episode. `seen`:
-/// the thresholds that the plan has, where they were calibrated; the episodes in it are refused.
-/// Nothing where the sink now says why.
-std::optional<Evaluation> evaluate(const pipeline::Compiled& spec, const Request& request,
-                                   const std::optional<thresholds::File>& seen, diag::Sink& sink);
+/// Predicates are held to the truth that the spec has, or an array in the first episode. Trials are
+/// of one spec and hold each episode once. Nothing where the sink now says why.
+std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& request,
+                               diag::Sink& sink);
 
-/// For people: an aligned table. For spreadsheets: a figure a row. For programs: JSON.
-std::string table(const Evaluation& evaluation);
-std::string csv(const Evaluation& evaluation);
-std::string json(const Evaluation& evaluation);
+Evaluation summarise(const Judgement& judgement);
+
+/// By what this predicate measured, all labelled frames.
+Ranking ranking_of(const Judgement& judgement, std::size_t predicate);
+
+/// Specs on the same episodes.
+struct SideBySide {
+    struct Spec {
+        std::string path;
+        Evaluation evaluation;
+        std::vector<Difference> differences;  ///< from the first spec
+    };
+    std::vector<Spec> specs;
+};
+
+/// For people: aligned tables. For spreadsheets: a figure a row, or an episode. For programs: JSON.
+/// Of one spec the same as of its evaluation, without its path.
+std::string table(const SideBySide& specs);
+std::string csv(const SideBySide& specs);
+std::string csv_by_episode(const SideBySide& specs);
+std::string json(const SideBySide& specs);
 
 }  // namespace etlc::evaluate

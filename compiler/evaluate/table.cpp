@@ -1,4 +1,4 @@
-// The evaluation for people: aligned columns; every figure with its interval, and beside it what
+// Evaluations for people: aligned columns; every figure with its interval, and beneath it what
 // blind claims get.
 #include <fmt/format.h>
 
@@ -12,6 +12,8 @@ namespace etlc::evaluate {
 namespace {
 
 using Row = std::vector<std::string>;
+
+constexpr std::size_t kMostEpisodes = 20;  ///< in the table by episode
 
 /// Code points, which is what a terminal aligns by.
 std::size_t width(const std::string& text) {
@@ -49,6 +51,13 @@ std::string figure(const Figure& f) {
     return fmt::format("{} [{:.3f}, {:.3f}]", number(f.value), f.interval->low, f.interval->high);
 }
 
+std::string difference(const Figure& f) {
+    if (!f.value) return "-";
+    std::string text = fmt::format("{:+.3f}", *f.value);
+    if (f.interval) text += fmt::format(" [{:+.3f}, {:+.3f}]", f.interval->low, f.interval->high);
+    return text;
+}
+
 std::string percent(std::uint64_t part, std::uint64_t whole) {
     if (whole == 0) return "-";
     return fmt::format("{:.2f} %", 100 * static_cast<double>(part) / static_cast<double>(whole));
@@ -64,11 +73,13 @@ void add(std::vector<Row>& rows, const std::string& name, const Score& score) {
                     figure(score.agreement),
                     fmt::format("{} of {} ({})", c.positives(), c.total(),
                                 percent(c.positives(), c.total()))});
-    for (const bool claim : {true, false}) {
-        const Rates blind = rates_of_constant(claim, c.positives(), c.total());
-        rows.push_back({claim ? "  always true" : "  always false", number(blind.f1),
-                        number(blind.precision), number(blind.recall), number(blind.agreement)});
-    }
+    const auto baseline = [&](const char* what, const Rates& blind) {
+        rows.push_back({what, number(blind.f1), number(blind.precision), number(blind.recall),
+                        number(blind.agreement)});
+    };
+    baseline("  always true", rates_of_constant(true, c.positives(), c.total()));
+    baseline("  always false", rates_of_constant(false, c.positives(), c.total()));
+    baseline("  duration", rates(score.duration.value_or(Counts{})));
 }
 
 /// What was left out or could not be said, a line each.
@@ -163,9 +174,44 @@ std::string left_out(const Evaluation& evaluation) {
     return text.empty() ? "" : "\n" + text;
 }
 
-}  // namespace
+/// What each fold was held out of, and the thresholds of the rest.
+std::string folds_part(const Evaluation& evaluation) {
+    std::vector<Row> rows = {{"fold", "episodes held out"}};
+    for (const auto& [name, threshold] : evaluation.folds[0].thresholds)
+        rows[0].push_back(fmt::format("{} of the others", name));
+    for (std::size_t k = 0; k < evaluation.folds.size(); ++k) {
+        const Judgement::Fold& fold = evaluation.folds[k];
+        rows.push_back({std::to_string(k + 1), std::to_string(fold.episodes)});
+        for (const auto& [name, threshold] : fold.thresholds)
+            rows.back().push_back(fmt::format("{:.7g}", threshold));
+    }
+    return fmt::format(
+        "{} folds: every episode is judged with thresholds that were calibrated without its fold; "
+        "no guarantee follows from this\n\n{}",
+        evaluation.folds.size(), aligned(rows));
+}
 
-std::string table(const Evaluation& evaluation) {
+std::string by_episode_part(const Evaluation& evaluation) {
+    const auto& episodes = evaluation.by_episode;
+    std::vector<Row> rows = {{"by episode, the worst first", "frames", "F1", "agreement",
+                              "first error", "wrong verdicts"}};
+    for (std::size_t i = 0; i < std::min(episodes.size(), kMostEpisodes); ++i) {
+        const EpisodeRow& e = episodes[i];
+        const Rates of_claims = rates(e.claims);
+        rows.push_back(
+            {e.path, std::to_string(e.frames), number(of_claims.f1), number(of_claims.agreement),
+             e.first_error ? fmt::format("step {}: {}", e.first_error->step, e.first_error->name)
+                           : "-",
+             e.wrong.empty() ? "-" : fmt::format("{}", fmt::join(e.wrong, ", "))});
+    }
+    std::string text = "\n" + aligned(rows);
+    if (episodes.size() > kMostEpisodes)
+        text += fmt::format("{} more are not shown; --json and --csv write all {}\n",
+                            episodes.size() - kMostEpisodes, episodes.size());
+    return text;
+}
+
+std::string tables(const Evaluation& evaluation) {
     std::string text =
         fmt::format("{}, {}; in brackets 95 % intervals from {} resamples of the episodes\n",
                     diag::counted(evaluation.episodes, "episode"),
@@ -185,12 +231,48 @@ std::string table(const Evaluation& evaluation) {
             "{} of the episodes {} a target among the frames: the figures are better than on "
             "others\n",
             evaluation.leaked, evaluation.leaked == 1 ? "has" : "have");
+    if (!evaluation.folds.empty()) text += folds_part(evaluation);
     if (!evaluation.predicates.empty()) text += predicates_part(evaluation);
     text +=
         monitors_part(evaluation, "monitor, by steps", "satisfied", &MonitorScore::steps, "steps");
     text += monitors_part(evaluation, "monitor, by episodes", "satisfied", &MonitorScore::episodes,
                           "episodes");
-    return text + ordering_part(evaluation) + detection_part(evaluation) + left_out(evaluation);
+    text += ordering_part(evaluation) + detection_part(evaluation) + left_out(evaluation);
+    return evaluation.by_episode.empty() ? text : text + by_episode_part(evaluation);
+}
+
+std::string differences_part(const SideBySide::Spec& spec, const std::string& first) {
+    std::vector<Row> rows = {{fmt::format("{} less {}", spec.path, first), "F1", "precision",
+                              "recall", "agreement", "AUROC"}};
+    std::string remarks;
+    for (const Difference& d : spec.differences) {
+        const std::string name = fmt::format("{}, by {}", d.name, d.level);
+        if (d.other_truths == 0)
+            rows.push_back({name, difference(d.f1), difference(d.precision), difference(d.recall),
+                            difference(d.agreement), d.auroc ? difference(*d.auroc) : ""});
+        else
+            remarks +=
+                fmt::format("{}: not compared, {} of the episodes {} another truth in {}\n", name,
+                            d.other_truths, d.other_truths == 1 ? "has" : "have", spec.path);
+    }
+    if (spec.differences.empty())
+        remarks =
+            "nothing to compare: no predicate or monitor of the two has the same name and a "
+            "truth\n";
+    return "\n" + aligned(rows) + remarks;
+}
+
+}  // namespace
+
+std::string table(const SideBySide& specs) {
+    const auto& all = specs.specs;
+    if (all.size() == 1) return tables(all[0].evaluation);
+    std::string text;
+    for (const SideBySide::Spec& spec : all)
+        text +=
+            fmt::format("{}{}\n{}", text.empty() ? "" : "\n", spec.path, tables(spec.evaluation));
+    for (std::size_t s = 1; s < all.size(); ++s) text += differences_part(all[s], all[0].path);
+    return text;
 }
 
 }  // namespace etlc::evaluate

@@ -19,7 +19,7 @@ Calibrated calibrated(const std::string& spec, const std::vector<std::string>& e
     const TemporaryPath thresholds("before.json", before);
     const TemporaryPath output("after.json");
     driver::CalibrateRequest request;
-    request.calibration.data = episodes;
+    request.data = episodes;
     request.calibration.jobs = 1;
     request.output = output.path();
     if (!before.empty()) request.thresholds = thresholds.path();

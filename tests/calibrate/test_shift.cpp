@@ -155,7 +155,7 @@ TEST(Shift, IsBeyondTheScoreAtTheRank) {
             for (std::size_t t = 0; t < kSteps; ++t)
                 text += fmt::format("{},{}\n", episode.x[t], episode.label[t] ? 1 : 0);
             files.push_back(std::make_unique<TemporaryPath>(fmt::format("shift{}.csv", i), text));
-            request.data.push_back(files.back()->path());
+            request.episodes.push_back(files.back()->path());
             if (const auto one = score(run(said, truth, episode), alarms)) scores.push_back(*one);
         }
         std::sort(scores.begin(), scores.end());

@@ -254,7 +254,7 @@ TEST(Calibrate, ThreadsDoNotChangeTheResult) {
             text += fmt::format("{},{}\n", random.uniform(), random.between(0, 1));
         files.push_back(
             std::make_unique<TemporaryPath>(fmt::format("episode{}.csv", episode), text));
-        request.data.push_back(files.back()->path());
+        request.episodes.push_back(files.back()->path());
     }
     for (const std::string method :
          {"f1", "conformal, alpha = 0.1", "class_conditional, alpha = 0.1",

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # command_line_test.sh ETLC FOLDER DATA: `etlc evaluate` from end to end: its table, CSV and JSON,
-# alike for any number of threads; episodes in an .h5 file; a call that is wrong.
+# alike for any number of threads; episodes in an .h5 file; a call that is wrong; folds; two specs.
 set -euo pipefail
 etlc=$1 expected=$2 data=$3
 folder=$(mktemp -d)
@@ -68,3 +68,68 @@ status=0
 sed 's/<= 0.5;/<= 0;/' dock.etl >blind.etl
 "$etlc" evaluate blind.etl --data episodes --json blind.json >blind.txt
 grep -q '"mean_seconds": null' blind.json || fail "mean_seconds: $(grep -A8 detection blind.json)"
+
+# Folds hold each episode once. Neither the order of the files nor their names nor the number of
+# threads change them, and a spec beside another is judged as it is alone.
+sed 's/<= 0.5;/<= calibrated(conformal, alpha = 0.4);/' dock.etl >folded.etl
+sed 's/target goal = .*/target goal = [[3, 2]];/' folded.etl >other.etl
+"$etlc" crossvalidate folded.etl --data episodes --folds 3 --json folds.json --by-episode \
+    --csv rows.csv >folds.txt
+cp -r episodes renamed
+for e in 0 1 2 3 4 5; do mv renamed/$e.csv renamed/by_$((9 - e)).csv; done
+"$etlc" evaluate folded.etl --data renamed --folds 3 -j 4 --by-episode --csv renamed.csv >/dev/null
+for e in 0 1 2 3 4 5; do echo "renamed/by_$((9 - e)).csv episodes/$e.csv"; done >names
+while read -r new old; do sed -i "s|^$new,|$old,|" renamed.csv; done <names
+diff <(sort rows.csv) <(sort renamed.csv)
+python3 - <<'END'
+import csv, json
+folds = json.load(open("folds.json"))
+rows = folds["by_episode"]
+assert [fold["episodes"] for fold in folds["folds"]] == [2, 2, 2]
+assert sorted(row["episode"] for row in rows) == [f"episodes/{e}.csv" for e in range(6)]
+assert sorted(row["fold"] for row in rows) == [1, 1, 2, 2, 3, 3]
+shares = [(len(row["wrong_verdicts"]), 1 - row["agreement"]) for row in rows]
+assert shares == sorted(shares, reverse=True) and shares[0] > shares[-1], shares
+frames = folds["predicates"]["near"]
+assert frames["positives"] + frames["negatives"] == sum(row["frames"] for row in rows) == 72
+table = list(csv.DictReader(open("rows.csv")))
+assert [row["episode"] for row in table] == [row["episode"] for row in rows]
+assert [float(row["near_f1"]) for row in table] == [row["predicates"]["near"]["f1"] for row in rows]
+END
+"$etlc" crossvalidate other.etl folded.etl --data episodes --folds 3 --json both.json \
+    --csv both.csv >both.txt 2>both.err
+grep -q '^folded.etl less other.etl ' both.txt || fail "$(cat both.txt)"
+[ "$(grep -c W0671 both.err)" = 1 ] || fail "a warning of every fold: $(cat both.err)"
+python3 - <<'END'
+import csv, json
+both, alone = json.load(open("both.json")), json.load(open("folds.json"))
+other, folded = both["specs"]["other.etl"], both["specs"]["folded.etl"]
+del alone["by_episode"]
+assert folded == alone
+found = {(d.get("predicate") or d.get("monitor"), d["level"]): d for d in both["differences"]}
+assert set(found) == {("near", "frames"), ("arrive", "steps"), ("arrive", "episodes"),
+                      ("twice", "steps"), ("twice", "episodes")}
+for (name, level), d in found.items():
+    of = [s["predicates"][name] if level == "frames" else s["monitors"][name][level]
+          for s in (folded, other)]
+    for figure in ("f1", "precision", "recall", "agreement"):
+        if d[figure] is not None:
+            assert abs(d[figure] - (of[0][figure] - of[1][figure])) < 1e-12, (name, level, figure)
+assert found["near", "frames"]["f1"] != 0
+rows = [row for row in csv.DictReader(open("both.csv")) if row["less"]]
+assert {row["spec"] for row in rows} == {"folded.etl"}
+assert [float(row["value"]) for row in rows if row["figure"] == "auroc"] == [
+    found["near", "frames"]["auroc"]]
+END
+
+# Without each fold: thresholds as many commands of their own would give them.
+"$etlc" calibrate folded.etl --data episodes --folds 6 -o folded.json >folds.txt
+for e in 0 1 2 3 4 5; do
+    mkdir without$e
+    cp episodes/*.csv without$e && rm without$e/$e.csv
+    "$etlc" calibrate folded.etl --data without$e -o - 2>/dev/null |
+        python3 -c 'import json, sys
+print(json.load(sys.stdin)["predicates"]["near"]["epsilon"])'
+done | sort -g >thresholds
+grep -q "^    near: $(head -1 thresholds) to $(tail -1 thresholds); held out, nothing is missed" \
+    folds.txt || fail "$(cat folds.txt thresholds)"

@@ -6,6 +6,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <numeric>
 
 #include "driver/compile.hpp"
 #include "parse/parse.hpp"
@@ -35,9 +36,9 @@ private:
     fs::path path_;
 };
 
-std::optional<evaluate::Evaluation> run(const std::string& spec,
-                                        const std::vector<std::string>& episodes, unsigned jobs,
-                                        diag::Sink& sink) {
+std::optional<evaluate::Judgement> run(const std::string& spec,
+                                       const std::vector<std::string>& episodes, unsigned jobs,
+                                       diag::Sink& sink) {
     const Folder folder(episodes);
     const source::File file("t.etl", spec);
     const auto compiled = driver::compile(file, {}, sink);
@@ -45,7 +46,9 @@ std::optional<evaluate::Evaluation> run(const std::string& spec,
     evaluate::Request request;
     request.episodes = folder.files;
     request.jobs = jobs;
-    return evaluate::evaluate(*compiled, request, std::nullopt, sink);
+    std::vector<std::size_t> all(episodes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return evaluate::judge({{*compiled, std::nullopt, std::move(all)}}, request, sink);
 }
 
 }  // namespace
@@ -58,13 +61,18 @@ check::Model model_of(const std::string& spec) {
     return std::move(*model);
 }
 
-evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
-                               unsigned jobs) {
+evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
+                           unsigned jobs) {
     diag::Sink sink;
     const auto result = run(spec, episodes, jobs, sink);
     for (const diag::Diagnostic& finding : sink.sorted())
         EXPECT_EQ(finding.severity(), diag::Severity::warning) << finding.message;
-    return result ? *result : evaluate::Evaluation{};
+    return result ? *result : evaluate::Judgement{};
+}
+
+evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
+                               unsigned jobs) {
+    return evaluate::summarise(judged(spec, episodes, jobs));
 }
 
 std::vector<std::string> mistakes(const std::string& spec,

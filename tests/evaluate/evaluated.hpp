@@ -14,6 +14,8 @@ namespace etlc::tests {
 check::Model model_of(const std::string& spec);
 
 /// Of these episodes, with so many threads. The messages where it fails.
+evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
+                           unsigned jobs = 1);
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,
                                unsigned jobs = 1);
 std::vector<std::string> mistakes(const std::string& spec,

@@ -39,9 +39,10 @@ diag::Diagnostic& report_missing(Context& c, Code code, Span span, std::string m
     return c.sink.report(std::move(found));
 }
 
-/// Reads the file; nothing, with a diagnostic, where there is none or it is damaged.
+/// Those given, or the file's; nothing, with a diagnostic, where there is none or it is damaged.
 std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
                                                 const Threshold& first) {
+    if (c.options.thresholds != nullptr) return *c.options.thresholds;
     const bool is_default = c.options.thresholds_path.empty();
     const std::string path =
         is_default ? default_thresholds_path(c.file.path()) : c.options.thresholds_path;

@@ -179,7 +179,7 @@ private:
 bool explain(const source::File& spec, const Compiled& compiled, const ExplainRequest& request,
              diag::Sink& sink) {
     const check::Model& model = *compiled.plan.model;
-    if (!check_names(model, request.names, sink)) return false;
+    if (!check_names({&model}, request.names, sink)) return false;
     std::vector<std::string> inputs = model.dependencies;
     inputs.insert(inputs.end(), {spec.path(), data::trace_file(request.trace)});
     if (!check_outputs({request.output}, inputs, sink)) return false;

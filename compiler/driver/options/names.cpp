@@ -23,15 +23,20 @@ std::optional<data::NamesInFile> parse_names(const std::vector<std::string>& wor
     return names;
 }
 
-bool check_names(const check::Model& model, const data::NamesInFile& names, diag::Sink& sink) {
+bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
+                 diag::Sink& sink) {
     std::vector<std::string> known;
-    for (const check::Input& input : model.inputs) known.push_back(input.name);
-    for (const check::Predicate& predicate : model.predicates)
-        if (!predicate.name.empty()) known.push_back("truth." + predicate.name);
+    for (const check::Model* model : models) {
+        for (const check::Input& input : model->inputs) known.push_back(input.name);
+        for (const check::Predicate& predicate : model->predicates)
+            if (!predicate.name.empty()) known.push_back("truth." + predicate.name);
+    }
     bool sound = true;
     for (const auto& [name, in_file] : names) {
         if (std::find(known.begin(), known.end(), name) != known.end()) continue;
-        std::string message = fmt::format("the spec has no input {}", data::in_quotes(name));
+        std::string message =
+            fmt::format("{} input {}", models.size() == 1 ? "the spec has no" : "no spec has an",
+                        data::in_quotes(name));
         if (const auto meant = diag::nearest_name(name, known))
             message += fmt::format("; did you mean {}?", data::in_quotes(*meant));
         sink.report(data::in_file({diag::Code::no_such_channel, message},

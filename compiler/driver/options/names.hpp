@@ -17,7 +17,8 @@ namespace etlc::driver {
 std::optional<data::NamesInFile> parse_names(const std::vector<std::string>& words,
                                              std::string& why);
 
-/// Reports the names that the spec does not have, E0804; false where there are any.
-bool check_names(const check::Model& model, const data::NamesInFile& names, diag::Sink& sink);
+/// Reports the names that no spec has, E0804; false where there are any.
+bool check_names(const std::vector<const check::Model*>& models, const data::NamesInFile& names,
+                 diag::Sink& sink);
 
 }  // namespace etlc::driver

@@ -36,4 +36,8 @@ void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::str
     add_number(app, "-j,--jobs", jobs, "threads (default: as many as the machine has)", 1, 1024);
 }
 
+void add_folds_option(CLI::App& app, std::uint32_t& folds, const std::string& help) {
+    add_number(app, "--folds", folds, help, 2, 1000);
+}
+
 }  // namespace etlc::driver

@@ -37,7 +37,7 @@ public:
           output_(sink) {}
 
     bool execute() {
-        if (!check_names(*plan_.model, request_.names, sink_)) return false;
+        if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
         inputs.insert(inputs.end(), {spec_, data::trace_file(request_.trace)});
         if (!check_outputs({request_.output}, inputs, sink_)) return false;

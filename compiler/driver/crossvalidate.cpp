@@ -1,0 +1,147 @@
+#include "driver/crossvalidate.hpp"
+
+#include <fmt/format.h>
+
+#include <memory>
+#include <set>
+
+#include "calibrate/shift.hpp"
+#include "episodes/admission.hpp"
+#include "episodes/folds.hpp"
+#include "episodes/parallel.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using Paths = std::vector<std::string>;
+
+/// Every `count`-th of the episodes, in parts that differ by at most one.
+std::vector<Paths> parts(const Paths& episodes, std::size_t count) {
+    std::vector<Paths> result(count);
+    for (std::size_t i = 0; i < episodes.size(); ++i) result[i % count].push_back(episodes[i]);
+    return result;
+}
+
+/// Passes errors on, and of warnings those that no earlier fold had.
+class Telling {
+public:
+    explicit Telling(diag::Sink& sink) : sink_(sink) {}
+
+    void tell(const diag::Sink& found, const std::string& note) {
+        diag::Sink first;
+        for (const diag::Diagnostic& one : found.sorted()) {
+            const std::uint32_t place = one.span ? one.span->begin : 0;
+            const bool is_new = told_.emplace(one.code, place).second;
+            if (is_new || one.severity() == diag::Severity::error) first.report(one);
+        }
+        sink_.add(first, note);
+    }
+
+private:
+    diag::Sink& sink_;
+    std::set<std::pair<diag::Code, std::uint32_t>> told_;
+};
+
+/// The chain, on the episodes of the other folds. What a stage learns goes into the check of the
+/// spec for the next one.
+class Chain {
+public:
+    Chain(const source::File& file, const Request& request, calibrate::Request calibration,
+          diag::Sink& sink)
+        : file_(file), request_(request), calibration_(std::move(calibration)), sink_(sink) {}
+
+    std::optional<Trained> train(const Paths& episodes) {
+        using Stage = bool (Chain::*)(const Paths& episodes);
+        const auto untrained = check(true, true);
+        if (!untrained) return std::nullopt;
+        std::vector<Stage> stages;
+        const bool has_predicates = !calibrate::calibrated_predicates(*untrained).empty();
+        const bool has_monitors = !calibrate::calibrated_monitors(*untrained).empty();
+        // Without anything to calibrate, this stage says so.
+        if (has_predicates || !has_monitors) stages.push_back(&Chain::calibrate_predicates);
+        if (has_monitors) stages.push_back(&Chain::calibrate_monitors);
+        const std::vector<Paths> of_stages = parts(episodes, stages.size());
+        for (std::size_t s = 0; s < stages.size(); ++s)
+            if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
+        auto model = check(false, false);
+        if (!model) return std::nullopt;
+        auto compiled = pipeline::compile(std::move(*model), request_, sink_);
+        if (!compiled) return std::nullopt;
+        return Trained{std::move(*compiled), std::move(thresholds_)};
+    }
+
+private:
+    bool calibrate_predicates(const Paths& episodes) {
+        const auto model = check(true, true);
+        calibration_.episodes = episodes;
+        return model && take(calibrate::calibrate(*model, calibration_, sink_));
+    }
+
+    bool calibrate_monitors(const Paths& episodes) {
+        const auto model = check(false, true);
+        calibration_.episodes = episodes;
+        return model && take(calibrate::calibrate_monitors(*model, std::move(thresholds_),
+                                                           calibration_, sink_));
+    }
+
+    bool take(std::optional<calibrate::Calibration> found) {
+        if (found) thresholds_ = std::move(found->file);
+        return found.has_value();
+    }
+
+    std::optional<check::Model> check(bool lacks_predicates, bool lacks_monitors) {
+        check::Options options = request_.check;
+        options.allow_uncalibrated = lacks_predicates;
+        options.allow_uncalibrated_monitors = lacks_monitors;
+        options.thresholds = &thresholds_;
+        diag::Sink told_before;  // what is wrong with the spec itself
+        auto model = check::check(parse::parse(file_, told_before), file_, options, told_before);
+        if (!model) sink_.add(told_before, "");
+        return model;
+    }
+
+    const source::File& file_;
+    const Request& request_;
+    calibrate::Request calibration_;
+    diag::Sink& sink_;
+    thresholds::File thresholds_;
+};
+
+}  // namespace
+
+std::optional<Folds> deal(const check::Model& model, const calibrate::Request& request,
+                          std::uint32_t folds, diag::Sink& sink) {
+    if (!episodes::can_be_dealt(request.episodes.size(), folds, model, sink)) return std::nullopt;
+    const auto read = episodes::over_episodes<episodes::Recorded>(
+        request.episodes, request, sink,
+        [&] { return std::make_unique<episodes::ContentScorer>(model, request.names); });
+    if (!read) return std::nullopt;
+    const auto recorded = episodes::recorded(*read);
+    Folds result{folds, episodes::folds_of(recorded, folds), {}};
+    result.allowance = episodes::admit(model, recorded, {}, request.allow_overlap, sink);
+    if (sink.has_errors()) return std::nullopt;
+    return result;
+}
+
+std::optional<std::vector<Trained>> train(const source::File& file, const Request& request,
+                                          const calibrate::Request& calibration, const Folds& folds,
+                                          diag::Sink& sink) {
+    std::vector<Trained> all;
+    Telling telling(sink);
+    for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
+        Paths others;
+        for (std::size_t e = 0; e < calibration.episodes.size(); ++e)
+            if (folds.of[e] != fold) others.push_back(calibration.episodes[e]);
+        diag::Sink found;
+        auto trained = Chain(file, request, calibration, found).train(others);
+        telling.tell(found, fmt::format("fold {} of {}: calibrated on {}", fold + 1, folds.count,
+                                        diag::counted(others.size(), "other episode")));
+        if (!trained) return std::nullopt;
+        all.push_back(std::move(*trained));
+    }
+    return all;
+}
+
+}  // namespace etlc::driver

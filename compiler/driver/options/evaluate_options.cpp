@@ -1,0 +1,42 @@
+#include "driver/options/evaluate_options.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "driver/options/recording_options.hpp"
+
+namespace etlc::driver {
+
+void add_evaluate_options(CLI::App& app, EvaluateRequest& evaluation, bool crossvalidates) {
+    constexpr std::uint32_t kUsualFolds = 5;
+    add_episode_options(app, evaluation.data, evaluation.groups,
+                        evaluation.evaluation.allow_overlap, evaluation.evaluation.jobs);
+    add_map_option(app, evaluation.evaluation.names);
+    if (crossvalidates) evaluation.folds = kUsualFolds;
+    add_folds_option(app, evaluation.folds,
+                     crossvalidates ? fmt::format("how many folds (default: {})", kUsualFolds)
+                                    : "calibrate on N - 1 of N folds of the episodes and evaluate "
+                                      "on the other, in turn, as etlc crossvalidate does");
+    app.add_flag("--by-episode", evaluation.by_episode,
+                 "also a row an episode, the worst first; the CSV then has these rows");
+    app.add_option("--json", evaluation.json, "also write the result as JSON; - is standard output")
+        ->type_name("FILE");
+    app.add_option("--csv", evaluation.csv, "also write the result as CSV; - is standard output")
+        ->type_name("FILE");
+}
+
+std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std::string>& specs,
+                                     const EvaluateRequest& evaluation) {
+    for (auto spec = specs.begin(); spec != specs.end(); ++spec)
+        if (std::find(specs.begin(), spec, *spec) != spec)
+            return fmt::format("the spec {} is given twice", *spec);
+    if (app.count("--thresholds") == 0) return "";
+    if (evaluation.folds > 0)
+        return "--thresholds does not go with folds, which take thresholds from the episodes";
+    if (specs.size() > 1)
+        return "--thresholds goes with one spec; those of several lie beside them";
+    return "";
+}
+
+}  // namespace etlc::driver

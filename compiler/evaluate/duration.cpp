@@ -1,0 +1,162 @@
+#include "evaluate/duration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace etlc::evaluate {
+
+namespace {
+
+/// Claims that numbers from the threshold on are true, or those below it.
+struct Rule {
+    bool from = true;
+    double threshold = 0;
+};
+
+constexpr Rule kAlwaysTrue{true, 0};
+constexpr Rule kAlwaysFalse{false, 0};
+
+/// How good a rule is: the later decides where the earlier is equal.
+struct Merit {
+    double f1 = 0;
+    std::uint64_t agreeing = 0;
+
+    bool operator==(const Merit&) const = default;
+    bool operator<(const Merit& other) const {
+        return std::pair(f1, agreeing) < std::pair(other.f1, other.agreeing);
+    }
+};
+
+Merit merit(std::uint64_t hits, std::uint64_t false_alarms, std::uint64_t positives,
+            std::uint64_t negatives) {
+    const std::uint64_t twice_over = positives + hits + false_alarms;
+    const double f1 =
+        twice_over == 0 ? 0 : 2 * static_cast<double>(hits) / static_cast<double>(twice_over);
+    return {f1, hits + negatives - false_alarms};
+}
+
+/// Numbers between two neighbouring ends of runs: how many of them are labelled so, in all
+/// episodes.
+struct Cell {
+    std::uint64_t positives = 0;
+    std::uint64_t negatives = 0;
+};
+
+/// The numbers at which the label of some episode changes, and the labels in between.
+class Cells {
+public:
+    explicit Cells(const std::vector<LabelRuns>& episodes) {
+        for (const LabelRuns& episode : episodes)
+            for (const LabelRuns::Run& run : episode.runs())
+                borders_.insert(borders_.end(), {run.begin, run.end});
+        std::sort(borders_.begin(), borders_.end());
+        borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
+        cells_.resize(borders_.empty() ? 0 : borders_.size() - 1);
+        for (const LabelRuns& episode : episodes) count(episode, true);
+    }
+
+    /// Adds an episode's labels, or takes them away.
+    void count(const LabelRuns& episode, bool adds) {
+        for (const LabelRuns::Run& run : episode.runs()) {
+            if (run.label == Label::unknown) continue;
+            auto at = static_cast<std::size_t>(
+                std::lower_bound(borders_.begin(), borders_.end(), run.begin) - borders_.begin());
+            for (; borders_[at] < run.end; ++at) {
+                const std::uint64_t numbers = borders_[at + 1] - borders_[at];
+                Cell& cell = cells_[at];
+                std::uint64_t& labels = run.label == Label::yes ? cell.positives : cell.negatives;
+                labels = adds ? labels + numbers : labels - numbers;
+            }
+        }
+    }
+
+    /// The best rule for what is counted; nothing where nothing is.
+    std::optional<Rule> best() const {
+        std::uint64_t positives = 0;
+        std::uint64_t negatives = 0;
+        for (const Cell& cell : cells_) {
+            positives += cell.positives;
+            negatives += cell.negatives;
+        }
+        if (positives + negatives == 0) return std::nullopt;
+        Merit best = merit(positives, negatives, positives, negatives);
+        Rule rule = kAlwaysTrue;
+        if (const Merit none = merit(0, 0, positives, negatives); best < none) {
+            best = none;
+            rule = kAlwaysFalse;
+        }
+        for (const bool from : {true, false}) improve(rule, best, from, positives, negatives);
+        return rule;
+    }
+
+private:
+    /// Within a cell F1 and agreement grow or fall all the way, so the borders are enough. Borders
+    /// with the same merit next to each other enclose numbers that nothing counted has.
+    void improve(Rule& rule, Merit& best, bool from, std::uint64_t positives,
+                 std::uint64_t negatives) const {
+        std::uint64_t positives_below = 0;
+        std::uint64_t negatives_below = 0;
+        std::size_t first = 0;
+        std::size_t last = 0;  // of the borders as good as the best; 0: none yet
+        for (std::size_t k = 1; k < cells_.size(); ++k) {
+            positives_below += cells_[k - 1].positives;
+            negatives_below += cells_[k - 1].negatives;
+            const Merit here = from ? merit(positives - positives_below,
+                                            negatives - negatives_below, positives, negatives)
+                                    : merit(positives_below, negatives_below, positives, negatives);
+            if (best < here) {
+                best = here;
+                first = last = k;
+            } else if (last != 0 && last + 1 == k && best == here) {
+                last = k;
+            }
+        }
+        if (last == 0) return;
+        rule.from = from;
+        rule.threshold =
+            (static_cast<double>(borders_[first]) + static_cast<double>(borders_[last])) / 2;
+    }
+
+    std::vector<std::uint64_t> borders_;
+    std::vector<Cell> cells_;
+};
+
+void judge(const LabelRuns& episode, const Rule& rule, Counts& counts) {
+    const auto first_from = static_cast<std::uint64_t>(std::ceil(rule.threshold));
+    for (const LabelRuns::Run& run : episode.runs()) {
+        const std::uint64_t border = std::clamp(first_from, run.begin, run.end);
+        Counts below;
+        Counts from;
+        below.add(rule.from ? Label::no : Label::yes, run.label);
+        from.add(rule.from ? Label::yes : Label::no, run.label);
+        counts.add(below, border - run.begin);
+        counts.add(from, run.end - border);
+    }
+}
+
+}  // namespace
+
+void LabelRuns::add(Label label) {
+    if (runs_.empty() || runs_.back().label != label)
+        runs_.push_back({next_, next_ + 1, label});
+    else
+        ++runs_.back().end;
+    ++next_;
+}
+
+std::optional<Counts> judged_by_duration(const std::vector<LabelRuns>& episodes) {
+    Cells cells(episodes);
+    Counts counts;
+    for (const LabelRuns& episode : episodes) {
+        cells.count(episode, false);
+        const auto rule = cells.best();
+        cells.count(episode, true);
+        if (!rule) return std::nullopt;
+        judge(episode, *rule, counts);
+    }
+    if (counts.total() == 0) return std::nullopt;
+    return counts;
+}
+
+}  // namespace etlc::evaluate
