@@ -17,6 +17,7 @@ using pipeline::Compiled;
 
 struct Request : pipeline::Options {
     check::Options check;
+    bool explain = false;      ///< the class says why: why_NAME()
     std::string emit = "hpp";  ///< ast, graph, plan, or a backend of emit/backends.cpp
     std::string name_space;
     std::string standalone;    ///< the header with the runtime in it: emit::Options::standalone

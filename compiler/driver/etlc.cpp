@@ -236,6 +236,7 @@ int compile_command(int argc, char** argv) {
             driver::mistake_in_compile_call(app, call.request, call.output, call.check_only);
         !mistake.empty())
         return complain(app, mistake);
+    if (call.request.explain) call.request.values = check::Values::sourced;
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
     call.request.check.allow_missing = call.check_only;

@@ -75,6 +75,9 @@ std::vector<Member> own_members(const Context& context) {
         result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
     result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
                       "incomplete = 0;", ""});
+    if (context.explains && !context.sampled.places.empty())
+        result.push_back(
+            {"Samples", "samples", "those whose values verdicts have", "samples.reset();", ""});
     if (plan.recorder)
         result.push_back({"Recorder", "recorder", "the last steps, and incidents",
                           "recorder.end_episode();", ""});
@@ -132,6 +135,7 @@ void print_types(Printer& out, const Context& context) {
     if (has_tables)
         types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
+    print_samples_type(out, context);
     print_recorder_type(out, context);
     out.line();
     if (context.on_demand) return;
@@ -139,6 +143,7 @@ void print_types(Printer& out, const Context& context) {
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
     for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
+    print_seen_field(out, context);
     if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
     out.close("};");
     out.line();
@@ -279,6 +284,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
         print_telemetry(out, context);
         out.line();
     }
+    print_why(out, context);
     print_adaptive_interface(out, context);
     print_doc(out,
               fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
@@ -306,8 +312,9 @@ void print_unseen(Printer& out, const Context& context) {
         out,
         "All that the robustness of a predicate can be: what stands for it where it is not seen.");
     for (const auto& [p, name] : context.names.predicate_unseen)
-        print_wrapped(out, fmt::format("static Value {}() noexcept {{ return {}; }}", name,
-                                       context.literal(plan::unseen_range(
+        print_wrapped(out, fmt::format("static {} {}() noexcept {{ return {}; }}",
+                                       context.spelling.atom, name,
+                                       context.atom_literal(plan::unseen_range(
                                            context.model.predicates[p], context.plan.values))));
     out.line();
 }
@@ -361,6 +368,7 @@ void print_class(Printer& out, const Context& context) {
     print_interface(out, context, all);
     out.label("private:");
     print_unseen(out, context);
+    print_why_of(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
     if (context.on_demand) declare_advance(out);
     print_adaptation_constants(out, context);

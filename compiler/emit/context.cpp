@@ -86,6 +86,13 @@ std::string Context::literal(plan::Value value) const {
     return fmt::format("Value{{{}, {}}}", literal(value.low), literal(value.high));
 }
 
+std::string Context::atom_literal(plan::Value value) const {
+    if (!explains) return literal(value);
+    if (value.low == value.high && value.low == etlmon::kTop) return "etlmon::kTrue";
+    if (value.low == value.high && value.low == etlmon::kBottom) return "etlmon::kFalse";
+    return fmt::format("{}{{{}, {}}}", spelling.atom, literal(value.low), literal(value.high));
+}
+
 std::vector<plan::Slot> Context::by_work(std::vector<plan::Slot> slots) const {
     std::stable_sort(slots.begin(), slots.end(),
                      [&](plan::Slot a, plan::Slot b) { return work(a) < work(b); });
@@ -96,8 +103,11 @@ std::string Context::value(plan::Slot slot) const {
     const plan::Stream& stream = plan.streams[slot];
     const std::string now = on_demand ? "" : "now.";
     if (stream.op == StreamOp::constant) return literal(stream.value);
-    if (stream.op == StreamOp::predicate) return now + names.predicate_atom.at(stream.index);
-    if (stream.op == StreamOp::flag) return now + names.flag_atom.at(stream.index);
+    const bool is_predicate = stream.op == StreamOp::predicate;
+    if (is_predicate || stream.op == StreamOp::flag) {
+        if (explains) return names.sourced_atoms[sampled.place_of(is_predicate, stream.index)];
+        return now + (is_predicate ? names.predicate_atom : names.flag_atom).at(stream.index);
+    }
     const bool is_register = stream.op == StreamOp::running || stream.op == StreamOp::since;
     return is_register ? names.streams[slot].member : names.streams[slot].local;
 }

@@ -14,7 +14,9 @@
 #include "plan/program/budget.hpp"
 #include "plan/program/demand.hpp"
 #include "plan/program/dependents.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/recorder.hpp"
+#include "plan/samples.hpp"
 
 namespace etlc::emit {
 
@@ -37,6 +39,8 @@ struct Context {
     std::vector<plan::Demand> demand = plan::demands(plan);  ///< per stream
     std::map<plan::Key, std::string> ends = unseen_ends(plan, names);
     plan::RecorderColumns recorded = plan::recorder_columns(plan);
+    bool explains = plan::value_type(plan.values).sourced;
+    plan::Samples sampled = plan::samples(plan);  ///< where it explains
 
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
@@ -49,6 +53,8 @@ struct Context {
     bool lossless(check::Index distance) const;
     std::string literal(plan::Value value) const;
     std::string literal(plan::Key key) const;
+    /// The same of a predicate or bool as it is measured.
+    std::string atom_literal(plan::Value value) const;
     /// The same of a bound: what predicates can be that are not seen yet.
     std::string bound(plan::Key key) const;
     /// The stream is found out when it is asked for: an atom of a Boolean monitor, or made of such.
@@ -131,6 +137,26 @@ void print_recorded_flag(Printer& out, const Context& context, check::Index inpu
 /// At the end of a step, with the verdicts in `verdicts`; after print_progress, so that each alarm
 /// of a repeating monitor is one that begins.
 void print_record(Printer& out, const Context& context, const std::string& verdicts);
+
+// Explanations, where values know their sample; nothing else prints anything then.
+void print_samples_type(Printer& out, const Context& context);
+/// The field of Atoms that holds what was measured.
+void print_seen_field(Printer& out, const Context& context);
+/// What this step has seen of a predicate whose distance or expression is `delta`, and of a bool.
+void print_seen(Printer& out, const Context& context, check::Index predicate,
+                const std::string& delta);
+void print_seen_flag(Printer& out, const Context& context, check::Index input,
+                     const std::string& flag);
+/// At the beginning of judge(): this step's values with their samples.
+void print_sourced_atoms(Printer& out, const Context& context);
+/// In judge(): of a monitor, what its verdict, in `verdict`, is made from.
+void print_answer(Printer& out, const Context& context, std::size_t m, const std::string& verdict);
+/// What outlives the steps, after it was computed.
+void print_followed_streams(Printer& out, const Context& context);
+void print_followed_readings(Printer& out, const Context& context);
+/// why_NAME(), and what they share.
+void print_why(Printer& out, const Context& context);
+void print_why_of(Printer& out, const Context& context);
 
 /// A data member of the class: its declaration and how reset() sets it.
 struct Member {

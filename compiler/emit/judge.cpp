@@ -12,15 +12,22 @@ std::string shifted(const plan::Monitor& monitor, const std::string& value) {
                : value;
 }
 
+/// A reading or value that is robustness alone.
+std::string robustness(const Context& context, const std::string& value) {
+    return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
+}
+
 std::string prefix_verdict(const Context& context, const plan::Monitor& monitor) {
+    const std::string& reading = context.names.readings[monitor.reading].local;
     return fmt::format("etlmon::prefix_verdict({})",
-                       shifted(monitor, context.names.readings[monitor.reading].local));
+                       shifted(monitor, robustness(context, reading)));
 }
 
 /// About the position that its horizon is behind, where there is one.
 std::string sliding_verdict(const Context& context, const plan::Monitor& monitor) {
     return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : {}()", monitor.horizon,
-                       shifted(monitor, context.value(monitor.stream)), context.spelling.verdict);
+                       shifted(monitor, robustness(context, context.value(monitor.stream))),
+                       context.spelling.verdict);
 }
 
 std::string verdict(const Context& context, std::size_t m) {
@@ -59,10 +66,13 @@ void print_readings(Printer& out, const Context& context) {
         context.on_demand ? print_reading_while_open(out, context, r)
                           : print_reading(out, context, r);
     }
+    print_followed_readings(out, context);
     if (!ends) return;
-    for (const auto& [m, name] : context.names.verdict_member)
+    for (const auto& [m, name] : context.names.verdict_member) {
         print_wrapped(out,
                       fmt::format("{} = {};", name, prefix_verdict(context, plan.monitors[m])));
+        print_answer(out, context, m, name);
+    }
     out.close();
 }
 
@@ -128,13 +138,17 @@ void print_judge(Printer& out, const Context& context) {
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.gap();
+    print_sourced_atoms(out, context);
     print_streams(out, context);
+    print_followed_streams(out, context);
     print_readings(out, context);
     out.gap();
     out.line("Verdicts verdicts;");
-    for (std::size_t m = 0; m < plan.monitors.size(); ++m)
-        print_wrapped(out,
-                      fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
+    for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
+        const std::string answer = "verdicts." + plan.monitors[m].name;
+        print_wrapped(out, fmt::format("{} = {};", answer, verdict(context, m)));
+        if (plan.monitors[m].sliding || !plan.has_sliding) print_answer(out, context, m, answer);
+    }
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position"));

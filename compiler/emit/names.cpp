@@ -9,6 +9,7 @@
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/program/value_type.hpp"
+#include "plan/samples.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::emit {
@@ -36,6 +37,8 @@ std::set<std::string> functions(const check::Model& model, const plan::Plan& pla
         for (const char* prefix : {"distance_", "nearest_", "threshold_", "unseen_",
                                    "initial_threshold_", "set_threshold_", "observe_"})
             names.insert(prefix + model.predicates[p].name);
+    if (plan::value_type(plan.values).sourced)
+        for (const plan::Monitor& monitor : plan.monitors) names.insert("why_" + monitor.name);
     for (const plan::Monitor& monitor : plan.monitors)
         for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
             if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
@@ -78,6 +81,7 @@ public:
 
     Names name_all() {
         name_atoms();
+        name_sourced_atoms();
         name_measurements();
         name_streams();
         name_readings();
@@ -109,6 +113,14 @@ private:
             if (!on_demand_)
                 for (Scope* scope : {&judge_, &measure_}) scope->claim(names_.predicate_unseen[p]);
             names_.predicate_local[p] = local(measure_, predicate_name(predicate) + "_delta");
+        }
+    }
+
+    void name_sourced_atoms() {
+        if (!plan::value_type(plan_.values).sourced) return;
+        for (const plan::Samples::Place& place : plan::samples(plan_).places) {
+            const auto& atoms = place.is_predicate ? names_.predicate_atom : names_.flag_atom;
+            names_.sourced_atoms.push_back(local(judge_, atoms.at(place.index) + "_now"));
         }
     }
 

@@ -50,7 +50,9 @@ struct Names {
     std::map<check::Index, std::string> predicate_atom;
     /// Function of a class of robustness: all that the predicate can be.
     std::map<check::Index, std::string> predicate_unseen;
-    std::map<check::Index, std::string> flag_atom;         ///< as predicate_atom
+    std::map<check::Index, std::string> flag_atom;  ///< as predicate_atom
+    /// In judge() of a class that explains: this step's values with their samples.
+    std::vector<std::string> sourced_atoms;
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
     /// Of adaptive predicates: the threshold as it is now.
     std::map<check::Index, std::string> threshold_member;

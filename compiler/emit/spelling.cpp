@@ -6,6 +6,7 @@ const Spelling& spelling(check::Values values) {
     static const Spelling kRobustness{
         .value = "etlmon::Value",
         .value_meaning = "a robustness; its ends differ where a sample is missing",
+        .atom = "Value",
         .key = "etlmon::Key",
         .reading = "etlmon::Reading",
         .verdict = "etlmon::Verdict",
@@ -24,6 +25,7 @@ const Spelling& spelling(check::Values values) {
     static const Spelling kTruth{
         .value = "etlmon::Truth",
         .value_meaning = "surely true, and perhaps true",
+        .atom = "Value",
         .key = "bool",
         .reading = "etlmon::BasicReading<Value>",
         .verdict = "etlmon::BooleanVerdict",
@@ -39,7 +41,31 @@ const Spelling& spelling(check::Values values) {
         .delays = "temporal/boolean_window",
         .windows = "temporal/boolean_window",
     };
-    return values == check::Values::boolean ? kTruth : kRobustness;
+    static const Spelling kSourced{
+        .value = "etlmon::Sourced",
+        .value_meaning = "a robustness and its sample; the ends differ where one is missing",
+        .atom = "etlmon::Value",
+        .key = "etlmon::SourcedKey",
+        .reading = "etlmon::BasicReading<Value>",
+        .verdict = "etlmon::Verdict",
+        .kept = "Value",
+        .bytes = false,
+        .yes = "etlmon::kTrueItself",
+        .no = "etlmon::kFalseItself",
+        .top = "etlmon::kTop",
+        .bottom = "etlmon::kBottom",
+        .neither = "",
+        .predicates = "temporal/predicate",
+        .verdicts = "temporal/samples",
+        .delays = "temporal/delay",
+        .windows = "temporal/window",
+    };
+    switch (values) {
+        case check::Values::robustness: break;
+        case check::Values::boolean: return kTruth;
+        case check::Values::sourced: return kSourced;
+    }
+    return kRobustness;
 }
 
 }  // namespace etlc::emit

@@ -14,7 +14,8 @@ struct Spelling {
     // Types.
     std::string value;
     std::string value_meaning;
-    std::string key;  ///< of one end
+    std::string atom;  ///< of a predicate or bool as it is measured
+    std::string key;   ///< of one end
     std::string reading;
     std::string verdict;
     std::string kept;  ///< a value that is kept from step to step

@@ -78,6 +78,12 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
         rows.push_back(
             cost_row({monitor.name, about(monitor)}, plan.monitor_costs[m], both_layouts));
     }
+    if (plan::value_type(plan.values).sourced) {
+        const plan::Samples samples = plan::samples(plan);
+        rows.push_back(cost_row({"samples", diag::counted(samples.steps, "step")},
+                                {.state_bytes = plan::bytes_of(samples, plan.monitors.size())},
+                                both_layouts));
+    }
     if (plan.recorder)
         rows.push_back(cost_row({"recorder", recorder_words(*plan.recorder)},
                                 {.state_bytes = plan::recorder_bytes(plan)}, both_layouts));

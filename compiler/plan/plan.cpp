@@ -11,6 +11,7 @@
 #include "plan/decide/streams.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/program/budget.hpp"
+#include "plan/program/value_type.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -129,7 +130,7 @@ private:
 
     /// Where the number of the step is asked for, from the start of the trace or of a monitor.
     void count_steps() {
-        plan_.counts_steps = plan_.has_sliding;
+        plan_.counts_steps = plan_.has_sliding || value_type(plan_.values).sourced;
         const auto count = [&](std::uint32_t from) {
             (from == kNone ? plan_.counts_steps : plan_.monitors[from].counts_steps) = true;
         };

@@ -5,6 +5,7 @@
 // excused but what lies within the rounding bound.
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -32,7 +33,17 @@ struct Observed {
         std::optional<std::uint32_t> nearest;
         std::optional<double> threshold;  ///< of adaptive ones, as this step used it
     };
+    /// What why_NAME() says; NaN and kNoRow: nothing.
+    struct Why {
+        static constexpr std::uint32_t kNoRow = 0xffffffff;
+        std::string predicate;
+        std::uint32_t step = 0;
+        float distance = std::numeric_limits<float>::quiet_NaN();
+        float threshold = std::numeric_limits<float>::quiet_NaN();
+        std::uint32_t row = kNoRow;
+    };
     std::vector<std::vector<reference::Verdict>> verdicts;
+    std::vector<std::vector<std::optional<Why>>> whys;  ///< of classes that explain
     std::vector<std::vector<reference::Verdict>> finish;
     /// The position that each verdict is about, where it is decided; empty: not seen.
     std::vector<std::vector<std::uint64_t>> positions;

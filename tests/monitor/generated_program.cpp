@@ -44,11 +44,14 @@ bool GeneratedProgram::command(const std::string& line) {
 bool GeneratedProgram::add(const check::Model& model, check::Values values,
                            const std::string& thresholds) {
     models_.push_back(model);
+    explain_.push_back(values == check::Values::sourced);
     write_text(folder_ / (model.name + ".etl"), std::string(model.file.text()));
     if (!thresholds.empty()) write_text(folder_ / (model.name + ".thresholds.json"), thresholds);
-    return command(fmt::format("'{}' {}.etl -o {}.hpp {} --values {}", ETLC_COMMAND, model.name,
-                               model.name, kLimits,
-                               values == check::Values::boolean ? "boolean" : "robustness"));
+    const char* of_values = values == check::Values::boolean   ? "--values boolean"
+                            : values == check::Values::sourced ? "--explain"
+                                                               : "";
+    return command(fmt::format("'{}' {}.etl -o {}.hpp {} {}", ETLC_COMMAND, model.name, model.name,
+                               kLimits, of_values));
 }
 
 bool GeneratedProgram::compile(const Build& build) {
@@ -56,7 +59,7 @@ bool GeneratedProgram::compile(const Build& build) {
     std::string parts[2];
     std::vector<std::string> names;
     for (std::size_t n = 0; n < models_.size(); ++n) {
-        parts[n % 2] += adaptor_source(models_[n]);
+        parts[n % 2] += adaptor_source(models_[n], explain_[n]);
         names.push_back(models_[n].name);
     }
     parts[1] = fmt::format("#include \"{}.hpp\"\n", names[0]) + parts[1];
@@ -82,7 +85,8 @@ GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& reque
     const std::string answers = read_text((folder_ / "answers.bin").string());
     Decoder decoder(answers);
     for (const Request& request : requests)
-        result.answers.push_back(decoder.answer(models_[request.spec], request));
+        result.answers.push_back(
+            decoder.answer(models_[request.spec], explain_[request.spec], request));
     result.allocations = decoder.allocations();
     EXPECT_TRUE(decoder.at_end());
     return result;

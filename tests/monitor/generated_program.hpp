@@ -58,6 +58,7 @@ public:
 private:
     std::filesystem::path folder_;
     std::vector<check::Model> models_;
+    std::vector<bool> explain_;  ///< by model
     std::string emulator_;
 
     bool command(const std::string& line);

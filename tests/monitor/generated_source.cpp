@@ -95,9 +95,16 @@ std::string restarting(const check::Model& model) {
     return result + "  }\n";
 }
 
+std::string explaining(const check::Model& model, bool explains) {
+    std::string result = "  static void whys(const Monitor& m) {\n    (void)m;\n";
+    for (const check::Monitor& monitor : model.monitors)
+        if (explains) result += fmt::format("    harness::write_why(m.why_{}());\n", monitor.name);
+    return result + "  }\n";
+}
+
 }  // namespace
 
-std::string adaptor_source(const check::Model& model) {
+std::string adaptor_source(const check::Model& model, bool explains) {
     const std::string aliases = fmt::format(
         "  using Monitor = {0}::Monitor;\n"
         "  using Inputs = {0}::Inputs;\n"
@@ -107,7 +114,8 @@ std::string adaptor_source(const check::Model& model) {
                "#include \"{0}.hpp\"\nnamespace {{\nstruct {0}_spec {{\n{1}}};\n}}  // namespace\n",
                model.name,
                aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
-                   restarting(model) + reporting(model) + finishing(model)) +
+                   restarting(model) + reporting(model) + explaining(model, explains) +
+                   finishing(model)) +
            fmt::format(
                "void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); "
                "}}\n",

@@ -10,8 +10,8 @@
 
 namespace etlc::tests {
 
-/// Defines `void answer_SPEC()` for the class in "SPEC.hpp".
-std::string adaptor_source(const check::Model& model);
+/// Defines `void answer_SPEC()` for the class in "SPEC.hpp", which may say why.
+std::string adaptor_source(const check::Model& model, bool explains);
 
 /// Defines main, which serves the specs in this order.
 std::string main_source(const std::vector<std::string>& specs);

@@ -122,11 +122,25 @@ reference::Verdict Decoder::verdict() {
     return result;
 }
 
-Observed Decoder::run(const check::Model& model, std::size_t steps) {
+std::optional<Observed::Why> Decoder::why() {
+    if (take<std::uint8_t>() == 0) return {};
+    Observed::Why why;
+    const auto length = take<std::uint32_t>();
+    for (std::uint32_t n = 0; n < length; ++n) why.predicate += take<char>();
+    why.step = take<std::uint32_t>();
+    why.distance = take<float>();
+    why.threshold = take<float>();
+    why.row = take<std::uint32_t>();
+    return why;
+}
+
+Observed Decoder::run(const check::Model& model, bool explains, std::size_t steps) {
     Observed result;
     for (std::size_t step = 0; step < steps; ++step) {
         auto& verdicts = result.verdicts.emplace_back();
         for (std::size_t m = 0; m < model.monitors.size(); ++m) verdicts.push_back(verdict());
+        auto& whys = result.whys.emplace_back();
+        for (std::size_t m = 0; explains && m < model.monitors.size(); ++m) whys.push_back(why());
         auto& telemetry = result.telemetry.emplace_back(model.predicates.size());
         for (std::size_t p = 0; p < model.predicates.size(); ++p) {
             if (model.predicates[p].name.empty()) continue;
@@ -152,11 +166,11 @@ std::uint64_t Decoder::allocations() {
     return take<std::uint64_t>();
 }
 
-Answer Decoder::answer(const check::Model& model, const Request& request) {
+Answer Decoder::answer(const check::Model& model, bool explains, const Request& request) {
     Answer result;
-    result[0] = run(model, request.first.size());
-    result[1] = run(model, request.second.size());
-    result[2] = run(model, request.second.size());
+    result[0] = run(model, explains, request.first.size());
+    result[1] = run(model, explains, request.second.size());
+    result[2] = run(model, explains, request.second.size());
     return result;
 }
 

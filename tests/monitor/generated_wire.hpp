@@ -32,7 +32,7 @@ class Decoder {
 public:
     explicit Decoder(const std::string& bytes) : bytes_(bytes) {}
 
-    Answer answer(const check::Model& model, const Request& request);
+    Answer answer(const check::Model& model, bool explains, const Request& request);
     /// The number of allocations, which ends the answers.
     std::uint64_t allocations();
     bool at_end() const { return position_ == bytes_.size(); }
@@ -44,7 +44,8 @@ private:
     template <class T>
     T take();
     reference::Verdict verdict();
-    Observed run(const check::Model& model, std::size_t steps);
+    std::optional<Observed::Why> why();
+    Observed run(const check::Model& model, bool explains, std::size_t steps);
 };
 
 }  // namespace etlc::tests

@@ -173,7 +173,7 @@ Claim claim(const Model& model, Literal part, Values values) {
     }
     const bool of_violations =
         result.kind == Claim::Kind::exact || result.kind == Claim::Kind::missed_alarm;
-    result.zero_aside = of_violations && no_at_zero && values == Values::robustness;
+    result.zero_aside = of_violations && no_at_zero && values != Values::boolean;
     return result;
 }
 

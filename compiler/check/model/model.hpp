@@ -198,8 +198,9 @@ bool holds(Comparison comparison, Number delta, Number epsilon) {
 }
 
 /// What a monitor computes with: `--values`. Boolean: the comparison itself decides, and a
-/// formula's value is true (+inf) or false (-inf).
-enum class Values : std::uint8_t { robustness, boolean };
+/// formula's value is true (+inf) or false (-inf). Sourced, `--explain`: robustness, and the sample
+/// that it is that of.
+enum class Values : std::uint8_t { robustness, boolean, sourced };
 
 enum class ThresholdOrigin : std::uint8_t { literal, f1, conformal, class_conditional, adaptive };
 

@@ -57,6 +57,9 @@ void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, b
         ->type_name("NAME")
         ->check(
             CLI::Validator([](const std::string& name) { return mistake_in_namespace(name); }, ""));
+    app.add_flag("--explain", request.explain,
+                 "values that know their sample: why_NAME() says which one decides a verdict, with "
+                 "its step, distance, threshold and nearest target");
     app.add_option_function<std::string>(
            "--recorder", [&request](const std::string& text) { request.recorder = recorder(text); },
            "keep the steps around each alarm: BEFORE,AFTER,INCIDENTS, as 2s,1s,4 or 40,20,4; "
@@ -88,6 +91,10 @@ std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
         (output.targets.empty() || output.targets == "-" || output.targets == output.result ||
          output.targets == output.depfile))
         return "--targets-file needs a file of its own";
+    if (request.explain && request.values == check::Values::boolean)
+        return "--explain follows robustness to the sample that it is that of, and --values "
+               "boolean "
+               "has none: leave one of the two out";
     if (app.count("--targets-file") > 0 && prints_stage && request.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
     return "";

@@ -145,6 +145,7 @@ private:
             out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom, robustness_name(predicate),
                               known, threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
+        print_seen(out_, context_, p, delta);
         print_recorded(out_, context_, p, delta);
     }
 
@@ -152,7 +153,7 @@ private:
     std::string missing_value(Index p) const {
         const check::Predicate& predicate = context_.model.predicates[p];
         if (!predicate.missing) return context_.names.predicate_unseen.at(p) + "()";
-        return context_.literal(plan::missing_value(predicate, context_.plan.values));
+        return context_.atom_literal(plan::missing_value(predicate, context_.plan.values));
     }
 
     /// AGG DIST(point, target): kept with its nearest row.

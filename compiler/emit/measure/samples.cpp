@@ -62,7 +62,7 @@ std::string held_flag(const std::string& word) {
 void print_flag(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
     const std::string missing =
-        input.missing ? ", " + context.literal(plan::missing_value(input)) : "";
+        input.missing ? ", " + context.atom_literal(plan::missing_value(input)) : "";
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i)) {
         out.open(
@@ -77,6 +77,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.line("now.{} = etlmon::value_of(in.{}{});", context.names.flag_atom.at(i), input.name,
                  missing);
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
+        print_seen_flag(out, context, i, "in." + input.name);
         return print_recorded_flag(out, context, i, "in." + input.name);
     }
     const std::string& word = context.names.input_buffer.at(i);
@@ -97,6 +98,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     print_wrapped(out, fmt::format("now.{} = etlmon::value_of({}{});",
                                    context.names.flag_atom.at(i), held_flag(local), missing));
     out.line(missed(local + " == nullptr"));
+    print_seen_flag(out, context, i, held_flag(local));
     print_recorded_flag(out, context, i, held_flag(local));
 }
 

@@ -177,7 +177,7 @@ void Evaluator::measure_predicates() {
             measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);
-        if (predicate.plain_distance() && plan_.values == check::Values::robustness)
+        if (predicate.plain_distance() && plan_.values != check::Values::boolean)
             predicate_values_[p] =
                 value_of(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
         if (replacement_ && !std::isnan(measured.delta)) predicate_values_[p] = replacement_(p);

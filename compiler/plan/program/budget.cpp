@@ -9,6 +9,7 @@
 #include "plan/decide/point_checks.hpp"
 #include "plan/program/target_bytes.hpp"
 #include "plan/program/value_type.hpp"
+#include "plan/samples.hpp"
 #include "plan/stored.hpp"
 
 namespace etlc::plan {
@@ -31,6 +32,7 @@ constexpr std::uint64_t kCodePerWindow = 240;
 constexpr std::uint64_t kCodePerRing = 64;
 constexpr std::uint64_t kCodePerAdaptation = 144;  // observe_P(), as a Cortex-M4 has it at -Os
 constexpr std::uint64_t kCodePerTable = 200;
+constexpr std::uint64_t kCodePerSamples = 600;
 constexpr std::uint64_t kTransitionBytes = sizeof(etlmon::Transition);
 constexpr std::uint64_t kStateBytes = sizeof(std::uint32_t) + sizeof(etlmon::Owed);
 
@@ -309,6 +311,10 @@ void add_costs(Plan& plan) {
         if (monitor.counts_steps) fixed.state_bytes += kWord;
         const bool counts_verdicts = monitor.restarts == check::Restarts::when_final;
         if (counts_verdicts) fixed.state_bytes += 2 * kWord;  // alarms and fulfilled ones
+    }
+    if (type.sourced) {
+        fixed.state_bytes += bytes_of(samples(plan), plan.monitors.size());
+        fixed.code_bytes += kCodePerSamples;
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

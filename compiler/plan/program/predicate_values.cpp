@@ -43,7 +43,7 @@ Value value_of(etlmon::Truth truth) {
 }  // namespace
 
 Value unseen_range(const check::Predicate& predicate, Values values) {
-    if (values == Values::robustness)
+    if (values != Values::boolean)
         return etlmon::between(predicate.robustness.low, predicate.robustness.high);
     return value_of(truth_range(predicate));
 }

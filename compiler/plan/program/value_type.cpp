@@ -4,6 +4,7 @@
 #include "etlmon/temporal/boolean_verdict.hpp"
 #include "etlmon/temporal/handover.hpp"
 #include "etlmon/temporal/reading.hpp"
+#include "etlmon/temporal/sourced.hpp"
 #include "etlmon/temporal/verdict.hpp"
 
 namespace etlc::plan {
@@ -11,8 +12,9 @@ namespace etlc::plan {
 namespace {
 
 template <class V, class Verdict>
-constexpr ValueType row(bool on_demand) {
+constexpr ValueType row(bool on_demand, bool sourced) {
     return {.on_demand = on_demand,
+            .sourced = sourced,
             .value = sizeof(V),
             .reading = sizeof(etlmon::BasicReading<V>),
             .verdict = sizeof(Verdict),
@@ -26,9 +28,15 @@ constexpr ValueType row(bool on_demand) {
 }  // namespace
 
 const ValueType& value_type(check::Values values) {
-    static constexpr ValueType kRobustness = row<etlmon::Value, etlmon::Verdict>(false);
-    static constexpr ValueType kTruth = row<etlmon::Truth, etlmon::BooleanVerdict>(true);
-    return values == check::Values::boolean ? kTruth : kRobustness;
+    static constexpr ValueType kRobustness = row<etlmon::Value, etlmon::Verdict>(false, false);
+    static constexpr ValueType kTruth = row<etlmon::Truth, etlmon::BooleanVerdict>(true, false);
+    static constexpr ValueType kSourced = row<etlmon::Sourced, etlmon::Verdict>(false, true);
+    switch (values) {
+        case check::Values::robustness: break;
+        case check::Values::boolean: return kTruth;
+        case check::Values::sourced: return kSourced;
+    }
+    return kRobustness;
 }
 
 }  // namespace etlc::plan

@@ -14,6 +14,8 @@ struct ValueType {
     /// Predicates are measured when a verdict that can still change first depends on them, and a
     /// final verdict ends its monitor's work. Else on every step: robustness depends on all.
     bool on_demand;
+    /// A value knows its sample, and the class can say which one decides a verdict.
+    bool sourced;
     // Bytes of one, and of what the runtime makes of so many.
     std::uint64_t value;
     std::uint64_t reading;

@@ -11,6 +11,7 @@
 
 #include "shrink.hpp"
 #include "subject.hpp"
+#include "whys.hpp"
 
 namespace etlc::tests {
 
@@ -41,6 +42,7 @@ struct Tally {
     Row boolean;
     int pairs = 0;
     int compiled = 0;
+    WhyTally whys;  ///< of compiled classes
     int explained = 0;
     int for_good = 0;      ///< of these: verdicts that are final
     int with_samples = 0;  ///< of these: the explanation has some

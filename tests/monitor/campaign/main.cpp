@@ -49,11 +49,13 @@ int report(const Effort& effort, const Tally& tally) {
     good &= show_refused("sliding", tally.sliding, kMayBeRefused);
     good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
     fmt::print(
-        "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds, "
+        "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds "
+        "({} verdicts said why, {} of them had forgotten what was measured), "
         "{} explained ({} for good, {} by samples, {} with what would turn them): "
         "{} mismatches\n",
-        tally.pairs, tally.compiled, effort.builds, tally.explained, tally.for_good,
-        tally.with_samples, tally.with_change, tally.findings.size());
+        tally.pairs, tally.compiled, effort.builds, tally.whys.asked, tally.whys.forgotten,
+        tally.explained, tally.for_good, tally.with_samples, tally.with_change,
+        tally.findings.size());
     good = good && tally.findings.empty();
     // A spec that does not load or a class that does not compile is a failure of GoogleTest's,
     // outside of any test.

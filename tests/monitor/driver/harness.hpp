@@ -17,6 +17,7 @@
 #include <string.h>
 
 #include "etlmon/temporal/boolean_verdict.hpp"
+#include "etlmon/temporal/samples.hpp"
 #include "restarts_before.hpp"
 
 namespace harness {
@@ -74,6 +75,20 @@ inline void write_verdict(const etlmon::BooleanVerdict& verdict) {
   numbers.upper =
       etlmon::float_of(verdict.final() && verdict.violated() ? etlmon::kBottom : etlmon::kTop);
   write_verdict(numbers);
+}
+
+/// Of a class that explains: whether there is a sample, then its name and the rest.
+inline void write_why(const etlmon::Sample& sample) {
+  const bool exists = static_cast<bool>(sample);
+  write(static_cast<uint8_t>(exists));
+  if (!exists) return;
+  const auto length = static_cast<uint32_t>(strlen(sample.predicate));
+  write(length);
+  write_bytes(sample.predicate, length);
+  write(sample.step);
+  write(sample.distance);
+  write(sample.threshold);
+  write(sample.row);
 }
 
 // Where the class has no such input or predicate, because no monitor depends on it, the overloads
@@ -208,8 +223,8 @@ extern Tape* sink;
 Tape& tape(int number);  // 0, 1: the traces; 2, 3: the answers
 
 /// What a generated file says about one spec: Spec::Monitor, Spec::Inputs, Spec::Buffers,
-/// Spec::labels, Spec::restart, Spec::restart_before, Spec::feed, Spec::verdicts, Spec::telemetry,
-/// Spec::finish.
+/// Spec::labels, Spec::restart, Spec::restart_before, Spec::feed, Spec::verdicts, Spec::whys,
+/// Spec::telemetry, Spec::finish.
 template <class Spec>
 class Session {
  public:
@@ -271,6 +286,7 @@ class Session {
     }
     sink = &answer;
     Spec::verdicts(verdicts);
+    Spec::whys(monitor);
     Spec::telemetry(monitor);
     sink = nullptr;
   }

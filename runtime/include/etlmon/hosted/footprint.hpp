@@ -7,6 +7,7 @@
 
 #include "etlmon/temporal/boolean_window.hpp"
 #include "etlmon/temporal/delay.hpp"
+#include "etlmon/temporal/sourced.hpp"
 #include "etlmon/temporal/window.hpp"
 
 namespace etlmon {
@@ -38,14 +39,18 @@ struct WindowBytes {
   }
 };
 
-template <template <class> class Operator>
-struct WindowBytes<Operator<Value>> {
+template <template <class> class Operator, class V>
+struct PairWindowBytes {
   static constexpr uint32_t of(uint32_t n) noexcept {
-    using Element = typename Operator<Key>::Element;
+    using Element = typename Operator<typename Lattice<V>::End>::Element;
     return storage_bytes(2 * window_elements(n) * static_cast<uint32_t>(sizeof(Element))) +
            static_cast<uint32_t>(sizeof(Parting));
   }
 };
+template <template <class> class Operator>
+struct WindowBytes<Operator<Value>> : PairWindowBytes<Operator, Value> {};
+template <template <class> class Operator>
+struct WindowBytes<Operator<Sourced>> : PairWindowBytes<Operator, Sourced> {};
 
 namespace detail {
 constexpr uint32_t kAgeBytes = 2 * sizeof(uint32_t);

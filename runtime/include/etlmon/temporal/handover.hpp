@@ -55,16 +55,22 @@ struct Covered {
   }
 };
 
-constexpr Flanks<Key> low_of(Flanks<Value> e) noexcept {
+template <class V>
+constexpr Flanks<typename Lattice<V>::End> low_of(Flanks<V> e) noexcept {
   return {e.value.low, e.before.low, e.behind.low};
 }
-constexpr Flanks<Key> high_of(Flanks<Value> e) noexcept {
+template <class V>
+constexpr Flanks<typename Lattice<V>::End> high_of(Flanks<V> e) noexcept {
   return {e.value.high, e.before.high, e.behind.high};
 }
-constexpr Flanks<Value> pair_of(Flanks<Key> low, Flanks<Key> high) noexcept {
-  return {{low.value, high.value}, {low.before, high.before}, {low.behind, high.behind}};
+template <class End>
+constexpr auto pair_of(Flanks<End> low, Flanks<End> high) noexcept
+    -> Flanks<decltype(pair_of(low.value, high.value))> {
+  return {pair_of(low.value, high.value), pair_of(low.before, high.before),
+          pair_of(low.behind, high.behind)};
 }
-constexpr bool same_ends(Flanks<Value> e) noexcept {
+template <class V>
+constexpr bool same_ends(Flanks<V> e) noexcept {
   return same_ends(e.before) && same_ends(e.behind) && same_ends(e.value);
 }
 

@@ -112,13 +112,22 @@ struct Release {
 constexpr Key low_of(Value v) noexcept { return v.low; }
 constexpr Key high_of(Value v) noexcept { return v.high; }
 constexpr Value pair_of(Key low, Key high) noexcept { return {low, high}; }
-constexpr Span<Key> low_of(Span<Value> s) noexcept { return {s.value.low, s.guard.low}; }
-constexpr Span<Key> high_of(Span<Value> s) noexcept { return {s.value.high, s.guard.high}; }
-constexpr Span<Value> pair_of(Span<Key> low, Span<Key> high) noexcept {
-  return {{low.value, high.value}, {low.guard, high.guard}};
+template <class V>
+constexpr Span<typename Lattice<V>::End> low_of(Span<V> s) noexcept {
+  return {s.value.low, s.guard.low};
+}
+template <class V>
+constexpr Span<typename Lattice<V>::End> high_of(Span<V> s) noexcept {
+  return {s.value.high, s.guard.high};
+}
+template <class End>
+constexpr auto pair_of(Span<End> low, Span<End> high) noexcept
+    -> Span<decltype(pair_of(low.value, high.value))> {
+  return {pair_of(low.value, high.value), pair_of(low.guard, high.guard)};
 }
 constexpr bool same_ends(Value v) noexcept { return v.low == v.high; }
-constexpr bool same_ends(Span<Value> s) noexcept {
+template <class V>
+constexpr bool same_ends(Span<V> s) noexcept {
   return same_ends(s.value) && same_ends(s.guard);
 }
 

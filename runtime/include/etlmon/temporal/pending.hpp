@@ -141,9 +141,9 @@ void pending_windows(const R* in, R* out, uint32_t n, uint32_t first, uint32_t l
 /// f U[low,high] g (Seeking) or f R[low,high] g (Guarding) at each position; without f (nullptr), F
 /// and G. unseen: the highest, or lowest, unseen value of g. f U[low,high] g is f at the first low
 /// positions, and behind them F[0,high-low] g and f U g, also where the prefix ends before.
-template <class Sense, class R, class End>
+template <class Sense, class R>
 void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, uint32_t n,
-                     uint32_t low, uint32_t high, End unseen) noexcept {
+                     uint32_t low, uint32_t high, decltype(R::lower) unseen) noexcept {
   const auto gain = [](R a, R b) noexcept { return Sense::gain(a, b); };
   const auto keep = [](R a, R b) noexcept { return Sense::keep(a, b); };
   R beyond = Sense::template nothing<R>();
@@ -163,12 +163,12 @@ void pending_at_each(const typename detail::As<R>::Type* f, const R* g, R* out, 
 /// The same from position 0 alone, the operands settled `horizon` steps late. n readings of them,
 /// the last at `step`. best and held: the operator and its left side up to the last settled
 /// position; both are moved on by one.
-template <class Sense, class V, class End>
+template <class Sense, class V>
 BasicReading<V> pending_from_start(V& best, V& held,
                                    const typename detail::As<BasicReading<V>>::Type* f,
                                    const BasicReading<V>* g, uint32_t n, uint32_t step,
                                    uint32_t horizon, uint32_t low, uint32_t high,
-                                   End unseen) noexcept {
+                                   typename Lattice<V>::End unseen) noexcept {
   const auto open = [&](uint32_t position) { return low <= position && position <= high; };
   uint32_t p = 0;
   uint32_t position = step + 1 - n;

@@ -161,10 +161,10 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
 
 /// Over pairs of keys. The lows and the highs never meet: these are two windows. While no sample in
 /// them is missing they are the same window twice, and only that of the lows is kept up.
-template <template <class> class Operator, uint32_t N>
-class Window<Operator<Value>, N> {
+template <template <class> class Operator, class V, uint32_t N>
+class PairWindow {
  public:
-  using Element = typename Operator<Value>::Element;
+  using Element = typename Operator<V>::Element;
 
   void reset() noexcept {
     window_reset<Ends>(lows_, cursor_, N);
@@ -180,7 +180,7 @@ class Window<Operator<Value>, N> {
   }
 
  private:
-  using Ends = Operator<Key>;
+  using Ends = Operator<typename Lattice<V>::End>;
   using EndElement = typename Ends::Element;
 
   ETLMON_COLD Element push_apart(EndElement low, EndElement high) noexcept {
@@ -195,6 +195,9 @@ class Window<Operator<Value>, N> {
   EndElement lows_[window_elements(N)];
   EndElement highs_[window_elements(N)];  ///< written before they are read
 };
+
+template <template <class> class Operator, uint32_t N>
+class Window<Operator<Value>, N> : public PairWindow<Operator, Value, N> {};
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,0 +1,149 @@
+// SPDX-License-Identifier: MIT
+// Robustness that knows which sample it is that of: the values of a class made with --explain.
+// Takes: values of one step, the step, and the place of each predicate and bool in the spec. Gives:
+// a value type with which the temporal operators and machines work as they do with robustness.
+// Keeps true: the keys are those of robustness, so verdicts are the same bits; values are totally
+// ordered, so min and max give one of their operands, with its sample. Of equal keys, that of the
+// earlier sample is farther from 0, and at one step that of the first in the spec; true and false
+// themselves are farthest, and what is not seen yet is nearest.
+#pragma once
+
+#include <stdint.h>
+
+#include "etlmon/temporal/handover.hpp"
+#include "etlmon/temporal/shift.hpp"
+#include "etlmon/temporal/verdict.hpp"
+#include "etlmon/temporal/window.hpp"
+
+namespace etlmon {
+inline namespace ETLMON_BUILD {
+
+/// How early a sample is: its distance from the middle, above it where the key is not negative and
+/// below it where it is. So comparing keys, then ranks, puts equal keys of earlier samples farther
+/// from 0.
+using Rank = uint32_t;
+constexpr Rank kUnseen = 0x80000000u;  ///< the middle: of what stands for samples to come
+constexpr Rank kItself = 0x7fffffffu;  ///< the distance of true and false: no sample is as early
+
+// Words, not a long one: state has no padding on any target.
+#pragma pack(push, 4)
+/// A key, and below it the rank of its sample, in one number. A key alone is that of no sample.
+struct SourcedKey {
+  int64_t order;
+
+  SourcedKey() noexcept = default;
+  constexpr SourcedKey(Key key, Rank rank) noexcept
+      : order(
+            static_cast<int64_t>(static_cast<uint64_t>(static_cast<uint32_t>(key)) << 32 | rank)) {}
+  constexpr SourcedKey(Key key) noexcept
+      : SourcedKey(key, key == kTop      ? kUnseen + kItself
+                        : key == kBottom ? kUnseen - kItself
+                                         : kUnseen) {}
+
+  constexpr Rank rank() const noexcept { return static_cast<Rank>(static_cast<uint64_t>(order)); }
+  constexpr Key key() const noexcept {
+    return static_cast<Key>(static_cast<uint32_t>(static_cast<uint64_t>(order) >> 32));
+  }
+};
+#pragma pack(pop)
+
+/// What is known of a robustness, each end with its sample.
+struct Sourced {
+  SourcedKey low;
+  SourcedKey high;
+
+  Sourced() noexcept = default;
+  constexpr Sourced(SourcedKey low_end, SourcedKey high_end) noexcept
+      : low(low_end), high(high_end) {}
+  constexpr Sourced(Value value) noexcept : low(value.low), high(value.high) {}
+};
+static_assert(sizeof(Sourced) == 16 && alignof(Sourced) == 4, "twice a value");
+
+constexpr Sourced kTrueItself{kTrue};
+constexpr Sourced kFalseItself{kFalse};
+
+constexpr SourcedKey min_of(SourcedKey a, SourcedKey b) noexcept {
+  return b.order < a.order ? b : a;
+}
+constexpr SourcedKey max_of(SourcedKey a, SourcedKey b) noexcept {
+  return a.order < b.order ? b : a;
+}
+constexpr Sourced min_of(Sourced a, Sourced b) noexcept {
+  return {min_of(a.low, b.low), min_of(a.high, b.high)};
+}
+constexpr Sourced max_of(Sourced a, Sourced b) noexcept {
+  return {max_of(a.low, b.low), max_of(a.high, b.high)};
+}
+/// Both the key and the rank turn around.
+constexpr SourcedKey negate(SourcedKey a) noexcept {
+  SourcedKey result(0);
+  result.order = (int64_t{1} << 32) - a.order;
+  return result;
+}
+constexpr Sourced negate(Sourced a) noexcept { return {negate(a.high), negate(a.low)}; }
+
+template <>
+struct Lattice<SourcedKey> {
+  using End = SourcedKey;
+  static constexpr SourcedKey bottom() noexcept { return kBottom; }
+  static constexpr SourcedKey top() noexcept { return kTop; }
+};
+
+template <>
+struct Lattice<Sourced> {
+  using End = SourcedKey;
+  static constexpr Sourced bottom() noexcept { return kFalseItself; }
+  static constexpr Sourced top() noexcept { return kTrueItself; }
+};
+
+constexpr SourcedKey low_of(Sourced v) noexcept { return v.low; }
+constexpr SourcedKey high_of(Sourced v) noexcept { return v.high; }
+constexpr Sourced pair_of(SourcedKey low, SourcedKey high) noexcept { return {low, high}; }
+constexpr bool same_ends(Sourced v) noexcept { return v.low.order == v.high.order; }
+
+template <template <class> class Operator, uint32_t N>
+class Window<Operator<Sourced>, N> : public PairWindow<Operator, Sourced, N> {};
+
+/// Of the samples of one step, in the order of the spec: `distance`, then one less each.
+ETLMON_INLINE SourcedKey sourced(Key key, uint32_t distance) noexcept {
+  return {key, key < 0 ? kUnseen - distance : kUnseen + distance};
+}
+ETLMON_INLINE Sourced sourced(Value value, uint32_t distance) noexcept {
+  return {sourced(value.low, distance), sourced(value.high, distance)};
+}
+
+/// Where the samples of a step stand among all, `count` a step. Steps beyond the last that can be
+/// told apart count as that one: its samples say no step.
+template <uint32_t count>
+struct Ranks {
+  static constexpr uint32_t kSamples = kItself - 1;
+  static constexpr uint32_t kLastStep = kSamples / count - 1;
+
+  /// The distance of the first sample of a step.
+  static constexpr uint32_t first(uint32_t step) noexcept {
+    return kSamples - (step < kLastStep ? step : kLastStep) * count;
+  }
+  static constexpr uint32_t distance(Rank rank) noexcept {
+    return rank < kUnseen ? kUnseen - rank : rank - kUnseen;
+  }
+  static constexpr bool is_sample(Rank rank) noexcept {
+    return rank != kUnseen && distance(rank) < kItself;
+  }
+  /// The place of a sample in the spec, and its step.
+  static constexpr uint32_t place(Rank rank) noexcept { return number(rank) % count; }
+  static constexpr uint32_t step(Rank rank) noexcept { return number(rank) / count; }
+
+ private:
+  static constexpr uint32_t number(Rank rank) noexcept { return kSamples - distance(rank); }
+};
+
+/// The shift moves keys alone: the sample stays that of the formula.
+ETLMON_INLINE Value unsourced(Sourced value) noexcept {
+  return {value.low.key(), value.high.key()};
+}
+ETLMON_INLINE Reading unsourced(BasicReading<Sourced> reading) noexcept {
+  return {unsourced(reading.rho), reading.lower.key(), reading.upper.key()};
+}
+
+}  // namespace ETLMON_BUILD
+}  // namespace etlmon
