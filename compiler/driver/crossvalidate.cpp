@@ -87,8 +87,10 @@ private:
     }
 
     bool take(std::optional<calibrate::Calibration> found) {
-        if (found) thresholds_ = std::move(found->file);
-        return found.has_value();
+        if (!found) return false;
+        thresholds_ = std::move(found->file);
+        thresholds_.path = "the other folds";  // for messages
+        return true;
     }
 
     std::optional<check::Model> check(bool lacks_predicates, bool lacks_monitors) {
