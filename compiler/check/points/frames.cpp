@@ -89,6 +89,7 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
 void report(Context& c, const ast::Frames& written, const std::string& path,
             const diag::Failure& failure) {
     diag::Diagnostic diagnostic = data::in_trace(failure, path);
+    diagnostic.notes.clear();  // of --map, which is for the episodes of the command
     diagnostic.span = written.span;
     std::error_code unknown;
     diagnostic.is_allowed = c.options.allow_missing &&
