@@ -161,10 +161,9 @@ std::string Context::place(plan::NodeId node) const {
 }
 
 std::string what_takes_stack(const plan::Plan& plan) {
-    const bool pending =
-        std::any_of(plan.readings.begin(), plan.readings.end(), [](const plan::Reading& reading) {
-            return reading.kind == plan::Reading::Kind::pending;
-        });
+    const bool pending = std::any_of(
+        plan.readings.begin(), plan.readings.end(),
+        [](const plan::Reading& reading) { return reading.kind == plan::Reading::Kind::pending; });
     if (plan::projected_points(*plan.model, plan.distances).empty())
         return "positions evaluated again";
     return pending ? "positions evaluated again, projected points" : "projected points";

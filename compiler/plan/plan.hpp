@@ -52,7 +52,7 @@ struct StoredSet {
     Index target = 0;
     bool as_given = true;  ///< else rows of length 1
     std::uint64_t offset = 0;
-    std::uint64_t row_bytes = 0;       ///< from a row to the next
+    std::uint64_t row_bytes = 0;      ///< from a row to the next
     Index projection = check::kNone;  ///< else a target
 };
 

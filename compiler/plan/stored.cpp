@@ -57,11 +57,11 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
         const bool known = std::any_of(sets.begin(), sets.end(), [&](const StoredSet& set) {
             return set.projection == projection;
         });
-        const auto size = static_cast<std::uint32_t>(
-            plan.model->projections[projection].matrix.size());
+        const auto size =
+            static_cast<std::uint32_t>(plan.model->projections[projection].matrix.size());
         if (known || size * sizeof(float) <= inline_bytes) continue;
-        sets.push_back({check::kNone, true, offset, etlmon::detail::padded(size) * sizeof(float),
-                        projection});
+        sets.push_back(
+            {check::kNone, true, offset, etlmon::detail::padded(size) * sizeof(float), projection});
         offset += sets.back().row_bytes;
     }
     return sets;
@@ -70,17 +70,16 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
 StoredNumbers numbers_of(const check::Model& model, const StoredSet& set) {
     if (set.projection != check::kNone) {
         const check::Projection& map = model.projections[set.projection];
-        return {map.name, map.origin, map.span, map.matrix, 1,
-                static_cast<std::uint32_t>(map.matrix.size())};
+        return {map.name,   map.origin, map.span,
+                map.matrix, 1,          static_cast<std::uint32_t>(map.matrix.size())};
     }
     const check::Target& target = model.targets[set.target];
     return {target.name, target.origin, target.span, target.values, target.rows, target.dimension};
 }
 
 const StoredSet* stored_projection(const Plan& plan, Index projection) {
-    const auto found = std::find_if(plan.stored.begin(), plan.stored.end(), [&](const auto& set) {
-        return set.projection == projection;
-    });
+    const auto found = std::find_if(plan.stored.begin(), plan.stored.end(),
+                                    [&](const auto& set) { return set.projection == projection; });
     return found == plan.stored.end() ? nullptr : &*found;
 }
 

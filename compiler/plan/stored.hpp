@@ -1,8 +1,8 @@
 // Target sets and projections that are not spelled out in the header: they lie in a file beside
-// it, which the monitor is given. Takes: a plan. Gives: which sets, where in the file each begins, and the bytes
-// of the file. Keeps true: rows are little-endian float32 in the form that the kernels want, each
-// padded with zeros to a multiple of 64 bytes; sets stand in the order of the plan's distances; the
-// same plan gives the same bytes on every machine.
+// it, which the monitor is given. Takes: a plan. Gives: which sets, where in the file each begins,
+// and the bytes of the file. Keeps true: rows are little-endian float32 in the form that the
+// kernels want, each padded with zeros to a multiple of 64 bytes; sets stand in the order of the
+// plan's distances; the same plan gives the same bytes on every machine.
 #pragma once
 
 #include <cstdint>
