@@ -113,7 +113,8 @@ figures() { sed -n 's|^//   all together *||p' "$1"; }
 sizeof() { "$1nm" -S --radix=d "$2" | awk '$4 == "monitor_size" { print $2 + 0 }'; }
 targets() {  # of arrays alone, not of the functions that are named after them
     "$1nm" -S -C --radix=d "$2" |
-        awk '$3 ~ /[rRdDvVu]/ && /targets::|projections::|kColumns/ { sum += $2 } END { print sum + 0 }'
+        awk '$3 ~ /[rRdDvVu]/ && /targets::|projections::|kColumns/ { sum += $2 }
+             END { print sum + 0 }'
 }
 
 checks=0
