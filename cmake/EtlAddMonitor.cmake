@@ -7,7 +7,7 @@
 #   TARGET          an executable or a library made in this directory; it may have several monitors
 #   SPEC            the .etl file
 #   THRESHOLDS      the thresholds file; default: SPEC.thresholds.json beside the spec, if it exists
-#   FITTED          the file of what is fitted; default: SPEC.fitted.npz beside the spec, if it exists
+#   FITTED          what `etlc fit` found; default: SPEC.fitted.npz beside the spec, if it exists
 #   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
 #                   only the distances that matter
 #   NAMESPACE       of the generated code; default: the name after `spec`
@@ -20,8 +20,8 @@
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
-# itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
-# generators (3.21 for the others).
+# itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja
+# or Makefile generators (3.21 for the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 

@@ -104,8 +104,8 @@ std::vector<double> moves_of(const check::Model& model, Index index,
             size += a + difference;
             carried += a * moved;
         }
-        moves.push_back(
-            (carried + 2 * etlmon::projection_bound(map.dimension, magnitude, size)) * kSlack);
+        moves.push_back((carried + 2 * etlmon::projection_bound(map.dimension, magnitude, size)) *
+                        kSlack);
     }
     return moves;
 }
@@ -169,9 +169,8 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     for (std::uint32_t k = 0; k < target.rows; ++k) {
         const float* g = target.values.data() + static_cast<std::size_t>(k) * target.dimension;
         const float delta = plan::measure(row, z, g, 1, target.dimension, nullptr).delta;
-        const Interval one =
-            spread(row, 1, target.dimension, static_cast<double>(delta),
-                   magnitude_of(distance, z, g, target.dimension, moves), moved);
+        const Interval one = spread(row, 1, target.dimension, static_cast<double>(delta),
+                                    magnitude_of(distance, z, g, target.dimension, moves), moved);
         lows.push_back(one.low);
         highs.push_back(one.high);
     }

@@ -33,14 +33,14 @@ std::optional<std::string> text_of(const Compiled& compiled, const Request& requ
 
 /// A header on standard output has no file beside it, unless the call names one.
 void refuse_stored_targets(const Compiled& compiled, diag::Sink& sink) {
-    std::set<check::Index> seen;
+    std::set<std::string> seen;
     for (const plan::StoredSet& set : compiled.plan.stored) {
-        const check::Target& target = compiled.model->targets[set.target];
-        if (!seen.insert(set.target).second) continue;
-        sink.report(diag::Code::no_file_for_targets, target.span,
+        const plan::StoredNumbers numbers = plan::numbers_of(*compiled.model, set);
+        if (!seen.insert(numbers.name).second) continue;
+        sink.report(diag::Code::no_file_for_targets, numbers.span,
                     fmt::format("'{}' takes {} bytes, too many to be spelled out, and a header on "
                                 "standard output has no file beside it",
-                                target.name, target.values.size() * sizeof(float)))
+                                numbers.name, numbers.values.size() * sizeof(float)))
             .note(
                 "name the header with -o, the file with --targets-file, or raise --inline-targets");
     }

@@ -174,7 +174,7 @@ void print_class_constants(Printer& out, const Context& context) {
     if (cost.stack_bytes > 0)
         sizes.emplace_back(
             fmt::format("static constexpr size_t kStackBytes = {};", cost.stack_bytes),
-            "of a step, for positions evaluated again");
+            "of a step, for " + what_takes_stack(context.plan));
     sizes.emplace_back(fmt::format("static constexpr uint32_t kOperations = {};", cost.operations),
                        "min, max, compare in the worst step");
     sizes.emplace_back(

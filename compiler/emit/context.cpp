@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "plan/decide/point_checks.hpp"
 #include "plan/narrow_targets.hpp"
 #include "plan/program/predicate_values.hpp"
 
@@ -157,6 +158,15 @@ std::string Context::place(plan::NodeId node) const {
     return quoted(text) == quoted(model.file.text(graph[node].span))
                ? words
                : fmt::format("{}  ({})", words, quoted(text));
+}
+
+std::string what_takes_stack(const plan::Plan& plan) {
+    const bool pending = std::any_of(
+        plan.readings.begin(), plan.readings.end(),
+        [](const plan::Reading& reading) { return reading.kind == plan::Reading::Kind::pending; });
+    if (plan::projected_points(*plan.model, plan.distances).empty())
+        return "positions evaluated again";
+    return pending ? "positions evaluated again, projected points" : "projected points";
 }
 
 }  // namespace etlc::emit

@@ -46,6 +46,9 @@ std::set<std::string> runtime_headers(const Context& context) {
         if (context.enclosed(d)) headers.insert("distance/enclosed");
     }
     if (!context.names.point_local.empty()) headers.insert("distance/project");
+    for (const auto& [projection, name] : context.names.matrix_array)
+        if (plan::stored_projection(plan, projection) != nullptr)
+            headers.insert("distance/targets");
     for (Index p : plan.predicates) {
         if (context.model.predicates[p].equality()) headers.insert("temporal/equality");
         if (!context.model.predicates[p].plain_distance()) headers.insert("temporal/expression");

@@ -67,6 +67,12 @@ void print_numbers(Printer& out, const std::string& name, const std::string& siz
     print_array(out, "float " + name, size, numbers, row_length, float_literal);
 }
 
+void print_place(Printer& out, const Context& context, const std::string& name,
+                 const plan::StoredSet& set) {
+    print_doc(out, fmt::format("where they begin in {}, in floats", context.targets_file));
+    out.line("inline constexpr size_t {} = {};", name, set.offset / sizeof(float));
+}
+
 std::string rows_of(const check::Target& target, const check::Distance& distance) {
     return fmt::format("{}: {} of {} elements{}{}", target.origin,
                        target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
@@ -85,8 +91,11 @@ void print_projections(Printer& out, const Context& context) {
                                    projection.rows == 1 ? "one row"
                                                         : fmt::format("{} rows", projection.rows),
                                    projection.dimension));
-        print_numbers(out, name, fmt::format("{} * {}", projection.rows, projection.dimension),
-                      projection.matrix, projection.dimension);
+        if (const plan::StoredSet* set = plan::stored_projection(context.plan, index))
+            print_place(out, context, name, *set);
+        else
+            print_numbers(out, name, fmt::format("{} * {}", projection.rows, projection.dimension),
+                          projection.matrix, projection.dimension);
         const auto offset = context.names.offset_array.find(index);
         if (offset == context.names.offset_array.end()) continue;
         print_doc(out, fmt::format("what {} subtracts first", projection.name));
@@ -102,9 +111,7 @@ void print_rows(Printer& out, const Context& context, Index d) {
     const check::Target& target = context.model.targets[distance.target];
     print_doc(out, rows_of(target, distance));
     if (const plan::StoredSet* set = plan::stored_set(context.plan, d)) {
-        print_doc(out, fmt::format("where they begin in {}, in floats", context.targets_file));
-        return out.line("inline constexpr size_t {} = {};", context.names.target_array.at(d),
-                        set->offset / sizeof(float));
+        return print_place(out, context, context.names.target_array.at(d), *set);
     }
     print_numbers(out, context.names.target_array.at(d),
                   fmt::format("{} * {}", target.rows, target.dimension),

@@ -279,10 +279,10 @@ void print_stored(Printer& out, const std::string& prefix, const plan::Plan& pla
     if (plan.stored.empty()) return;
     std::vector<Row> rows{{"in " + file, "rows", "elements", "bytes"}};
     for (const plan::StoredSet& set : plan.stored) {
-        const check::Target& target = plan.model->targets[set.target];
-        rows.push_back({target.origin + (set.as_given ? "" : ", scaled to length 1"),
-                        number(target.rows), number(target.dimension),
-                        number(target.rows * set.row_bytes)});
+        const plan::StoredNumbers numbers = plan::numbers_of(*plan.model, set);
+        rows.push_back({numbers.origin + (set.as_given ? "" : ", scaled to length 1"),
+                        number(numbers.rows), number(numbers.dimension),
+                        number(numbers.rows * set.row_bytes)});
     }
     rows.push_back({"all together", "", "", number(plan::stored_bytes(plan))});
     out.line(blank(prefix));
@@ -370,8 +370,8 @@ std::string report(const plan::Plan& plan, const Options& options) {
     out.line();
     out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
     if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for positions that are evaluated again",
-                 plan.cost.stack_bytes);
+        out.line("stack of a step: {} bytes, for {}", plan.cost.stack_bytes,
+                 what_takes_stack(plan));
     out.line();
     std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
     for (const plan::Reading& reading : plan.readings) {

@@ -104,7 +104,8 @@ std::string name_words(const Stuck& stuck) {
                        ? "the name of an input or a projection, or a vector [x, y] of scalar inputs"
                        : "the name of a scalar input";
         case EtlParser::RuleWeights:
-            return "load(\"FILE\"), a matrix, a diagonal [...], fitted(...) or the name of a target";
+            return "load(\"FILE\"), a matrix, a diagonal [...], fitted(...) or the name of a "
+                   "target";
         case EtlParser::RuleCalibrated:
             return "a method of calibration (f1, conformal or class_conditional)";
         case EtlParser::RuleFitted:

@@ -46,12 +46,14 @@ struct Cost {
     std::uint64_t distance_operations = 0;  ///< element differences accumulated: K x D a distance
 };
 
-/// A target set that lies in the file beside the header, see stored.hpp.
+/// A target set that lies in the file beside the header, see stored.hpp; or the matrix of a
+/// projection, as one row.
 struct StoredSet {
     Index target = 0;
     bool as_given = true;  ///< else rows of length 1
     std::uint64_t offset = 0;
-    std::uint64_t row_bytes = 0;  ///< from a row to the next
+    std::uint64_t row_bytes = 0;      ///< from a row to the next
+    Index projection = check::kNone;  ///< else a target
 };
 
 /// How the elements of target sets are kept.

@@ -6,6 +6,7 @@
 #include "etlmon/checksum.hpp"
 #include "etlmon/distance/layout.hpp"
 #include "etlmon/distance/search.hpp"
+#include "plan/decide/point_checks.hpp"
 #include "plan/kernels.hpp"
 
 namespace etlc::plan {
@@ -15,15 +16,15 @@ namespace {
 constexpr std::size_t kPieceBytes = 1U << 20U;
 
 /// Rows `first` to before `end` of the set, ready to be written.
-void fill(const check::Target& target, const StoredSet& set, std::size_t first, std::size_t end,
+void fill(const StoredNumbers& numbers, const StoredSet& set, std::size_t first, std::size_t end,
           std::vector<float>& rows, std::vector<float>& piece) {
     const std::size_t stride = set.row_bytes / sizeof(float);
-    const std::size_t width = target.dimension;
-    rows.assign(target.values.begin() + static_cast<std::ptrdiff_t>(first * width),
-                target.values.begin() + static_cast<std::ptrdiff_t>(end * width));
+    const std::size_t width = numbers.dimension;
+    rows.assign(numbers.values.begin() + static_cast<std::ptrdiff_t>(first * width),
+                numbers.values.begin() + static_cast<std::ptrdiff_t>(end * width));
     if (!set.as_given)
         etlmon::prepare(etlmon::MetricId::cosine, rows.data(),
-                        static_cast<std::uint32_t>(end - first), target.dimension);
+                        static_cast<std::uint32_t>(end - first), numbers.dimension);
     piece.assign((end - first) * stride, 0.0F);
     for (std::size_t row = 0; row < end - first; ++row)
         std::copy_n(rows.data() + row * width, width, piece.data() + row * stride);
@@ -51,7 +52,35 @@ std::vector<StoredSet> stored_sets(const Plan& plan, std::uint64_t inline_bytes)
                         etlmon::detail::padded(target.dimension) * sizeof(float)});
         offset += target.rows * sets.back().row_bytes;
     }
+    for (Index p : projected_points(*plan.model, plan.distances)) {
+        const Index projection = plan.model->points[p].projection;
+        const bool known = std::any_of(sets.begin(), sets.end(), [&](const StoredSet& set) {
+            return set.projection == projection;
+        });
+        const auto size =
+            static_cast<std::uint32_t>(plan.model->projections[projection].matrix.size());
+        if (known || size * sizeof(float) <= inline_bytes) continue;
+        sets.push_back(
+            {check::kNone, true, offset, etlmon::detail::padded(size) * sizeof(float), projection});
+        offset += sets.back().row_bytes;
+    }
     return sets;
+}
+
+StoredNumbers numbers_of(const check::Model& model, const StoredSet& set) {
+    if (set.projection != check::kNone) {
+        const check::Projection& map = model.projections[set.projection];
+        return {map.name,   map.origin, map.span,
+                map.matrix, 1,          static_cast<std::uint32_t>(map.matrix.size())};
+    }
+    const check::Target& target = model.targets[set.target];
+    return {target.name, target.origin, target.span, target.values, target.rows, target.dimension};
+}
+
+const StoredSet* stored_projection(const Plan& plan, Index projection) {
+    const auto found = std::find_if(plan.stored.begin(), plan.stored.end(),
+                                    [&](const auto& set) { return set.projection == projection; });
+    return found == plan.stored.end() ? nullptr : &*found;
 }
 
 const StoredSet* stored_set(const Plan& plan, Index d) {
@@ -86,7 +115,7 @@ std::uint64_t search_bytes(const check::Target& target) {
 std::uint64_t stored_bytes(const Plan& plan) {
     if (plan.stored.empty()) return 0;
     const StoredSet& last = plan.stored.back();
-    return last.offset + plan.model->targets[last.target].rows * last.row_bytes;
+    return last.offset + numbers_of(*plan.model, last).rows * last.row_bytes;
 }
 
 bool store(const Plan& plan,
@@ -94,10 +123,11 @@ bool store(const Plan& plan,
     std::vector<float> rows;
     std::vector<float> piece;
     for (const StoredSet& set : plan.stored) {
-        const check::Target& target = plan.model->targets[set.target];
+        const StoredNumbers numbers = numbers_of(*plan.model, set);
         const std::size_t at_once = std::max<std::size_t>(1, kPieceBytes / set.row_bytes);
-        for (std::size_t row = 0; row < target.rows; row += at_once) {
-            fill(target, set, row, std::min<std::size_t>(row + at_once, target.rows), rows, piece);
+        for (std::size_t row = 0; row < numbers.rows; row += at_once) {
+            fill(numbers, set, row, std::min<std::size_t>(row + at_once, numbers.rows), rows,
+                 piece);
             if (!take(reinterpret_cast<const std::uint8_t*>(piece.data()),
                       piece.size() * sizeof(float)))
                 return false;

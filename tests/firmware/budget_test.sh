@@ -15,6 +15,7 @@ fail() { echo "FAILED: $*"; exit 1; }
 ./arrays few.npy 3 48
 ./arrays rows.npy 40 7
 ./arrays many.npy 300 33
+./arrays map.npy 5 33
 
 cat >scalars.etl <<'END'
 spec scalars;
@@ -91,6 +92,20 @@ monitor waits = G (a -> F[3, 30] b);
 monitor past = G (a S[2, 12] b);
 sliding monitor soon = a U[1, 8] b;
 END
+cat >projected.etl <<'END'
+spec projected;
+input z : f32[33];
+input x, y : f32;
+projection P = load("map.npy");
+projection Q = [[1, 2, 0, 1, 0], [0, 1, 0, 1, 1]] offset [0, 1, 0, 0, 0.5];
+projection T = [[1, 2]];
+target many = load("many.npy");
+target spot = [[0.5, 1]];
+predicate near = min l2(P(z), many) <= 1;
+predicate there = mean l1(Q(P(z)), many) <= 1;
+predicate ahead = l2(T([x, y]), spot) <= 1;
+monitor reach = F (near && there && ahead);
+END
 cp "$source/tests/spec/ok/adaptive.etl" "$source/tests/spec/ok/adaptive.thresholds.json" .
 
 # The figures of "all together": state, targets, and targets without SIMD, where these are others.
@@ -98,7 +113,8 @@ figures() { sed -n 's|^//   all together *||p' "$1"; }
 sizeof() { "$1nm" -S --radix=d "$2" | awk '$4 == "monitor_size" { print $2 + 0 }'; }
 targets() {  # of arrays alone, not of the functions that are named after them
     "$1nm" -S -C --radix=d "$2" |
-        awk '$3 ~ /[rRdDvVu]/ && /targets::|kColumns/ { sum += $2 } END { print sum + 0 }'
+        awk '$3 ~ /[rRdDvVu]/ && /targets::|projections::|kColumns/ { sum += $2 }
+             END { print sum + 0 }'
 }
 
 checks=0
@@ -150,15 +166,16 @@ END
         -march=rv32imafc -mabi=ilp32f
 }
 
-for spec in scalars two_distances padded weighted quadratic nested adaptive; do
+for spec in scalars two_distances padded weighted quadratic nested adaptive projected; do
     budget "$spec"
 done
-for spec in scalars nested padded; do
+for spec in scalars nested padded projected; do
     budget "$spec" --values boolean
 done
 budget narrow --targets-as f16
 budget narrow --targets-as i8
 budget searched --inline-targets 1000
+budget projected --inline-targets 500
 budget adaptive --recorder 3,2,2
 budget scalars --values boolean --recorder 0,0,1
-[ "$checks" -ge 30 ] || fail "only $checks objects were looked at"
+[ "$checks" -ge 36 ] || fail "only $checks objects were looked at"

@@ -50,7 +50,7 @@ private:
     bool exact_;
     double missing_share_;
     int dimension_ = 1;
-    int projected_ = 1;  ///< of P(v)
+    int projected_ = 1;                ///< of P(v)
     std::map<std::string, int> rows_;  // of each target
     std::vector<std::string> atoms_;
 

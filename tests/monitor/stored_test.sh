@@ -17,6 +17,7 @@ cd "$box"
 ./arrays middle.npy 300 33
 ./arrays narrow.npy 400 7
 ./arrays scalars.npy 300 2
+./arrays map.npy 16 384
 cat >stored.etl <<'END'
 spec stored;
 input wide : f32[384];
@@ -28,6 +29,8 @@ target wide_set = load("wide.npy");
 target middle_set = load("middle.npy");
 target narrow_set = load("narrow.npy");
 target scalar_set = load("scalars.npy");
+projection P = load("map.npy");
+projection T = [[1, 2]] offset [0.25, 0];
 END
 predicates=
 add() { echo "predicate $1 = $2 <= $3;" >>stored.etl; predicates+=" $1"; }
@@ -42,6 +45,8 @@ add mean_narrow "mean angular(narrow, narrow_set)" 1
 add weighted "min mahalanobis([1, 2, 3, 4, 5, 6, 7])(narrow, narrow_set)" 1
 add l2_scalars "min l2([x, y], scalar_set)" 0.1
 add form "min mahalanobis([[2, 1], [1, 3]])([x, y], scalar_set)" 0.1
+add projected "min l2(P(wide), wide_set)" 5
+add projected_scalars "mean l1(T([x, y]), scalar_set)" 1
 : >names.inc
 for p in $predicates; do echo "PREDICATE($p)" >>names.inc; done
 echo "monitor touched = F (l2_wide && F (l2_middle || l2_narrow));" >>stored.etl

@@ -140,8 +140,8 @@ void expect_projected_twins() {
             EXPECT_EQ(bits(one[i]), bits(two[i])) << R << " x " << D << ", row " << i;
             double exact = 0, magnitude = 0, size = 0;
             for (std::uint32_t j = 0; j < D; ++j) {
-                const double difference = static_cast<double>(z[j]) -
-                                          (m == nullptr ? 0.0 : static_cast<double>(m[j]));
+                const double difference =
+                    static_cast<double>(z[j]) - (m == nullptr ? 0.0 : static_cast<double>(m[j]));
                 const double a = static_cast<double>(matrix[i * D + j]);
                 exact += a * difference;
                 magnitude += std::abs(a * difference);

@@ -60,8 +60,8 @@ struct Spec {
         check::Point point;
         const bool scalars = model.inputs[inputs[0]].type == InputType::scalar;
         point.kind = scalars ? check::Point::Kind::scalars : check::Point::Kind::embedding;
-        point.dimension = scalars ? static_cast<std::uint32_t>(inputs.size())
-                                  : model.inputs[inputs[0]].dimension;
+        point.dimension =
+            scalars ? static_cast<std::uint32_t>(inputs.size()) : model.inputs[inputs[0]].dimension;
         point.inputs = std::move(inputs);
         model.points.push_back(std::move(point));
         return static_cast<Index>(model.points.size() - 1);

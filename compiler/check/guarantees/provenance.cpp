@@ -35,8 +35,7 @@ void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     for_each_distance(model.predicates[predicate].expression, [&](Index index) {
         const Distance& distance = model.distances[index];
         const Target& target = model.targets[distance.target];
-        const Target& declared =
-            target.source == kNone ? target : model.targets[target.source];
+        const Target& declared = target.source == kNone ? target : model.targets[target.source];
         hashes[declared.name] = declared.hash;
         add_projections(model, distance.point, hashes);
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);

@@ -13,7 +13,8 @@ std::uint64_t hash_of(const std::string& lines) {
     return lines.empty() ? 0 : data::xxh64(lines);
 }
 
-/// A line a projection and a line a target set, as declared, and a line a distance with weights: its name, and the hash of the numbers.
+/// A line a projection and a line a target set, as declared, and a line a distance with weights:
+/// its name, and the hash of the numbers.
 std::string data_lines(const Model& model) {
     std::string lines;
     for (const Projection& projection : model.projections)

@@ -122,12 +122,12 @@ private:
     }
 
     void require_all() {
-        for (const std::string_view needed : {std::string_view("of"), std::string_view("where"),
-                                              method_.count}) {
+        for (const std::string_view needed :
+             {std::string_view("of"), std::string_view("where"), method_.count}) {
             if (needed.empty() || given_.contains(std::string(needed))) continue;
-            c_.report(Code::fitting_argument, written_.span,
-                      fmt::format("{} needs '{}'; expected {}", method_.word, needed,
-                                  form(method_)));
+            c_.report(
+                Code::fitting_argument, written_.span,
+                fmt::format("{} needs '{}'; expected {}", method_.word, needed, form(method_)));
             return;
         }
     }
@@ -137,8 +137,8 @@ private:
         const auto value = Decimal::parse(number.text).whole(most);
         if (value && *value >= least) return static_cast<std::uint32_t>(*value);
         c_.report(Code::fitting_argument, number.span,
-                  fmt::format("{} = {}; expected a whole number from {} to {}", key,
-                              shown(number), least, most));
+                  fmt::format("{} = {}; expected a whole number from {} to {}", key, shown(number),
+                              least, most));
         return 1;
     }
 
@@ -154,11 +154,9 @@ private:
     }
 
     std::string canonical_text() const {
-        const std::string count = method_.count.empty()
-                                      ? ""
-                                      : fmt::format(", {} = {}", method_.count, fitted_.rows);
-        const std::string away =
-            fitted_.away == 0 ? "" : fmt::format(", away = {}", fitted_.away);
+        const std::string count =
+            method_.count.empty() ? "" : fmt::format(", {} = {}", method_.count, fitted_.rows);
+        const std::string away = fitted_.away == 0 ? "" : fmt::format(", away = {}", fitted_.away);
         return fmt::format("fitted({}{}{}, of = {}, where = {})", method_.word, count, away,
                            c_.model.points[fitted_.point].text, ast::print(*where_));
     }
@@ -198,8 +196,8 @@ Index check_fitted_metric(Context& c, const ast::Fitted& written) {
     FittedCheck check(c, written, *method);
     auto fitted = check.run();
     if (!fitted) return kNone;
-    const auto same = std::find_if(
-        c.model.fitted.begin(), c.model.fitted.end(), [&](const Fitted& other) {
+    const auto same =
+        std::find_if(c.model.fitted.begin(), c.model.fitted.end(), [&](const Fitted& other) {
             return other.slot == Slot::metric && other.declaration == fitted->declaration;
         });
     if (same != c.model.fitted.end()) return static_cast<Index>(same - c.model.fitted.begin());
@@ -246,8 +244,9 @@ void check_fitted_frames(Context& c) {
             c.report(Code::frames_without_truth, c.model.formulas[compared].span,
                      fmt::format("frames are chosen by what is true, and nothing says when '{}' is",
                                  c.model.predicates[c.model.formulas[compared].index].shown()))
-                .note("name a predicate: its truth counts, from 'truth NAME = ...;' or an array "
-                      "truth.NAME in the episodes");
+                .note(
+                    "name a predicate: its truth counts, from 'truth NAME = ...;' or an array "
+                    "truth.NAME in the episodes");
     }
 }
 

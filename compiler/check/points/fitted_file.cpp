@@ -33,8 +33,7 @@ std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
     if (!exists) {
         report_missing(c, first.span,
                        fmt::format("'{}' is fitted, and there is no file {}", first.name, path))
-            .note(
-                "'etlc fit' makes one from labelled demonstrations; --fitted names another");
+            .note("'etlc fit' makes one from labelled demonstrations; --fitted names another");
         return std::nullopt;
     }
     auto file = fitted::read(path);
@@ -49,9 +48,9 @@ std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
 
 void report_stale(Context& c, const Fitted& fitted, const std::vector<std::string>& differences) {
     if (differences.empty()) return;
-    auto& error = c.report(Code::fitted_stale, fitted.span,
-                           fmt::format("'{}' in {} was fitted for something else", fitted.name,
-                                       c.fitted_file->path));
+    auto& error = c.report(
+        Code::fitted_stale, fitted.span,
+        fmt::format("'{}' in {} was fitted for something else", fitted.name, c.fitted_file->path));
     for (const std::string& difference : differences) error.note(difference);
     error.note(std::string(kAgain));
 }
@@ -78,12 +77,11 @@ const fitted::Entry* fitted_entry(Context& c, Index index) {
     const fitted::Entry& entry = found->second;
     std::vector<std::string> differences;
     if (entry.declaration != fitted.declaration)
-        differences.push_back(
-            difference("the declaration", entry.declaration, fitted.declaration));
+        differences.push_back(difference("the declaration", entry.declaration, fitted.declaration));
     else if (entry.rows != fitted.rows || entry.columns != fitted.columns)
-        differences.push_back(
-            difference("its shape", fmt::format("{} x {}", entry.rows, entry.columns),
-                       fmt::format("{} x {}", fitted.rows, fitted.columns)));
+        differences.push_back(difference("its shape",
+                                         fmt::format("{} x {}", entry.rows, entry.columns),
+                                         fmt::format("{} x {}", fitted.rows, fitted.columns)));
     report_stale(c, fitted, differences);
     return differences.empty() ? &entry : nullptr;
 }

@@ -74,9 +74,8 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
           const data::Sample& sample, std::vector<float>& row) {
     row.clear();
     for (const double x : sample.values[0])
-        row.push_back(static_cast<float>(input.type == InputType::i8
-                                             ? x * static_cast<double>(input.scale)
-                                             : x));
+        row.push_back(static_cast<float>(
+            input.type == InputType::i8 ? x * static_cast<double>(input.scale) : x));
     const bool finite =
         std::all_of(row.begin(), row.end(), [](float x) { return std::isfinite(x); });
     if (sample.present[0] && finite) return true;
@@ -89,6 +88,7 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
 void report(Context& c, const ast::Frames& written, const std::string& path,
             const diag::Failure& failure) {
     diag::Diagnostic diagnostic = data::in_trace(failure, path);
+    diagnostic.notes.clear();  // of --map, which is for the episodes of the command
     diagnostic.span = written.span;
     std::error_code unknown;
     diagnostic.is_allowed = c.options.allow_missing &&
@@ -130,9 +130,9 @@ std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
         const auto [first, end] = rows_of.equal_range(step);
         for (auto at = first; at != end; ++at) {
             if (!take(c, written, *input, step, sample, row)) return std::nullopt;
-            std::copy(row.begin(), row.end(),
-                      matrix.values.begin() +
-                          static_cast<std::ptrdiff_t>(at->second * matrix.columns));
+            std::copy(
+                row.begin(), row.end(),
+                matrix.values.begin() + static_cast<std::ptrdiff_t>(at->second * matrix.columns));
         }
     }
     matrix.origin = fmt::format("{}:{}", written.path, written.key);

@@ -73,8 +73,8 @@ Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
         c.report(Code::dimension_mismatch, span,
                  fmt::format("{} has dimension {}, projection '{}' takes points of dimension {}",
                              from.text, from.dimension, name.text, projection.dimension))
-            .note(projection.span, fmt::format("'{}' is {} x {}", name.text, projection.rows,
-                                               projection.dimension));
+            .note(projection.span,
+                  fmt::format("'{}' is {} x {}", name.text, projection.rows, projection.dimension));
         return kNone;
     }
     Point point;
@@ -105,10 +105,10 @@ void report_wrong_space(Context& c, const Target& target, const Point& point, Sp
 
 void report_dimensions(Context& c, const Target& target, const Point& point, const Point& whole,
                        Span span) {
-    auto& error = c.report(Code::dimension_mismatch, span,
-                           fmt::format("{} has dimension {}, target '{}' has dimension {}",
-                                       shown(c, point), point.dimension, target.name,
-                                       target.dimension));
+    auto& error =
+        c.report(Code::dimension_mismatch, span,
+                 fmt::format("{} has dimension {}, target '{}' has dimension {}", shown(c, point),
+                             point.dimension, target.name, target.dimension));
     if (point.kind == Point::Kind::embedding)
         error.note(c.model.inputs[point.inputs[0]].span,
                    fmt::format("{} is declared here", shown(c, point)));
@@ -144,8 +144,8 @@ Index target_in_space(Context& c, Index index, Index point, Span span) {
         return kNone;
     }
     if (from == point) return index;
-    const auto [at, is_new] = c.projected_targets.try_emplace(
-        {index, point}, static_cast<Index>(c.model.targets.size()));
+    const auto [at, is_new] =
+        c.projected_targets.try_emplace({index, point}, static_cast<Index>(c.model.targets.size()));
     if (!is_new) return at->second;
     Target projected = target;
     projected.source = index;
@@ -155,10 +155,11 @@ Index target_in_space(Context& c, Index index, Index point, Span span) {
     c.model.targets.push_back(std::move(projected));
     if (const auto row = project_target(c.model, at->second)) {
         at->second = kNone;
-        c.report(Code::projected_not_finite, span,
-                 fmt::format("row {} (from 0) of target '{}' is beyond float32 once it is projected "
-                             "into the space of {}",
-                             *row, c.model.targets[index].name, c.model.points[point].text));
+        c.report(
+            Code::projected_not_finite, span,
+            fmt::format("row {} (from 0) of target '{}' is beyond float32 once it is projected "
+                        "into the space of {}",
+                        *row, c.model.targets[index].name, c.model.points[point].text));
     }
     return at->second;
 }

@@ -52,8 +52,7 @@ std::vector<double> projected(const Model& model, Index point, std::vector<doubl
 std::optional<std::uint32_t> project_target(Model& model, Index index) {
     Target& target = model.targets[index];
     const Target& source = model.targets[target.source];
-    const Index from =
-        source.space == kNone ? innermost(model, target.space) : source.space;
+    const Index from = source.space == kNone ? innermost(model, target.space) : source.space;
     const std::vector<Index> maps = maps_between(model, from, target.space);
     target.values.clear();
     const auto is_there = [&](Index map) { return !model.projections[map].matrix.empty(); };

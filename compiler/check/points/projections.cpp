@@ -63,8 +63,7 @@ bool set_numbers(Context& c, const ast::Projection& declaration, Projection& pro
 
 bool set_fitted(Context& c, const ast::Fitted& written, Projection& projection) {
     const auto index = static_cast<Index>(c.model.projections.size());
-    projection.fitted =
-        check_fitted(c, written, Fitted::Slot::projection, projection.name, index);
+    projection.fitted = check_fitted(c, written, Fitted::Slot::projection, projection.name, index);
     if (projection.fitted == kNone) return false;
     const Fitted& fitted = c.model.fitted[projection.fitted];
     projection.rows = fitted.rows;

@@ -132,8 +132,7 @@ private:
 
     bool set_weights() {
         if (!written_.weights) return true;
-        auto weights =
-            check_weights(c_, *written_.weights, distance_.point, written_.metric.span);
+        auto weights = check_weights(c_, *written_.weights, distance_.point, written_.metric.span);
         if (!weights) return false;
         distance_.weights = std::move(weights->values);
         distance_.weights_diagonal = weights->diagonal;

@@ -117,8 +117,8 @@ void check_targets(Context& c) {
         target.name = declaration.name.text;
         target.span = declaration.name.span;
         const auto* const fitted = std::get_if<ast::Fitted>(&declaration.sources[0]);
-        bool good = fitted != nullptr ? set_fitted(c, *fitted, target)
-                                      : set_rows(c, declaration, target);
+        bool good =
+            fitted != nullptr ? set_fitted(c, *fitted, target) : set_rows(c, declaration, target);
         good = good && (!declaration.space || set_space(c, *declaration.space, target));
         if (!good) c.scope.entity(NameKind::target, index).broken = true;
         c.model.targets.push_back(std::move(target));

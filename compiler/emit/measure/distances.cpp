@@ -162,17 +162,18 @@ void print_projected(Printer& out, const Context& context, Index index) {
     const std::string& buffer = context.names.point_buffer.at(index);
     const std::string& local = context.names.point_local.at(index);
     const auto offset = context.names.offset_array.find(point.projection);
-    const std::string numbers =
-        fmt::format("projections::{}{}", context.names.matrix_array.at(point.projection),
-                    offset == context.names.offset_array.end()
-                        ? ""
-                        : ", projections::" + offset->second);
-    const std::string z =
-        inner.is_vector()
-            ? fmt::format("etlmon::Point<{}>{{{{{}}}}}", inner.dimension, scalars_of(context, inner))
-            : elements_of(context, point.inner);
-    const std::string call = fmt::format("etlmon::project<{}, {}>({}, {}, {})", map.rows,
-                                         map.dimension, z, numbers, buffer);
+    const bool stored = plan::stored_projection(context.plan, point.projection) != nullptr;
+    const std::string numbers = fmt::format(
+        "{}projections::{}{}", stored ? "rows + " : "",
+        context.names.matrix_array.at(point.projection),
+        offset == context.names.offset_array.end() ? "" : ", projections::" + offset->second);
+    const std::string z = inner.is_vector()
+                              ? fmt::format("etlmon::Point<{}>{{{{{}}}}}", inner.dimension,
+                                            scalars_of(context, inner))
+                              : elements_of(context, point.inner);
+    const std::string call =
+        fmt::format("{}etlmon::project<{}, {}>({}, {}, {}){}", stored ? "ready() ? " : "", map.rows,
+                    map.dimension, z, numbers, buffer, stored ? " : nullptr" : "");
     out.gap();
     print_comment(out, "//", fmt::format("{}, once for all distances from it", point.text), 4);
     out.line("float {}[{}];", buffer, point.dimension);

@@ -10,8 +10,7 @@ namespace etlc::plan {
 
 /// The projected points that distances are measured from, and those that these are projected from
 /// in turn, ascending: each behind its inner one.
-std::vector<Index> projected_points(const check::Model& model,
-                                    const std::vector<Index>& distances);
+std::vector<Index> projected_points(const check::Model& model, const std::vector<Index>& distances);
 
 /// The distance's kernel finds out by itself whether all elements of the point are finite: one that
 /// measures every row as it stands in the header. Others are called where they are.

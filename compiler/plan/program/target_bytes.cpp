@@ -49,7 +49,9 @@ public:
     void add_projection(Index index) {
         if (!projections_.insert(index).second) return;
         const check::Projection& map = plan_.model->projections[index];
-        bytes_ += (map.matrix.size() + map.offset.size()) * sizeof(float);
+        const StoredSet* const stored = stored_projection(plan_, index);
+        bytes_ += stored != nullptr ? stored->row_bytes : map.matrix.size() * sizeof(float);
+        bytes_ += map.offset.size() * sizeof(float);
     }
 
     std::uint64_t bytes() const { return bytes_; }
