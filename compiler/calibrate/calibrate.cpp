@@ -145,8 +145,9 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         request.episodes, request, sink,
         [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
     if (!demonstrations) return std::nullopt;
-    const thresholds::Allowance allowance = episodes::admit(
-        model, episodes::recorded(*demonstrations), {}, request.allow_overlap, sink);
+    const thresholds::Allowance allowance =
+        episodes::admit(model, episodes::recorded(*demonstrations), {}, request.fitted,
+                        request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;

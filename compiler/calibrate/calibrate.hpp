@@ -15,6 +15,7 @@
 #include "calibrate/scores.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::calibrate {
@@ -24,6 +25,7 @@ struct Request {
     data::NamesInFile names;
     /// The reason for which overlaps are passed over; empty: they are not.
     std::string allow_overlap;
+    fitted::File fitted;      ///< what is fitted in the model: its episodes are refused
     unsigned jobs = 0;        ///< threads; 0: as many as the machine has
     std::uint32_t folds = 0;  ///< without each of which thresholds are taken too; 0: none
     std::string version;      ///< of etlc

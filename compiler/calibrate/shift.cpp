@@ -179,7 +179,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     if (!scored) return std::nullopt;
     const auto recorded = episodes::recorded(*scored);
     const thresholds::Allowance allowance =
-        episodes::admit(model, recorded, before, request.allow_overlap, sink);
+        episodes::admit(model, recorded, before, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};

@@ -5,6 +5,7 @@
 #include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
+#include "driver/fit.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
@@ -80,6 +81,7 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     calibration.episodes = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
     calibration.version = kVersion;
+    calibration.fitted = fitted_file(*model, file.path(), request.fitted);
     calibration.progress = episodes_progress();
     const std::string output =
         request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;

@@ -122,7 +122,8 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
     Folds result{folds, episodes::folds_of(recorded, folds), {}};
-    result.allowance = episodes::admit(model, recorded, {}, request.allow_overlap, sink);
+    result.allowance =
+        episodes::admit(model, recorded, {}, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
 }

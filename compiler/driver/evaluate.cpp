@@ -9,6 +9,7 @@
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
 #include "driver/crossvalidate.hpp"
+#include "driver/fit.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
@@ -94,12 +95,14 @@ public:
         std::vector<std::size_t> all(asked_.episodes.size());
         std::iota(all.begin(), all.end(), std::size_t{0});
         auto seen = thresholds_of(one.model(), one.spec.file.path(), request_);
-        return evaluate::judge({{*one.compiled, std::move(seen), std::move(all)}}, asked_, sink);
+        return evaluate::judge({{*one.compiled, std::move(seen), std::move(all), fitted_of(one)}},
+                               asked_, sink);
     }
 
     /// Every fold by what the others give. The folds are those of the first spec.
     std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
                                                 diag::Sink& sink) {
+        calibration_.fitted = fitted_of(one);
         if (!folds_) folds_ = deal(one.model(), calibration_, count, sink);
         if (!folds_) return std::nullopt;
         const auto trained = train(one.spec.file, request_, calibration_, *folds_, sink);
@@ -107,7 +110,8 @@ public:
         std::vector<evaluate::Trial> trials;
         for (std::uint32_t fold = 0; fold < count; ++fold) {
             const Trained& others = (*trained)[fold];
-            trials.push_back({others.spec, others.thresholds, episodes_of(*folds_, fold)});
+            trials.push_back(
+                {others.spec, others.thresholds, episodes_of(*folds_, fold), calibration_.fitted});
         }
         auto result = evaluate::judge(trials, asked_, sink);
         if (result && folds_->allowance.overlapping > 0)
@@ -116,6 +120,10 @@ public:
     }
 
 private:
+    fitted::File fitted_of(const Candidate& one) const {
+        return fitted_file(one.model(), one.spec.file.path(), request_.check.fitted_path);
+    }
+
     const Request& request_;
     const evaluate::Request& asked_;
     calibrate::Request calibration_;

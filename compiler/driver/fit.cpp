@@ -44,4 +44,11 @@ bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) 
            files.commit();
 }
 
+fitted::File fitted_file(const check::Model& model, const std::string& spec,
+                         const std::string& given) {
+    if (model.fitted.empty()) return {};
+    const auto file = fitted::read(given.empty() ? fitted::default_path(spec) : given);
+    return file ? *file : fitted::File{};  // check/ has read it, and would have said so
+}
+
 }  // namespace etlc::driver

@@ -9,6 +9,7 @@
 #include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "fit/request.hpp"
+#include "fitted/fitted.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {
@@ -21,5 +22,9 @@ struct FitRequest {
 
 /// False where the sink now says why not.
 bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink);
+
+/// Where what is fitted in the model comes from; empty where nothing is. `given`: of --fitted.
+fitted::File fitted_file(const check::Model& model, const std::string& spec,
+                         const std::string& given);
 
 }  // namespace etlc::driver

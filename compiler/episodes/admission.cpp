@@ -54,15 +54,16 @@ private:
     std::vector<Refusal> all_;
 };
 
-/// Episodes that thresholds of a file were calibrated on.
+using Contents = std::map<std::string, data::EpisodeContent>;
+
+/// Episodes that something in a file was made from.
 class Seen {
 public:
-    /// `hashes`: of the episodes, in the file.
-    Seen(const thresholds::File& file, std::vector<std::string> hashes)
-        : hashes_(std::move(hashes)) {
+    /// `hashes`: of the episodes; `contents`: of them and of others.
+    Seen(const Contents& contents, std::vector<std::string> hashes) : hashes_(std::move(hashes)) {
         std::sort(hashes_.begin(), hashes_.end());
         for (const std::string& hash : hashes_)
-            if (const auto known = file.recordings.find(hash); known != file.recordings.end())
+            if (const auto known = contents.find(hash); known != contents.end())
                 recordings_.add(known->second);
     }
 
@@ -77,29 +78,29 @@ private:
     data::Recordings recordings_;
 };
 
-/// Refuses what thresholds of a file were calibrated on.
+/// Refuses what something in a file was made from.
 class Unseen {
 public:
     /// `one`: what messages call such an episode; `advice`: the notes where it comes up again;
     /// `allowing`: another, where it does in part.
-    Unseen(const thresholds::File& file, const std::vector<std::string>& hashes, bool allows,
-           Code code, std::string one, const std::string& advice, std::string_view allowing)
-        : seen_(file, hashes),
+    Unseen(const Contents& contents, const std::vector<std::string>& hashes, bool allows, Code code,
+           std::string one, const std::string& advice, std::string_view allowing)
+        : seen_(contents, hashes),
           allows_(allows),
           one_(std::move(one)),
           equal_(code, {advice}),
           in_part_(code, {advice, std::string(allowing)}) {}
 
-    /// Whether an overlap was passed over.
-    bool look_at(const Recorded& episode) {
+    enum class Met : std::uint8_t { never, passed_over, refused };
+    Met look_at(const Recorded& episode) {
         const auto found = seen_.find(episode);
-        if (!found) return false;
-        if (allows_ && !found->equal) return true;
+        if (!found) return Met::never;
+        if (allows_ && !found->equal) return Met::passed_over;
         if (found->equal)
             equal_.add(episode, "is " + one_);
         else
             in_part_.add(episode, in_common(*found) + " " + one_);
-        return false;
+        return Met::refused;
     }
 
     void report(diag::Sink& sink) const {
@@ -115,13 +116,28 @@ private:
     Refusals in_part_;
 };
 
+/// Refuses what something was fitted on.
+Unseen not_fitted_on(const fitted::File& file, bool allows, std::string_view allowing) {
+    return {file.recordings,
+            file.episodes,
+            allows,
+            Code::episode_fitted_on,
+            fmt::format("an episode that the projections, targets or metrics in {} were fitted on",
+                        file.path),
+            "keep the episodes for fitting apart from those for calibration and evaluation: what "
+            "is fitted separates them better than any others",
+            allowing};
+}
+
 /// Looks at one episode after the other.
 class Admission {
 public:
-    Admission(const check::Model& model, const thresholds::File& before, const std::string& reason)
+    Admission(const check::Model& model, const thresholds::File& before, const fitted::File& fitted,
+              const std::string& reason)
         : model_(model),
           allows_(!reason.empty()),
-          unseen_(before, before.episodes, allows_, Code::not_disjoint,
+          not_fitted_on_(not_fitted_on(fitted, allows_, kHowToAllow)),
+          unseen_(before.recordings, before.episodes, allows_, Code::not_disjoint,
                   "an episode that thresholds of predicates were calibrated on",
                   "calibrate monitors on other episodes: fitted on the same ones, the thresholds "
                   "are better there than they will be",
@@ -130,7 +146,11 @@ public:
     }
 
     void look_at(const Recorded& episode) {
-        const bool overlaps = unseen_.look_at(episode);
+        const Unseen::Met fitted_on = not_fitted_on_.look_at(episode);
+        if (fitted_on == Unseen::Met::refused) return;  // its frames are what was fitted
+        const Unseen::Met calibrated_on = unseen_.look_at(episode);
+        const bool overlaps =
+            fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
         passed_over_.overlapping += look_at_earlier(episode) || overlaps ? 1 : 0;
         if (episode.leak && allows_) ++passed_over_.leaked;
         if (episode.leak && !allows_)
@@ -139,6 +159,7 @@ public:
     }
 
     thresholds::Allowance conclude(diag::Sink& sink) && {
+        not_fitted_on_.report(sink);
         unseen_.report(sink);
         for (const Refusals* refusals : {&repeated_, &overlapping_, &leaks_, &scalar_leaks_})
             refusals->report(sink);
@@ -166,6 +187,7 @@ private:
 
     const check::Model& model_;
     bool allows_;
+    Unseen not_fitted_on_;
     Unseen unseen_;
     data::Recordings recordings_;
     std::vector<std::string> paths_;  ///< in the order of recordings_
@@ -200,25 +222,34 @@ std::string text(const check::Model& model, const Leak& leak) {
 }
 
 thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
-                            const thresholds::File& before, const std::string& reason,
-                            diag::Sink& sink) {
-    Admission admission(model, before, reason);
+                            const thresholds::File& before, const fitted::File& fitted,
+                            const std::string& reason, diag::Sink& sink) {
+    Admission admission(model, before, fitted, reason);
     for (const Recorded* episode : episodes) admission.look_at(*episode);
     return std::move(admission).conclude(sink);
 }
 
 thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
-                                   const thresholds::File& file, const std::string& reason,
-                                   diag::Sink& sink) {
+                                   const thresholds::File& thresholds, const fitted::File& fitted,
+                                   const std::string& reason, diag::Sink& sink) {
+    constexpr std::string_view kAllowing =
+        "if they are different recordings after all, say why with --allow-overlap REASON: the "
+        "reason stands next to the figures";
     thresholds::Allowance passed_over{reason};
-    Unseen unseen(file, thresholds::all_episodes(file), !reason.empty(),
-                  Code::episode_calibrated_on,
-                  fmt::format("an episode that the thresholds in {} were calibrated on", file.path),
-                  "keep the episodes for evaluation apart from those for calibration",
-                  "if they are different recordings after all, say why with --allow-overlap "
-                  "REASON: the reason stands next to the figures");
-    for (const Recorded* episode : episodes)
-        passed_over.overlapping += unseen.look_at(*episode) ? 1 : 0;
+    Unseen not_fitted = not_fitted_on(fitted, !reason.empty(), kAllowing);
+    Unseen unseen(
+        thresholds.recordings, thresholds::all_episodes(thresholds), !reason.empty(),
+        Code::episode_calibrated_on,
+        fmt::format("an episode that the thresholds in {} were calibrated on", thresholds.path),
+        "keep the episodes for evaluation apart from those for calibration", kAllowing);
+    for (const Recorded* episode : episodes) {
+        const Unseen::Met fitted_on = not_fitted.look_at(*episode);
+        const Unseen::Met calibrated_on = unseen.look_at(*episode);
+        const bool overlaps =
+            fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
+        passed_over.overlapping += overlaps ? 1 : 0;
+    }
+    not_fitted.report(sink);
     unseen.report(sink);
     return passed_over;
 }

@@ -1,5 +1,6 @@
 // Which episodes a guarantee may be taken from.
-// Takes: what was read of every episode, and the episodes that thresholds behind it have seen.
+// Takes: what was read of every episode, and the episodes that thresholds and fitted things behind
+// it have seen.
 // Gives: an error for each that voids the guarantee: a target among its frames, the same episode
 // twice, one that was seen, and one that shares most of its content with such a one. Keeps true:
 // every calibration asks here, and what is calibrated beyond this is exchangeable with what comes,
@@ -13,6 +14,7 @@
 
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
+#include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::episodes {
@@ -28,17 +30,18 @@ std::vector<const Recorded*> recorded(const std::vector<Episode>& episodes) {
 /// "step 4 is row 1 of target 'home', from which 'at_home' measures"
 std::string text(const check::Model& model, const Leak& leak);
 
-/// `before`: where thresholds in the model come from. `reason`: of --allow-overlap; with one,
-/// overlaps short of equality and targets among the frames are counted and not refused.
+/// `before`: where thresholds in the model come from; `fitted`: where what is fitted does.
+/// `reason`: of --allow-overlap; with one, overlaps short of equality and targets among the frames
+/// are counted and not refused.
 thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
-                            const thresholds::File& before, const std::string& reason,
-                            diag::Sink& sink);
+                            const thresholds::File& before, const fitted::File& fitted,
+                            const std::string& reason, diag::Sink& sink);
 
-/// For an evaluation: refuses what thresholds of the file were calibrated on, and counts overlaps
-/// with it where a `reason` allows them.
+/// For an evaluation: refuses what thresholds were calibrated on, or something was fitted on, and
+/// counts overlaps with it where a `reason` allows them.
 thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
-                                   const thresholds::File& file, const std::string& reason,
-                                   diag::Sink& sink);
+                                   const thresholds::File& thresholds, const fitted::File& fitted,
+                                   const std::string& reason, diag::Sink& sink);
 
 /// Notes in the file what tells these episodes apart, and what was passed over, if anything was.
 void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,

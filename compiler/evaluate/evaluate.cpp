@@ -109,13 +109,15 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         auto episodes = scored(trial, subject(model, *labelled), request, sink);
         if (!episodes) return std::nullopt;
         thresholds::Allowance allowance;
-        if (trial.seen)
-            allowance = episodes::admit_unseen(episodes::recorded(*episodes), *trial.seen,
-                                               request.allow_overlap, sink);
+        const bool has_seen = trial.seen || !trial.fitted.episodes.empty();
+        if (has_seen)
+            allowance = episodes::admit_unseen(episodes::recorded(*episodes),
+                                               trial.seen.value_or(thresholds::File{}),
+                                               trial.fitted, request.allow_overlap, sink);
         if (trials.size() > 1) {
             result.folds.push_back({trial.episodes.size(), calibrated_in(model)});
         } else {
-            if (trial.seen) result.reservations = model.reservations;
+            if (has_seen) result.reservations = model.reservations;
             if (allowance.overlapping > 0)
                 result.reservations.push_back(thresholds::text(allowance));
         }

@@ -19,6 +19,7 @@
 #include "evaluate/differences.hpp"
 #include "evaluate/episode_scores.hpp"
 #include "evaluate/subject.hpp"
+#include "fitted/fitted.hpp"
 #include "pipeline/compile.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -31,6 +32,7 @@ struct Trial {
     /// The thresholds that its plan has, where they were calibrated: episodes in it are refused.
     std::optional<thresholds::File> seen;
     std::vector<std::size_t> episodes;  ///< which of those of the request
+    fitted::File fitted{};              ///< what is fitted in its model: episodes in it are refused
 };
 
 struct Request {

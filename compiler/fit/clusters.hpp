@@ -17,7 +17,7 @@ struct Clusters {
 };
 
 /// The best of kStarts. Nothing where there are fewer than k different points.
-inline constexpr int kStarts = 8;
+inline constexpr int kStarts = 4;
 std::optional<Clusters> k_means(const Matrix& points, Eigen::Index k);
 
 /// Per centre the index of the point nearest to it that is nearest to no centre before it.

@@ -24,7 +24,7 @@ using check::Index;
 inline constexpr std::size_t kFolds = 5;
 
 /// Frames of a target set are taken from so many of all episodes, or one of each.
-inline constexpr std::size_t kMostFrames = 4096;
+inline constexpr std::size_t kMostFrames = 2048;
 
 /// Something to collect of the frames at which a formula holds.
 struct Need {

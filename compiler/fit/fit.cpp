@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "check/guarantees/provenance.hpp"
+#include "data/files/file.hpp"
 #include "data/traces/episodes.hpp"
 #include "episodes/admission.hpp"
 
@@ -27,11 +28,15 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
                        diag::Sink& sink) {
     if (solution.constant == 0) return;
     const std::uint32_t all = model.points[fitted.point].dimension;
-    sink.report(
-            Code::constant_features, fitted.span,
-            fmt::format("{} of {} of {} {} the same at all frames that '{}' is fitted on",
-                        solution.constant, counted(all, "element"), model.points[fitted.point].text,
-                        solution.constant == 1 ? "is" : "are", fitted.name))
+    // Of the data: of the spec nothing is wrong.
+    diag::Diagnostic found = data::in_file(
+        {Code::constant_features,
+         fmt::format("{} of {} of {} {} the same at all frames that '{}' is fitted on",
+                     solution.constant, counted(all, "element"), model.points[fitted.point].text,
+                     solution.constant == 1 ? "is" : "are", fitted.name)},
+        "--data");
+    found.span = fitted.span;
+    sink.report(std::move(found))
         .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
 }
 
@@ -116,7 +121,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     if (!collection) return std::nullopt;
     const auto recorded = episodes::recorded(collection->episodes);
     const thresholds::Allowance allowance =
-        episodes::admit(model, recorded, {}, request.allow_overlap, sink);
+        episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     check::Model filled = model;

@@ -3,7 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
+#include <exception>
 #include <memory>
 #include <set>
 #include <unordered_map>
@@ -46,6 +48,21 @@ std::string fill(check::Model& model, const Needs& needs, const Collection& coll
             return fmt::format("'{}': a target is beyond float32", model.fitted[i].name);
     }
     return "";
+}
+
+/// All folds; why not, where the first of those that cannot be is not.
+std::string fill(const std::vector<std::unique_ptr<Fold>>& folds, const Needs& needs,
+                 const Collection& collection, unsigned jobs) {
+    std::vector<std::string> refused(folds.size());
+    std::atomic<std::size_t> next = 0;
+    const std::exception_ptr failure = episodes::in_threads(jobs, folds.size(), [&] {
+        for (std::size_t f = next++; f < folds.size(); f = next++)
+            refused[f] = fill(folds[f]->model, needs, collection, f);
+    });
+    if (failure) std::rethrow_exception(failure);
+    const auto first = std::find_if(refused.begin(), refused.end(),
+                                    [](const std::string& why) { return !why.empty(); });
+    return first == refused.end() ? "" : *first;
 }
 
 std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& need,
@@ -188,10 +205,11 @@ std::optional<Separations> separate(const check::Model& model, const Needs& need
         return result;
     }
     std::vector<std::unique_ptr<Fold>> folds;
-    for (std::size_t f = 0; f < collection.folds.size(); ++f) {
+    for (std::size_t f = 0; f < collection.folds.size(); ++f)
         folds.push_back(std::make_unique<Fold>(Fold{model, {}, {}}));
-        result.why_not = fill(folds[f]->model, needs, collection, f);
-        if (!result.why_not.empty()) return result;
+    result.why_not = fill(folds, needs, collection, request.jobs);
+    if (!result.why_not.empty()) return result;
+    for (std::size_t f = 0; f < folds.size(); ++f) {
         folds[f]->plan = plan::measuring(folds[f]->model, predicates);
         for (const Index predicate : predicates)
             folds[f]->means.push_back(mean_of(needs, plain_need(model, predicate), collection, f));

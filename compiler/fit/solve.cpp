@@ -68,8 +68,7 @@ public:
         if (solution_.counts.holds == 0)
             return Refusal{
                 Code::too_few_frames,
-                fmt::format("there is no frame to fit it on: of {}, none has a point and "
-                            "'where' holds at it",
+                fmt::format("of {}, there is none at which 'where' holds and the point is there",
                             counted(solution_.counts.frames(), "frame"))};
         switch (fitted_.method) {
             case FittedMethod::mean: return mean();
@@ -215,8 +214,8 @@ private:
 
     Refusal too_few_taken(std::size_t taken, std::string_view different) const {
         return {Code::too_few_frames,
-                fmt::format("k = {} takes as many{} frames; {} can be taken{}", fitted_.rows,
-                            different, taken,
+                fmt::format("k = {} takes at least {}{} frames; {} can be taken{}", fitted_.rows,
+                            fitted_.rows, different, taken,
                             fitted_.away == 0
                                 ? ""
                                 : fmt::format(", {} or more away from where 'where' changes",

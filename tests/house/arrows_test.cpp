@@ -23,7 +23,7 @@ const std::map<std::string, Names> kArrows = {
     {"thresholds", {"data"}},
     {"fitted", {"thresholds"}},
     {"parse", {"ast", "diag"}},
-    {"check", {"ast", "data", "thresholds"}},
+    {"check", {"ast", "data", "thresholds", "fitted"}},
     {"reference", {"check"}},
     {"ir", {"check"}},
     {"opt", {"ir"}},

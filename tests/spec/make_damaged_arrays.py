@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Writes the damaged .npy and .npz files that the E04 and E08 cases of error/ load. Needs only
-Python."""
+"""Writes the damaged .npy and .npz files that the E04, E06 and E08 cases of error/ load. Needs
+only Python."""
 import pathlib
 import struct
 import zipfile
@@ -75,3 +75,26 @@ trace("E0807_lengths.npz", held=npy("|b1", "(3,)", b"\x00\x01\x00"))
 trace("E0808_bool.npz", grip=FLAGS)
 trace("E0808_not_bool.npz", held=npy("<f4", "(2,)", struct.pack("<2f", 0, 0.5)))
 trace("E0808_big_endian.npz", z=npy(">f4", "(2, 2)", bytes(16)))
+
+FITTED = """{
+  "format": %d,
+  "spec": "t",
+  "entries": {
+    "g": {
+      "declaration": "fitted(mean, of = z, where = true)",
+      "of": "z",
+      "truth": "true",
+      "array": "g",
+      "frames": %s
+    }
+  },
+  "episodes": [],
+  "recordings": {},
+  "etlc": "0.1.0"
+}
+"""
+for name, description in (
+    ("E0673_unknown_fitted_format", FITTED % (2, "3")),
+    ("E0674_invalid_fitted", FITTED % (1, '"three"')),
+):
+    write(name + ".fitted.npz", zipped([("fitted.json", description), ("g.npy", npy())]))

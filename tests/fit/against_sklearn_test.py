@@ -1,0 +1,140 @@
+#!/usr/bin/env python3
+"""against_sklearn_test.py ETLC: every method of `etlc fit` on one set of episodes, compared with
+scikit-learn, or with its definition in numpy; the same bytes for any number of threads."""
+import json
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import zipfile
+
+import numpy as np
+from sklearn.cluster import KMeans
+from sklearn.decomposition import PCA
+from sklearn.discriminant_analysis import LinearDiscriminantAnalysis
+
+SPEC = """
+spec grasp;
+input z : f32[12];
+input x : f32;
+projection Q = fitted(pca, r = 4, of = z, where = true);
+projection V = fitted(whitened_pca, r = 3, of = z, where = x <= 0);
+projection L = fitted(discriminant, r = 1, of = z, where = holds);
+projection N = fitted(logpzo, of = z, where = holds);
+target anchors = fitted(medoids, k = 5, away = 4, of = z, where = holds);
+target centres = fitted(kmeans, k = 6, of = Q(z), where = true);
+target mean = fitted(mean, of = V(z), where = holds);
+target zero = [[0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0]] of N(z);
+predicate holds = min l2(z, anchors) <= calibrated(conformal, alpha = 0.1);
+predicate along = min l2(L(z), anchors) <= 1;
+predicate near = min mahalanobis(fitted(discriminant, of = z, where = holds))(z, anchors) <= 4;
+predicate known = min l2(Q(z), centres) <= 1;
+predicate white = min l2(V(z), mean) <= 1;
+predicate usual = min l2sq(N(z), zero) <= 1;
+truth holds = x <= 0;
+monitor m = F (holds && along && near && known && white && usual);
+"""
+METRIC = "fitted(discriminant, of = z, where = holds)"
+
+
+def make_episodes(folder, random):
+    """Drifting frames, shifted where it holds; a few of them missing."""
+    mix = random.normal(size=(3, 12)) * 2
+    shift = random.normal(size=12) * 1.5
+    episodes = []
+    for number in range(12):
+        steps = 150 + 10 * number
+        x = np.cumsum(random.normal(size=steps) * 0.3) + random.normal()
+        drift = np.cumsum(random.normal(size=(steps, 3)), 0) * 0.2
+        z = random.normal(size=(steps, 12)) + drift @ mix + np.outer(x <= 0, shift)
+        z = z.astype(np.float32)
+        z[number] = np.nan
+        np.savez(folder / f"{number:02}.npz", z=z, x=x)
+        episodes.append((z, x))
+    return episodes
+
+
+def close(found, expected, tolerance, what):
+    error = np.abs(found - expected).max() / np.abs(expected).max()
+    assert error <= tolerance, f"{what}: off by {error:.2g}, at most {tolerance} is allowed"
+
+
+def same_up_to_sign(found, expected, what):
+    for row, (a, b) in enumerate(zip(found, expected)):
+        close(a * np.sign(a @ b), b, 1e-4, f"{what}, row {row}")
+
+
+def check_projections(fitted, frames, holds, shrinkage):
+    pca = PCA(4, svd_solver="full").fit(frames)
+    same_up_to_sign(fitted["Q"], pca.components_, "pca")
+    close(fitted["Q-offset"], pca.mean_, 1e-5, "mean of pca")
+    whitened = PCA(3, svd_solver="full", whiten=True).fit(frames[holds])
+    rows = whitened.components_ / np.sqrt(whitened.explained_variance_)[:, None]
+    same_up_to_sign(fitted["V"], rows, "whitened_pca")
+
+    lda = LinearDiscriminantAnalysis(solver="lsqr", shrinkage=shrinkage, store_covariance=True)
+    lda.fit(frames, holds)
+    direction = fitted["L"][0] / np.linalg.norm(fitted["L"][0])
+    close(direction, lda.coef_[0] / np.linalg.norm(lda.coef_), 1e-4, "discriminant")
+    close(fitted["L"] @ lda.covariance_ @ fitted["L"].T, np.ones((1, 1)), 1e-4, "its unit")
+    close(fitted["metric-1"], np.linalg.inv(lda.covariance_), 1e-4, "metric")
+
+    s = np.cov(frames[holds].T)
+    one = np.eye(12)
+    close(fitted["N"], (2.5 * one - 0.5 * s) @ np.linalg.inv(one + s), 1e-4, "logpzo")
+    close(fitted["N-offset"], frames[holds].mean(0), 1e-5, "mean of logpzo")
+
+
+def check_targets(fitted, entries, frames, holds, episodes):
+    mean = fitted["V"].astype(float) @ (frames[holds].mean(0) - fitted["V-offset"])
+    close(fitted["mean"][0], mean, 1e-4, "mean")
+
+    points = (frames - fitted["Q-offset"]) @ fitted["Q"].T.astype(float)
+    squared = ((points[:, None] - fitted["centres"][None]) ** 2).sum(2).min(1).sum()
+    best = KMeans(6, n_init=10, random_state=0).fit(points).inertia_
+    assert squared <= 1.02 * best, f"kmeans: {squared / best:.4f} times the objective of sklearn"
+
+    hashes = entries["episodes"]
+    for row, medoid in zip(fitted["anchors"], entries["entries"]["anchors"]["medoids"]):
+        z, x = episodes[hashes.index(medoid["episode"])]
+        step = medoid["step"]
+        assert (z[step] == row).all(), "a medoid is the frame that the file names"
+        around = x[max(0, step - 4) : step + 5]
+        assert (around <= 0).all(), f"a medoid is 4 steps away from a change: {around}"
+
+
+def main(etlc):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "demos").mkdir()
+        (folder / "grasp.etl").write_text(SPEC)
+        episodes = make_episodes(folder / "demos", np.random.default_rng(3))
+
+        def fit(output, *options):
+            call = [etlc, "fit", "grasp.etl", "--data", "demos", "-o", output, *options]
+            return subprocess.run(
+                call, cwd=folder, check=True, stdout=subprocess.PIPE, text=True
+            ).stdout
+
+        report = fit("grasp.fitted.npz", "-j", "1")
+        assert fit("two.npz", "-j", "2") == report
+        one, two = ((folder / n).read_bytes() for n in ("grasp.fitted.npz", "two.npz"))
+        assert one == two, "the same bytes for 1 and 2 threads"
+
+        frames = np.concatenate([z for z, _ in episodes]).astype(float)
+        holds = np.concatenate([x <= 0 for _, x in episodes])
+        there = np.isfinite(frames).all(1)
+        frames, holds = frames[there], holds[there]
+        shrinkage = float(re.search(r"shrinkage ([\d.e-]+),", report).group(1))
+        fitted = np.load(folder / "grasp.fitted.npz")
+        with zipfile.ZipFile(folder / "grasp.fitted.npz") as archive:
+            entries = json.loads(archive.read("fitted.json"))
+        assert entries["entries"][METRIC]["array"] == "metric-1"
+        assert entries["entries"]["Q"]["frames"] == len(frames)
+        assert "12 frames left out: the point is missing" in report
+        check_projections(fitted, frames, holds, shrinkage)
+        check_targets(fitted, entries, frames, holds, episodes)
+
+
+main(sys.argv[1])
