@@ -1,6 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
-#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE]
-#                  [SET name=value ...])
+#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [EXPLAIN]
+#                  [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -17,6 +17,7 @@
 #                   262144. The program gives the monitor that file, which is empty where no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
+#   EXPLAIN         the class says why a verdict is what it is: why_NAME(); not with VALUES boolean
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that the spec loads, the thresholds or etlc itself change.
 # Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
@@ -25,7 +26,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;STANDALONE"
     "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
@@ -46,6 +47,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
     message(FATAL_ERROR "${call}: VALUES ${arg_VALUES}: expected robustness or boolean")
+  endif()
+  if(arg_EXPLAIN AND "${arg_VALUES}" STREQUAL "boolean")
+    message(FATAL_ERROR "${call}: EXPLAIN follows robustness, which VALUES boolean has none of")
   endif()
   if(DEFINED arg_INLINE_TARGETS AND NOT arg_INLINE_TARGETS MATCHES "^[0-9]+$")
     message(FATAL_ERROR "${call}: INLINE_TARGETS ${arg_INLINE_TARGETS}: expected a number of bytes")
@@ -83,6 +87,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_RECORDER)
     list(APPEND options --recorder "${arg_RECORDER}")
+  endif()
+  if(arg_EXPLAIN)
+    list(APPEND options --explain)
   endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)
