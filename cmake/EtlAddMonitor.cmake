@@ -1,5 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
 #                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
+#                  [EXPLAIN]
 #                  [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
@@ -18,6 +19,7 @@
 #                   262144. The program gives the monitor that file, which is empty where no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
+#   EXPLAIN         the class says why a verdict is what it is: why_NAME(); not with VALUES boolean
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
 # itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja
@@ -26,7 +28,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;STANDALONE"
     "SPEC;THRESHOLDS;FITTED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
@@ -47,6 +49,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_VALUES AND NOT arg_VALUES MATCHES "^(robustness|boolean)$")
     message(FATAL_ERROR "${call}: VALUES ${arg_VALUES}: expected robustness or boolean")
+  endif()
+  if(arg_EXPLAIN AND "${arg_VALUES}" STREQUAL "boolean")
+    message(FATAL_ERROR "${call}: EXPLAIN follows robustness, which VALUES boolean has none of")
   endif()
   if(DEFINED arg_INLINE_TARGETS AND NOT arg_INLINE_TARGETS MATCHES "^[0-9]+$")
     message(FATAL_ERROR "${call}: INLINE_TARGETS ${arg_INLINE_TARGETS}: expected a number of bytes")
@@ -89,6 +94,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_RECORDER)
     list(APPEND options --recorder "${arg_RECORDER}")
+  endif()
+  if(arg_EXPLAIN)
+    list(APPEND options --explain)
   endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)

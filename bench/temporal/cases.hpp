@@ -35,15 +35,16 @@
 namespace bench {
 
 /// Spec NAME, over one, two or three signals, whose only monitor is m.
-#define BENCH_GENERATED(NAME, ...)                                         \
-    using Monitor = NAME::Monitor;                                         \
-    static NAME::Inputs inputs(const Signals& signals, std::size_t i) {    \
-        return {__VA_ARGS__};                                              \
-    }                                                                      \
-    static constexpr std::size_t kMonitors = 1;                            \
-    template <class Visit>                                                 \
-    static void visit(const NAME::Verdicts& verdicts, const Visit& take) { \
-        take(0, verdicts.m);                                               \
+#define BENCH_GENERATED(NAME, ...)                                   \
+    using Monitor = NAME::Monitor;                                   \
+    template <class Inputs = NAME::Inputs>                           \
+    static Inputs inputs(const Signals& signals, std::size_t i) {    \
+        return {__VA_ARGS__};                                        \
+    }                                                                \
+    static constexpr std::size_t kMonitors = 1;                      \
+    template <class Verdicts, class Visit>                           \
+    static void visit(const Verdicts& verdicts, const Visit& take) { \
+        take(0, verdicts.m);                                         \
     }
 #define BENCH_P signals.p[i]
 #define BENCH_PQ signals.p[i], signals.q[i]
@@ -314,10 +315,13 @@ struct Responses {
     static constexpr const char* kTitle = "ten of G (p -> F[0,w] q)";
     static constexpr uint32_t kWindow = 100;
     using Monitor = responses::Monitor;
-    static responses::Inputs inputs(const Signals& signals, std::size_t i) { return {BENCH_PQ}; }
+    template <class Inputs = responses::Inputs>
+    static Inputs inputs(const Signals& signals, std::size_t i) {
+        return {BENCH_PQ};
+    }
     static constexpr std::size_t kMonitors = 10;
-    template <class Visit>
-    static void visit(const responses::Verdicts& verdicts, const Visit& take) {
+    template <class Verdicts, class Visit>
+    static void visit(const Verdicts& verdicts, const Visit& take) {
         const etlmon::Verdict* const all[] = {
             &verdicts.m10, &verdicts.m20, &verdicts.m30, &verdicts.m40, &verdicts.m50,
             &verdicts.m60, &verdicts.m70, &verdicts.m80, &verdicts.m90, &verdicts.m100};

@@ -57,6 +57,7 @@ constexpr Column kColumns[] = {
     {"plain", "ns", "plain_ns", 7, 2},
     {"ready", "ns", "ready_ns", 7, 2},
     {"ready/", "plain", "ready_to_plain", 6, 2},
+    {"why/", "ready", "why_to_ready", 6, 2},
     {"step", "ns", "robustness_ns", 7, 2},
     {"step/", "plain", "robustness_to_plain", 6, 2},
     {"verd/", "step", "verdict_to_robustness", 6, 2},
@@ -64,6 +65,7 @@ constexpr Column kColumns[] = {
     {"| called", "plain", "plain_called_ns", 9, 2},
     {"ready", "ns", "ready_called_ns", 7, 2},
     {"ready/", "plain", "ready_called_to_plain", 6, 2},
+    {"why/", "ready", "why_to_ready_called", 6, 2},
     {"step", "ns", "robustness_called_ns", 7, 2},
     {"step/", "plain", "robustness_called_to_plain", 6, 2},
     {"verdict", "ns", "verdict_called_ns", 8, 2},
@@ -71,6 +73,7 @@ constexpr Column kColumns[] = {
     {"copilot/", "step", "copilot_to_robustness_called", 9, 1},
     {"| worst", "ns", "worst_step_ns", 8, 0},
     {"state", "bytes", "state_bytes", 8, 0},
+    {"with", "why", "why_state_bytes", 8, 0},
     {"ops", "", "operations", 6, 0},
 };
 
@@ -95,7 +98,7 @@ json measured(const Row& row, bench::Effort effort) {
                                   row.rho.call,   row.verdict.loop, row.verdict.call};
     std::size_t next = routines.size();
     for (const std::optional<Routine>& more :
-         {row.plain.loop, row.plain.call, row.rescan, row.copilot})
+         {row.why.loop, row.why.call, row.plain.loop, row.plain.call, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
     const bench::Ways<Series> ready{series[0], series[1]}, rho{series[2], series[3]},
@@ -112,6 +115,14 @@ json measured(const Row& row, bench::Effort effort) {
                 {"state_bytes", row.state_bytes},
                 {"operations", row.operations},
                 {"worst_step_ns", row.worst()}};
+    if (row.why.loop) {
+        const bench::Ways<Series> why{series[next], series[next + 1]};
+        next += 2;
+        result["why_to_ready"] = bench::ratio(why.loop, ready.loop);
+        result["why_called_ns"] = why.call.median();
+        result["why_to_ready_called"] = bench::ratio(why.call, ready.call);
+        result["why_state_bytes"] = row.why_state_bytes;
+    }
     if (row.plain.loop) {
         const bench::Ways<Series> plain{series[next], series[next + 1]};
         next += 2;

@@ -14,9 +14,9 @@
 #include <type_traits>
 #include <vector>
 
-#include "cases.hpp"
 #include "copilot/copilot.hpp"
 #include "etlmon/temporal/verdict.hpp"
+#include "explained.hpp"
 #include "timing.hpp"
 
 namespace bench {
@@ -42,25 +42,28 @@ struct Row {
     std::optional<Routine> copilot;  ///< Copilot's monitor, called
     /// The monitor on predicates that are ready; its user reads `robustness` alone.
     Ways<Routine> judge;
+    /// The same of a class that was made with --explain.
+    Ways<std::optional<Routine>> why;
+    std::size_t why_state_bytes = 0;
     Ways<Routine> rho;              ///< the monitor's whole step
     Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
     std::function<double()> worst;  ///< nanoseconds of its slowest step
 };
 
 /// What the monitor says about each predicate at each step.
-template <class Case>
-std::vector<typename Case::Monitor::Atoms> measured(const Signals& signals) {
-    typename Case::Monitor monitor;
-    std::vector<typename Case::Monitor::Atoms> atoms;
+template <class Case, class Monitor, class Inputs>
+std::vector<typename Monitor::Atoms> measured(const Signals& signals) {
+    const auto monitor = std::make_unique<Monitor>();
+    std::vector<typename Monitor::Atoms> atoms;
     for (std::size_t i = 0; i < signals.size(); ++i)
-        atoms.push_back(monitor.measure(Case::inputs(signals, i)));
+        atoms.push_back(monitor->measure(Case::template inputs<Inputs>(signals, i)));
     return atoms;
 }
 
 /// A chunk of steps whose predicates are ready, robustness alone.
-template <class Case, bool kCalled>
-[[gnu::noinline]] void judge_robustness(typename Case::Monitor& monitor,
-                                        const std::vector<typename Case::Monitor::Atoms>& atoms,
+template <class Case, bool kCalled, class Monitor>
+[[gnu::noinline]] void judge_robustness(Monitor& monitor,
+                                        const std::vector<typename Monitor::Atoms>& atoms,
                                         std::size_t from, float* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
         Case::visit(monitor.judge(atoms[from + i]),
@@ -182,6 +185,17 @@ double slowest_step() {
                                        [&] { Case::visit(monitor->step(inputs), keep); }});
 }
 
+/// judge() alone, on predicates that are ready.
+template <class Case, class Monitor, class Inputs>
+Ways<Routine> judging(const std::string& name, const Signals& signals) {
+    using Atoms = std::vector<typename Monitor::Atoms>;
+    const auto atoms = std::make_shared<const Atoms>(measured<Case, Monitor, Inputs>(signals));
+    return {routine<float, Monitor>(name, Case::kMonitors, atoms,
+                                    judge_robustness<Case, false, Monitor>),
+            routine<float, Monitor>(name + ", called", Case::kMonitors, atoms,
+                                    judge_robustness<Case, true, Monitor>)};
+}
+
 template <class Case>
 Row row() {
     using Monitor = typename Case::Monitor;
@@ -209,11 +223,14 @@ Row row() {
     const auto monitored = [&](auto result_type, const char* name, auto chunk) {
         return routine<decltype(result_type), Monitor>(name, kMonitors, signals, chunk);
     };
-    using Atoms = std::vector<typename Monitor::Atoms>;
-    const auto atoms = std::make_shared<const Atoms>(measured<Case>(*signals));
-    result.judge = {
-        routine<float, Monitor>("ready", kMonitors, atoms, judge_robustness<Case, false>),
-        routine<float, Monitor>("ready, called", kMonitors, atoms, judge_robustness<Case, true>)};
+    result.judge = judging<Case, Monitor, decltype(Case::inputs(*signals, 0))>("ready", *signals);
+    if constexpr (Explained<Monitor>::kExists) {
+        using Why = Explained<Monitor>;
+        const auto why =
+            judging<Case, typename Why::Monitor, typename Why::Inputs>("why", *signals);
+        result.why = {why.loop, why.call};
+        result.why_state_bytes = Why::Monitor::kStateBytes;
+    }
     result.rho = {monitored(float{}, "robustness", read_robustness<Case, false>),
                   monitored(float{}, "robustness, called", read_robustness<Case, true>)};
     result.verdict = {monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false>),

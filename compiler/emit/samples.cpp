@@ -1,6 +1,8 @@
 // Why a verdict is what it is, in the class: what it remembers of samples, and why_NAME().
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
 #include "emit/context.hpp"
 #include "source/escape.hpp"
 
@@ -118,13 +120,27 @@ std::vector<std::string> followed_streams(const Context& context) {
     return result;
 }
 
+/// The members of a reading that are followed, as judge() assigns them.
+std::vector<std::size_t> in_order(const plan::Reading& reading,
+                                  const std::vector<plan::Member>& members) {
+    std::vector<std::size_t> result;
+    const auto add = [&](std::size_t i) {
+        if (std::find(result.begin(), result.end(), i) == result.end()) result.push_back(i);
+    };
+    for (const plan::Assignment& assignment : reading.straight.assignments)
+        if (assignment.target == plan::Term::Kind::reg) add(assignment.index);
+    for (std::size_t i = 0; i < members.size(); ++i)
+        if (plan::is_followed(members[i])) add(i);
+    return result;
+}
+
 }  // namespace
 
 void print_followed_streams(Printer& out, const Context& context) {
     if (!is_used(context)) return;
     const std::vector<std::string> values = followed_streams(context);
     for (std::size_t i = 0; i < values.size(); ++i)
-        out.line("samples.follow({}, {});", i, values[i]);
+        out.line("samples.follow({}, {}, rank);", i, values[i]);
 }
 
 void print_followed_readings(Printer& out, const Context& context) {
@@ -134,12 +150,12 @@ void print_followed_readings(Printer& out, const Context& context) {
         const plan::Reading& reading = context.plan.readings[r];
         const Names::OfReading& names = context.names.readings[r];
         const std::vector<plan::Member> members = plan::members_of(reading);
-        for (std::size_t i = 0; i < members.size(); ++i)
-            if (plan::is_followed(members[i]))
-                out.line("samples.follow({}, {});", at++, names.members[i]);
+        for (const std::size_t i : in_order(reading, members))
+            out.line("samples.follow({}, {}, rank);", at++, names.members[i]);
         // Of a machine what decides for good.
         if (plan::table_of(reading) != nullptr)
-            out.line("samples.follow({}, {{{}.lower, {}.upper}});", at++, names.local, names.local);
+            out.line("samples.follow({}, {{{}.lower, {}.upper}}, rank);", at++, names.local,
+                     names.local);
     }
 }
 

@@ -12,6 +12,7 @@ for spec in grasp dock hover belt gauge; do
 done
 "$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --recorder 5,3,4 --namespace dock_recorded \
     -o "$out/dock_recorded.hpp"
+"$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --explain --namespace dock_why -o "$out/dock_why.hpp"
 includes="-I$here -I$out -I$runtime"
 firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti
   -fno-math-errno -fno-threadsafe-statics -fno-asynchronous-unwind-tables -fstack-usage"
@@ -21,7 +22,7 @@ rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp3
   $firmware $includes"
 for board in "$@"; do
     source=$here/boards/$board
-    for program in loop interrupts recorder; do
+    for program in loop interrupts recorder why; do
         sources="$here/$program.cpp $source.cpp" image=$out/${board}_$program
         case $board in
         host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror \

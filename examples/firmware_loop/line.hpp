@@ -1,5 +1,5 @@
 // Lines of text that need no library.
-// Takes: a name, numbers, verdicts, bytes. Gives: one line to the board: the name, numbers in
+// Takes: a name, numbers, floats, verdicts, bytes. Gives: one line to the board: the name, numbers in
 // hexadecimal, of a verdict its status, lower bound, robustness and upper bound, as the bits of the
 // floats.
 #pragma once
@@ -22,6 +22,7 @@ public:
         put(' ');
         for (size_t i = 0; i < size; ++i) digit(x[i] >> 4), digit(x[i]);
     }
+    void figure(const float& x) noexcept { number(bits(x)); }
     template <class Verdict>
     void verdict(const Verdict& verdict) noexcept {
         number(verdict.status);

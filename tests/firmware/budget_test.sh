@@ -177,5 +177,9 @@ budget narrow --targets-as i8
 budget searched --inline-targets 1000
 budget projected --inline-targets 500
 budget adaptive --recorder 3,2,2
+for spec in scalars nested adaptive; do
+    budget "$spec" --explain
+done
+budget searched --inline-targets 1000 --explain --recorder 0,1,1
 budget scalars --values boolean --recorder 0,0,1
 [ "$checks" -ge 36 ] || fail "only $checks objects were looked at"

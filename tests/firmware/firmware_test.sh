@@ -52,6 +52,19 @@ for board in cortex_m4 rv32; do
         fail "$board: interrupts change verdicts, or hardly any came during a step"
 done
 
+# Why verdicts are what they are: the same samples, their distances to the bit.
+for board in cortex_m4 rv32; do
+    timeout 120 sh "$loop/run.sh" "$box" "$board" why >/dev/null
+done
+cmp "$box/cortex_m4_why.txt" "$box/rv32_why.txt" || fail "the boards explain otherwise"
+if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then
+    sh "$loop/run.sh" "$box" host why >/dev/null
+    cmp "$box/cortex_m4_why.txt" "$box/host_why.txt" || fail "the host explains otherwise"
+fi
+for name in aligned level called; do
+    grep -q "^$name " "$box/rv32_why.txt" || fail "no verdict is decided by $name"
+done
+
 # What a flight recorder writes: the same bytes everywhere, which etlc incident reads.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" recorder >/dev/null

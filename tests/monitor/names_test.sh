@@ -50,13 +50,15 @@ header() {
 
 header base.etl robustness.hpp
 header base.etl boolean.hpp --values boolean
+header base.etl explained.hpp --explain
 header base.etl stored.hpp --values boolean --inline-targets 0
 header base.etl narrow.hpp --targets-as i8
 header base.etl halves.hpp --targets-as f16
 reserved='spec rate period input target predicate truth let monitor sliding
   true false calibrated load inf X F G U W R Y O H S iff implies or and not
   until weak_until release since next eventually always previous once historically'
-sed 's|//.*||; /^#/d' robustness.hpp boolean.hpp stored.hpp narrow.hpp halves.hpp |
+sed 's|//.*||; /^#/d' robustness.hpp boolean.hpp explained.hpp stored.hpp narrow.hpp \
+    halves.hpp |
     grep -oP '(?<![0-9A-Za-z_])[A-Za-z_][A-Za-z_0-9]*' | LC_ALL=C sort -u |
     grep -vxF "$(tr -s ' ' '\n' <<<"$reserved")" >all.txt
 declared=$(grep -oE '(input|target|predicate|let|monitor) [a-z_, ]+' base.txt |
@@ -188,7 +190,9 @@ END
 for ((turn = 0; turn < roles; ++turn)); do
     for values in robustness boolean; do
         space=zz_${values}_$turn
-        header turn$turn.etl $space.hpp --values $values --namespace $space
+        how="--values $values"
+        [ $values = boolean ] || ((turn % 4 > 1)) || how=--explain
+        header turn$turn.etl $space.hpp $how --namespace $space
         if (((turn + ${#values}) % 2)); then
             printf '#include "%s.hpp"\n' $space >>rest.cpp
             continue

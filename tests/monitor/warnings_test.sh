@@ -29,12 +29,12 @@ clang_warnings=(-Weverything -Wno-c++98-compat -Wno-c++98-compat-pedantic
     -Wno-padded -Wno-unused-macros)
 silent() {  # COMPILER WARNING...
     "$@" -std=c++17 -O2 -Werror -I "$source/runtime/include" -I "$box" -c "$box/use.cpp" \
-        -o "$box/use.o" || fail "$1 warns of $spec, values $values, targets as $targets"
+        -o "$box/use.o" || fail "$1 warns of $spec, $values, targets as $targets"
 }
 
 while read -r spec targets options; do
-    for values in robustness boolean; do
-        "$etlc" "$source/$spec" --values "$values" --targets-as "$targets" --namespace used \
+    for values in "--values robustness" "--values boolean" --explain; do
+        "$etlc" "$source/$spec" $values --targets-as "$targets" --namespace used \
             $options -o "$box/monitor.hpp" 2>/dev/null
         silent "$gxx" "${gcc_warnings[@]}"
         silent "$clangxx" "${clang_warnings[@]}"

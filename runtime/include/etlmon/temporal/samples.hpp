@@ -79,10 +79,13 @@ class Samples {
     for (uint32_t i = 0; i < Places; ++i) rows_[newest_][i] = seen[i];
   }
 
-  /// What a value comes from that may outlive the steps; of several, in the order in which they
-  /// were computed, so that one that took another's sample finds it there.
-  ETLMON_STEP void follow(uint32_t i, Sourced value) noexcept {
+  /// Keeps the samples of a value that may outlive the steps, at the last step that has them.
+  /// `rank`: the distance of this step's first sample. Of several values, in the order in which
+  /// they were computed, so that one that took another's sample finds it there.
+  ETLMON_STEP void follow(uint32_t i, Sourced value, uint32_t rank) noexcept {
+    const uint32_t oldest = rank + (Steps - 1) * Places - (Places - 1);
     const Rank low = value.low.rank(), high = value.high.rank();
+    if (Order::distance(low) < oldest && Order::distance(high) < oldest) return;
     if (low != followed_[i].low || high != followed_[i].high) take(i, low, high);
   }
 
