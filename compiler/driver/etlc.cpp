@@ -23,7 +23,7 @@
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
 #include "driver/options/recording_options.hpp"
-#include "driver/options/settings.hpp"
+#include "driver/options/spec_options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
@@ -116,68 +116,14 @@ int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
                       });
 }
 
-void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
-    const auto read = [&settings](const std::vector<std::string>& words) {
-        std::string mistake;
-        auto parsed = driver::parse_settings(words, mistake);
-        if (!parsed) throw CLI::ValidationError(mistake);
-        settings = std::move(*parsed);
-    };
-    app.add_option_function<std::vector<std::string>>(
-           "--set", read, "another value for a constant: --set limit=0.25, --set deadline=2s")
-        ->type_name("NAME=VALUE")
-        ->allow_extra_args(false);
-}
-
-void add_diagnostics_options(CLI::App& app, Call& call) {
-    app.add_option("-W", call.warnings, "-Werror: warnings are errors")
-        ->type_name("error")
-        ->check(driver::one_of({"error"}));
-    app.add_option("--diagnostics", call.diagnostics, "how to print them")
-        ->type_name("")
-        ->check(driver::one_of({"text", "json"}))
-        ->capture_default_str();
-}
-
-void add_fitted_option(CLI::App& app, std::string& path) {
-    app.add_option("--fitted", path,
-                   "what 'etlc fit' found (default: SPEC.fitted.npz beside the spec, where it "
-                   "exists)")
-        ->type_name("FILE");
-}
-
 void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
-    add_diagnostics_options(app, call);
-}
-
-void add_compiler_options(CLI::App& app, Call& call) {
-    add_set_option(app, call.request.check.settings);
-    app.add_option(
-           "--thresholds", call.request.check.thresholds_path,
-           "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
-        ->type_name("FILE");
-    add_fitted_option(app, call.request.check.fitted_path);
-    driver::add_choice<check::Values>(
-        app, "--values", call.request.values,
-        {{"robustness", check::Values::robustness}, {"boolean", check::Values::boolean}},
-        "what monitors compute with; boolean: truth values, and only what can still change a "
-        "verdict");
-    driver::add_choice<plan::Storage>(
-        app, "--targets-as", call.request.targets_as,
-        {{"f32", plan::Storage::f32}, {"f16", plan::Storage::f16}, {"i8", plan::Storage::i8}},
-        "how target sets are stored for measuring; what that leaves open is measured in float32 "
-        "as well");
-    driver::add_limit(app, "--max-state", call.request.limits.state_bytes, "most bytes of state");
-    driver::add_limit(app, "--max-code", call.request.limits.code_bytes,
-                      "most bytes of code, estimated, targets aside");
-    driver::add_limit(app, "--max-work", call.request.limits.operations,
-                      "most operations of the temporal part a step");
+    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
 }
 
 void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     add_spec_options(app, call, spec);
-    add_compiler_options(app, call);
+    driver::add_compiler_options(app, call.request);
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {
@@ -290,8 +236,8 @@ int fit_command(int argc, char** argv) {
         "demonstrations,\none episode a file, and says how well its predicates then separate.",
         "etlc fit");
     add_spec_options(app, call);
-    add_set_option(app, call.fit.settings);
-    driver::add_episode_options(app, fitting.data, fitting.groups, fitting.allow_overlap,
+    driver::add_set_option(app, call.fit.settings);
+    driver::add_episode_options(app, call.fit.data, call.fit.groups, fitting.allow_overlap,
                                 fitting.jobs);
     driver::add_map_option(app, fitting.names);
     app.add_option("-o,--output", call.fit.output,
@@ -313,7 +259,7 @@ int calibrate_command(int argc, char** argv) {
         "file.",
         "etlc calibrate");
     add_spec_options(app, call);
-    add_set_option(app, call.calibrate.settings);
+    driver::add_set_option(app, call.calibrate.settings);
     driver::add_episode_options(app, call.calibrate.data, call.calibrate.groups,
                                 calibration.allow_overlap, calibration.jobs);
     driver::add_map_option(app, calibration.names);
@@ -325,7 +271,7 @@ int calibrate_command(int argc, char** argv) {
                    "the thresholds of the predicates: then the monitors that are calibrated as a "
                    "whole are, on episodes that these thresholds have not seen")
         ->type_name("FILE");
-    add_fitted_option(app, call.calibrate.fitted);
+    driver::add_fitted_option(app, call.calibrate.fitted);
     driver::add_folds_option(app, calibration.folds,
                              "also say what the thresholds would be without each of N folds of the "
                              "episodes");
@@ -348,8 +294,8 @@ int evaluate_command(int argc, char** argv, bool crossvalidates) {
     app.add_option("spec", call.specs, "the specs, .etl files; several are set side by side")
         ->type_name("SPEC.etl")
         ->required();
-    add_diagnostics_options(app, call);
-    add_compiler_options(app, call);
+    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
+    driver::add_compiler_options(app, call.request);
     driver::add_evaluate_options(app, call.evaluate, crossvalidates);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     if (const std::string mistake =
