@@ -57,6 +57,14 @@ public:
         const auto untrained = check({true, true, true});
         if (!untrained) return std::nullopt;
         const std::vector<Stage> stages = stages_of(*untrained);
+        if (episodes.size() < stages.size()) {
+            sink_.report(
+                diag::Code::too_few_for_folds, untrained->monitors.front().span,
+                fmt::format("fitting and calibration take {} besides those of a fold; there {} {}",
+                            diag::counted(stages.size(), "episode"),
+                            episodes.size() == 1 ? "is" : "are", episodes.size()));
+            return std::nullopt;
+        }
         const std::vector<Paths> of_stages = parts(episodes, stages.size());
         for (std::size_t s = 0; s < stages.size(); ++s)
             if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
