@@ -11,6 +11,7 @@
 #include "ast/ast.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::check {
@@ -34,6 +35,8 @@ struct Options {
     bool allow_uncalibrated_monitors = false;
     /// File of what is fitted; empty: SPEC.fitted.npz beside the spec where it exists.
     std::string fitted_path;
+    /// What is fitted, and in no file: then none is looked for.
+    const fitted::File* fitted = nullptr;
     /// `etlc fit` reads a spec before it has what it fits: that has its shape and no values.
     bool allow_unfitted = false;
     /// `--check` takes a spec before its files are there: a target file, a thresholds file or an

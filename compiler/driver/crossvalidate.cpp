@@ -9,6 +9,7 @@
 #include "episodes/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
+#include "fit/fit.hpp"
 #include "parse/parse.hpp"
 
 namespace etlc::driver {
@@ -53,19 +54,21 @@ public:
         : file_(file), request_(request), calibration_(std::move(calibration)), sink_(sink) {}
 
     std::optional<Trained> train(const Paths& episodes) {
-        using Stage = bool (Chain::*)(const Paths& episodes);
-        const auto untrained = check(true, true);
+        const auto untrained = check({true, true, true});
         if (!untrained) return std::nullopt;
-        std::vector<Stage> stages;
-        const bool has_predicates = !calibrate::calibrated_predicates(*untrained).empty();
-        const bool has_monitors = !calibrate::calibrated_monitors(*untrained).empty();
-        // Without anything to calibrate, this stage says so.
-        if (has_predicates || !has_monitors) stages.push_back(&Chain::calibrate_predicates);
-        if (has_monitors) stages.push_back(&Chain::calibrate_monitors);
+        const std::vector<Stage> stages = stages_of(*untrained);
+        if (episodes.size() < stages.size()) {
+            sink_.report(
+                diag::Code::too_few_for_folds, untrained->monitors.front().span,
+                fmt::format("fitting and calibration take {} besides those of a fold; there {} {}",
+                            diag::counted(stages.size(), "episode"),
+                            episodes.size() == 1 ? "is" : "are", episodes.size()));
+            return std::nullopt;
+        }
         const std::vector<Paths> of_stages = parts(episodes, stages.size());
         for (std::size_t s = 0; s < stages.size(); ++s)
             if (!(this->*stages[s])(of_stages[s])) return std::nullopt;
-        auto model = check(false, false);
+        auto model = check({});
         if (!model) return std::nullopt;
         auto compiled = pipeline::compile(std::move(*model), request_, sink_);
         if (!compiled) return std::nullopt;
@@ -73,14 +76,46 @@ public:
     }
 
 private:
+    using Stage = bool (Chain::*)(const Paths& episodes);
+
+    struct Lacks {
+        bool fitted = false;
+        bool predicates = false;  ///< their thresholds
+        bool monitors = false;    ///< their shifts
+    };
+
+    /// Those that this spec needs. Without any, that of the predicates says so.
+    static std::vector<Stage> stages_of(const check::Model& model) {
+        std::vector<Stage> stages;
+        const bool has_monitors = !calibrate::calibrated_monitors(model).empty();
+        if (!model.fitted.empty()) stages.push_back(&Chain::fit);
+        if (!calibrate::calibrated_predicates(model).empty() || (stages.empty() && !has_monitors))
+            stages.push_back(&Chain::calibrate_predicates);
+        if (has_monitors) stages.push_back(&Chain::calibrate_monitors);
+        return stages;
+    }
+
+    bool fit(const Paths& episodes) {
+        const auto model = check({true, true, true});
+        fit::Request request{episodes,          calibration_.names,   calibration_.allow_overlap,
+                             calibration_.jobs, calibration_.version, calibration_.progress};
+        if (!model) return false;
+        auto found = fit::fit(*model, request, sink_);
+        if (!found) return false;
+        fitted_ = std::move(found->file);
+        fitted_.path = kOthers;
+        calibration_.fitted = fitted_;  // which it refuses the episodes of
+        return true;
+    }
+
     bool calibrate_predicates(const Paths& episodes) {
-        const auto model = check(true, true);
+        const auto model = check({false, true, true});
         calibration_.episodes = episodes;
         return model && take(calibrate::calibrate(*model, calibration_, sink_));
     }
 
     bool calibrate_monitors(const Paths& episodes) {
-        const auto model = check(false, true);
+        const auto model = check({false, false, true});
         calibration_.episodes = episodes;
         return model && take(calibrate::calibrate_monitors(*model, std::move(thresholds_),
                                                            calibration_, sink_));
@@ -89,14 +124,16 @@ private:
     bool take(std::optional<calibrate::Calibration> found) {
         if (!found) return false;
         thresholds_ = std::move(found->file);
-        thresholds_.path = "the other folds";  // for messages
+        thresholds_.path = kOthers;
         return true;
     }
 
-    std::optional<check::Model> check(bool lacks_predicates, bool lacks_monitors) {
+    std::optional<check::Model> check(const Lacks& lacks) {
         check::Options options = request_.check;
-        options.allow_uncalibrated = lacks_predicates;
-        options.allow_uncalibrated_monitors = lacks_monitors;
+        options.allow_unfitted = lacks.fitted;
+        options.allow_uncalibrated = lacks.predicates;
+        options.allow_uncalibrated_monitors = lacks.monitors;
+        options.fitted = &fitted_;
         options.thresholds = &thresholds_;
         diag::Sink told_before;  // what is wrong with the spec itself
         auto model = check::check(parse::parse(file_, told_before), file_, options, told_before);
@@ -104,10 +141,13 @@ private:
         return model;
     }
 
+    static constexpr const char* kOthers = "the other folds";  ///< in messages, for a file
+
     const source::File& file_;
     const Request& request_;
     calibrate::Request calibration_;
     diag::Sink& sink_;
+    fitted::File fitted_;
     thresholds::File thresholds_;
 };
 
@@ -121,9 +161,8 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
         [&] { return std::make_unique<episodes::ContentScorer>(model, request.names); });
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
-    Folds result{folds, episodes::folds_of(recorded, folds), {}};
-    result.allowance =
-        episodes::admit(model, recorded, {}, request.fitted, request.allow_overlap, sink);
+    Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
+    result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;
 }
@@ -135,11 +174,11 @@ std::optional<std::vector<Trained>> train(const source::File& file, const Reques
     Telling telling(sink);
     for (std::uint32_t fold = 0; fold < folds.count; ++fold) {
         Paths others;
-        for (std::size_t e = 0; e < calibration.episodes.size(); ++e)
+        for (const std::size_t e : folds.order)
             if (folds.of[e] != fold) others.push_back(calibration.episodes[e]);
         diag::Sink found;
         auto trained = Chain(file, request, calibration, found).train(others);
-        telling.tell(found, fmt::format("fold {} of {}: calibrated on {}", fold + 1, folds.count,
+        telling.tell(found, fmt::format("fold {} of {}: trained on {}", fold + 1, folds.count,
                                         diag::counted(others.size(), "other episode")));
         if (!trained) return std::nullopt;
         all.push_back(std::move(*trained));

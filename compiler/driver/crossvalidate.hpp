@@ -19,6 +19,7 @@ namespace etlc::driver {
 struct Folds {
     std::uint32_t count = 0;
     std::vector<std::uint32_t> of;    ///< per episode its fold, from 0 on
+    std::vector<std::size_t> order;   ///< of the episodes, by their content
     thresholds::Allowance allowance;  ///< overlaps between episodes that were passed over
 };
 

@@ -116,19 +116,9 @@ int with_spec(const Call& call, SpecWarnings of_spec, const Work& work) {
                       });
 }
 
-void add_diagnostics_options(CLI::App& app, Call& call) {
-    app.add_option("-W", call.warnings, "-Werror: warnings are errors")
-        ->type_name("error")
-        ->check(driver::one_of({"error"}));
-    app.add_option("--diagnostics", call.diagnostics, "how to print them")
-        ->type_name("")
-        ->check(driver::one_of({"text", "json"}))
-        ->capture_default_str();
-}
-
 void add_spec_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
     app.add_option(spec, call.spec, "the spec, a .etl file")->type_name("SPEC.etl")->required();
-    add_diagnostics_options(app, call);
+    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
 }
 
 void add_common_options(CLI::App& app, Call& call, const std::string& spec = "spec") {
@@ -247,7 +237,7 @@ int fit_command(int argc, char** argv) {
         "etlc fit");
     add_spec_options(app, call);
     driver::add_set_option(app, call.fit.settings);
-    driver::add_episode_options(app, fitting.data, fitting.groups, fitting.allow_overlap,
+    driver::add_episode_options(app, call.fit.data, call.fit.groups, fitting.allow_overlap,
                                 fitting.jobs);
     driver::add_map_option(app, fitting.names);
     app.add_option("-o,--output", call.fit.output,
@@ -304,7 +294,7 @@ int evaluate_command(int argc, char** argv, bool crossvalidates) {
     app.add_option("spec", call.specs, "the specs, .etl files; several are set side by side")
         ->type_name("SPEC.etl")
         ->required();
-    add_diagnostics_options(app, call);
+    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
     driver::add_compiler_options(app, call.request);
     driver::add_evaluate_options(app, call.evaluate, crossvalidates);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;

@@ -36,6 +36,7 @@ std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& reque
         check::Options options = request.check;
         options.allow_uncalibrated = true;
         options.allow_uncalibrated_monitors = true;
+        options.allow_unfitted = true;
         result.untrained =
             check::check(parse::parse(spec.file, spec.sink), spec.file, options, spec.sink);
     } else {

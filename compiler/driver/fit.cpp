@@ -1,6 +1,7 @@
 #include "driver/fit.hpp"
 
 #include "data/traces/episodes.hpp"
+#include "data/traces/trace.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
@@ -22,14 +23,15 @@ bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) 
     if (!model || sink.refused()) return false;
 
     fit::Request asked = request.fit;
-    if (!check_names(*model, asked.names, sink)) return false;
+    if (!check_names({&*model}, asked.names, sink)) return false;
     asked.version = kVersion;
     asked.progress = episodes_progress();
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
-    diag::Sink told_later;
-    std::vector<std::string> inputs = data::find_episodes(asked.data, "", told_later);
-    inputs.push_back(file.path());
+    asked.episodes = data::find_episodes(request.data, request.groups, sink);
+    if (sink.has_errors()) return false;
+    std::vector<std::string> inputs{file.path()};
+    for (const std::string& episode : asked.episodes) inputs.push_back(data::trace_file(episode));
     inputs.insert(inputs.end(), model->dependencies.begin(), model->dependencies.end());
     if (!check_outputs({output}, inputs, sink)) return false;
     const auto result = fit::fit(*model, asked, sink);

@@ -15,8 +15,10 @@
 namespace etlc::driver {
 
 struct FitRequest {
-    fit::Request fit;    ///< its version and progress are set here
-    std::string output;  ///< empty: beside the spec
+    std::vector<std::string> data;  ///< files, folders and patterns
+    std::string groups;             ///< of .h5 files that are episodes
+    fit::Request fit;               ///< its episodes, version and progress are set here
+    std::string output;             ///< empty: beside the spec
     std::vector<check::Setting> settings;
 };
 

@@ -14,8 +14,10 @@
 
 namespace etlc::episodes {
 
-/// Per episode its fold, 0 to folds - 1: in the order of their hashes, which is that of no
-/// recording session, episodes are dealt in turn. Folds are between 1 and the number of episodes.
+/// The episodes in the order of their hashes, which is that of no recording session.
+std::vector<std::size_t> by_content(const std::vector<const Recorded*>& episodes);
+
+/// Per episode its fold, 0 to folds - 1: in that order, they are dealt in turn.
 std::vector<std::uint32_t> folds_of(const std::vector<const Recorded*>& episodes,
                                     std::uint32_t folds);
 

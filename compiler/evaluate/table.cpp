@@ -174,7 +174,7 @@ std::string left_out(const Evaluation& evaluation) {
     return text.empty() ? "" : "\n" + text;
 }
 
-/// What each fold was held out of, and the thresholds of the rest.
+/// How much each fold held out, and the thresholds of the rest.
 std::string folds_part(const Evaluation& evaluation) {
     std::vector<Row> rows = {{"fold", "episodes held out"}};
     for (const auto& [name, threshold] : evaluation.folds[0].thresholds)
@@ -186,8 +186,8 @@ std::string folds_part(const Evaluation& evaluation) {
             rows.back().push_back(fmt::format("{:.7g}", threshold));
     }
     return fmt::format(
-        "{} folds: every episode is judged with thresholds that were calibrated without its fold; "
-        "no guarantee follows from this\n\n{}",
+        "{} folds: every episode is judged by monitors that have not seen its fold; no guarantee "
+        "follows\n\n{}",
         evaluation.folds.size(), aligned(rows));
 }
 

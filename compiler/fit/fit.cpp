@@ -6,7 +6,6 @@
 
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "data/traces/episodes.hpp"
 #include "episodes/admission.hpp"
 
 namespace etlc::fit {
@@ -104,8 +103,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         nothing_to_fit(model, sink);
         return std::nullopt;
     }
-    const std::vector<std::string> paths = data::find_episodes(request.data, request.groups, sink);
-    if (sink.has_errors()) return std::nullopt;
+    const std::vector<std::string>& paths = request.episodes;
     // The sums of Eigen's products are in an order that depends on the sizes of caches.
     Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
     const auto labelled = episodes::labelled_in(model, paths.front(), request.names);

@@ -10,8 +10,7 @@
 namespace etlc::fit {
 
 struct Request {
-    std::vector<std::string> data;  ///< files, folders and patterns
-    std::string groups;  ///< of .h5 files, those that are episodes; empty: the file is one
+    std::vector<std::string> episodes;  ///< as data::find_episodes gives them
     data::NamesInFile names;
     /// The reason for which overlaps are passed over; empty: they are not.
     std::string allow_overlap;

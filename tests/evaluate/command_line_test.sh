@@ -152,6 +152,15 @@ sed 's/alpha = 0.4/alpha = 0.5/
 "$etlc" crossvalidate whole.etl --data episodes --folds 3 >whole.txt
 grep -q '^fold  episodes held out  near of the others  arrive of the others$' whole.txt ||
     fail "$(cat whole.txt)"
+"$etlc" crossvalidate whole.etl --data renamed --folds 3 | head -6 | diff <(head -6 whole.txt) -
+
+# What is fitted is fitted for every fold, on episodes of the others that calibration does not see.
+sed 's/^target goal = .*/projection along = fitted(discriminant, r = 1, of = z, where = near);\
+target goal = fitted(mean, of = along(z), where = near);/
+    s/l2(z, goal)/l2(along(z), goal)/; s/alpha = 0.4/alpha = 0.5/' folded.etl >fitted.etl
+"$etlc" crossvalidate fitted.etl --data episodes --folds 3 >fitted.txt
+grep -q '^near .* 1.000 \[' fitted.txt || fail "$(cat fitted.txt)"
+[ ! -e fitted.fitted.npz ] || fail "a fold has written a file"
 
 # Without each fold: thresholds as many commands of their own would give them.
 "$etlc" calibrate folded.etl --data episodes --folds 6 -o folded.json >folds.txt

@@ -25,6 +25,7 @@ diag::Diagnostic& report_missing(Context& c, Span span, std::string message) {
 }
 
 std::optional<fitted::File> read_file(Context& c, const Fitted& first) {
+    if (c.options.fitted != nullptr) return *c.options.fitted;
     const bool is_default = c.options.fitted_path.empty();
     const std::string path =
         is_default ? fitted::default_path(c.file.path()) : c.options.fitted_path;

@@ -31,11 +31,15 @@ std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std:
     for (auto spec = specs.begin(); spec != specs.end(); ++spec)
         if (std::find(specs.begin(), spec, *spec) != spec)
             return fmt::format("the spec {} is given twice", *spec);
-    if (app.count("--thresholds") == 0) return "";
-    if (evaluation.folds > 0)
-        return "--thresholds does not go with folds, which take thresholds from the episodes";
-    if (specs.size() > 1)
-        return "--thresholds goes with one spec; those of several lie beside them";
+    for (const char* option : {"--thresholds", "--fitted"}) {
+        if (app.count(option) == 0) continue;
+        if (evaluation.folds > 0)
+            return fmt::format("{} does not go with folds, which take it from the episodes",
+                               option);
+        if (specs.size() > 1)
+            return fmt::format("{} goes with one spec; the files of several lie beside them",
+                               option);
+    }
     return "";
 }
 

@@ -1,7 +1,5 @@
 #include "driver/options/spec_options.hpp"
 
-#include <utility>
-
 #include "driver/options/options.hpp"
 #include "driver/options/settings.hpp"
 
@@ -18,6 +16,17 @@ void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
            "--set", read, "another value for a constant: --set limit=0.25, --set deadline=2s")
         ->type_name("NAME=VALUE")
         ->allow_extra_args(false);
+}
+
+void add_diagnostics_options(CLI::App& app, std::vector<std::string>& warnings,
+                             std::string& diagnostics) {
+    app.add_option("-W", warnings, "-Werror: warnings are errors")
+        ->type_name("error")
+        ->check(one_of({"error"}));
+    app.add_option("--diagnostics", diagnostics, "how to print them")
+        ->type_name("")
+        ->check(one_of({"text", "json"}))
+        ->capture_default_str();
 }
 
 void add_fitted_option(CLI::App& app, std::string& path) {

@@ -1,6 +1,4 @@
-// The options of the commands that compile a spec: what it is filled with, what its monitors
-// compute with, and how large they may become. Gives: a request. Keeps true: every command
-// understands these options alike.
+// The options that commands share which read a spec: how it is compiled, and how findings are told.
 #pragma once
 
 #include <CLI/CLI.hpp>
@@ -12,11 +10,17 @@
 
 namespace etlc::driver {
 
+/// --set
 void add_set_option(CLI::App& app, std::vector<check::Setting>& settings);
 
+/// --fitted
 void add_fitted_option(CLI::App& app, std::string& path);
 
-/// Both, and all others.
+/// -W, --diagnostics
+void add_diagnostics_options(CLI::App& app, std::vector<std::string>& warnings,
+                             std::string& diagnostics);
+
+/// The above that are about a spec, --thresholds, --values, --targets-as and the limits.
 void add_compiler_options(CLI::App& app, Request& request);
 
 }  // namespace etlc::driver
