@@ -1,6 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [VALUES robustness|boolean] [NAMESPACE name]
-#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [STANDALONE]
-#                  [SET name=value ...])
+#                  [INLINE_TARGETS bytes] [RECORDER before,after,incidents] [LETS]
+#                  [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -17,6 +17,7 @@
 #                   262144. The program gives the monitor that file, which is empty where no set is
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
+#   LETS            what lets say of each step is telemetry too: let_NAME(), robustness_NAME()
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that the spec loads, the thresholds or etlc itself change.
 # Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile
@@ -25,7 +26,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "STANDALONE;LETS"
     "SPEC;THRESHOLDS;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
@@ -83,6 +84,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_RECORDER)
     list(APPEND options --recorder "${arg_RECORDER}")
+  endif()
+  if(arg_LETS)
+    list(APPEND options --lets)
   endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)

@@ -19,6 +19,7 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     check_lets(context);
     check_truths(context);
     check_monitors(context);
+    choose_telemetry(context);
     check_thresholds(context);
     set_robustness(context);
     warn(context);

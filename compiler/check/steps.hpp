@@ -16,6 +16,7 @@ void check_predicates(Context& context);
 void check_lets(Context& context);
 void check_truths(Context& context);
 void check_monitors(Context& context);
+void choose_telemetry(Context& context);
 void check_thresholds(Context& context);
 void set_robustness(Context& context);
 void warn(Context& context);

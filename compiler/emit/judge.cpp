@@ -111,6 +111,7 @@ void print_advance(Printer& out, const Context& context) {
     print_readings(out, context);
     out.gap();
     print_open_verdicts(out, context);
+    print_lets(out, context);
     print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
     print_progress(out, context, "answers");
     print_record(out, context, "answers");
@@ -135,6 +136,7 @@ void print_judge(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < plan.monitors.size(); ++m)
         print_wrapped(out,
                       fmt::format("verdicts.{} = {};", plan.monitors[m].name, verdict(context, m)));
+    print_lets(out, context);
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position"));

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
+#include "plan/evaluate/near_rows.hpp"
 #include "plan/evaluate/pending_evaluator.hpp"
 #include "plan/plan.hpp"
 
@@ -39,6 +41,9 @@ public:
     /// monitors their last verdict.
     const std::vector<etlmon::Verdict>& finish();
 
+    /// What each let of the plan said of the last step.
+    const std::vector<etlmon::Verdict>& lets() const { return lets_; }
+
     /// From the next step on, this monitor of the plan is about that step.
     void restart(std::size_t monitor);
     /// The position that the verdict of the last step is about, where it is decided.
@@ -62,6 +67,12 @@ public:
     /// null where it is missing, and a distance with its nearest row, by index in the model.
     const float* input(Index input) const { return inputs_[input]; }
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
+    /// Of a distance by full weights to its nearest row: the rows that may be nearest to z (see
+    /// near_rows.hpp).
+    const std::vector<std::uint32_t>& near_rows(Index distance, const float* z,
+                                                double margin) const {
+        return near_.at(distance).of(z, margin);
+    }
 
     /// From now on formulas see, of predicates that are measured, this instead of their robustness:
     /// calibration reckons with what other builds measure. Both ends go through formulas
@@ -98,6 +109,10 @@ private:
     void measure_distances();
     void measure_predicates();
     etlmon::Enclosed measure(Index distance, const float* z);
+    etlmon::Measured measure_wide(Index distance, const float* z);
+    etlmon::Enclosed measure_contrast(const check::Predicate& predicate);
+    const float* point(Index distance);
+    etlmon::Measured measure_near(Index distance, const float* z);
     float expression(const check::Expr& e) const;
     void advance_streams();
     Value advance(const Stream& stream, StreamState& state) const;
@@ -120,6 +135,10 @@ private:
     std::vector<std::vector<float>> points_;  ///< per distance: scratch for vectors of scalars
     /// Per target and distance: rows as the kernels want them.
     std::vector<std::vector<float>> prepared_;
+    /// Of distances by full weights to the nearest row, the rows that have to be measured, and room
+    /// for them.
+    mutable std::map<Index, NearRows> near_;
+    std::vector<float> near_values_;
     /// Per distance: what its narrow rows stand for, where it has some.
     std::vector<std::vector<float>> widened_;
     std::vector<const float*>
@@ -129,6 +148,8 @@ private:
     std::vector<etlmon::Measured> distances_;
     /// Per distance: the same, with what narrow targets leave open.
     std::vector<etlmon::Enclosed> enclosed_;
+    /// Per predicate: where the difference turns that narrow targets leave open.
+    std::vector<std::vector<Cut>> contrast_cuts_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate
@@ -140,6 +161,7 @@ private:
     std::vector<etlmon::Reading> readings_;
     std::vector<ReadingState> reading_states_;
     std::vector<etlmon::Verdict> verdicts_;
+    std::vector<etlmon::Verdict> lets_;
     std::uint64_t steps_ = 0;            ///< index of the current step, calls of finish() included
     std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
     std::vector<bool> restarts_;         ///< per monitor: with the next step
