@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <limits>
 #include <set>
 
 #include "check/guarantees/conformal.hpp"
@@ -84,7 +83,7 @@ std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string
     const auto next = static_cast<float>(entry.scores[1]);
     return {
         fmt::format("halfway between the two '{}.scores', {:.9g} and {:.9g}", place, score, next),
-        halfway(score, next).value_or(std::numeric_limits<float>::quiet_NaN())};
+        halfway(score, next).value_or(score)};
 }
 
 Found threshold(const Entry& entry, const std::string& place, bool upper_bound) {
