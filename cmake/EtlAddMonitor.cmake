@@ -1,6 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
 #                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
-#                  [EXPLAIN]
+#                  [EXPLAIN] [LETS]
 #                  [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
@@ -20,6 +20,7 @@
 #                   larger. The property ETLC_TARGETS_FILES of TARGET lists these files.
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
 #   EXPLAIN         the class says why a verdict is what it is: why_NAME(); not with VALUES boolean
+#   LETS            what lets say of each step is telemetry too: let_NAME(), robustness_NAME()
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
 # itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja
@@ -28,7 +29,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;STANDALONE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;LETS;STANDALONE"
     "SPEC;THRESHOLDS;FITTED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
@@ -97,6 +98,9 @@ function(etlc_add_monitor target)
   endif()
   if(arg_EXPLAIN)
     list(APPEND options --explain)
+  endif()
+  if(arg_LETS)
+    list(APPEND options --lets)
   endif()
   if(arg_STANDALONE)
     list(APPEND options --standalone)

@@ -1,6 +1,6 @@
 // The examples' monitors as they are measured: inputs that lie in buffers, as a control loop has
 // them. An example has a name, the generated Monitor, and fills its buffers from random numbers;
-// `inputs` views them.
+// `inputs` views them. BENCH_CLASSES tells the classes with a flight recorder from those without.
 #pragma once
 
 #include <cstdint>
@@ -15,6 +15,7 @@
 #include "hover.hpp"
 
 namespace bench {
+inline namespace BENCH_CLASSES {
 
 using Random = std::mt19937;
 
@@ -89,4 +90,5 @@ struct Grasp {
     grasp::Inputs inputs() const { return {z, force}; }
 };
 
+}  // namespace BENCH_CLASSES
 }  // namespace bench

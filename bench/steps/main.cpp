@@ -1,5 +1,7 @@
 // A whole step of the examples' monitors, and its split: measure() is the distances and what
-// predicates make of them, judge() the temporal operators. bench_steps [--json FILE] [--rounds N]
+// predicates make of them, judge() the temporal operators; and the step of the same class with a
+// flight recorder that keeps 20 steps before an alarm and 10 after it, of two incidents.
+// bench_steps [--json FILE] [--rounds N]
 // Cold: the first step after something else went through the caches, which is how a control loop
 // finds them.
 #include <CLI/CLI.hpp>
@@ -10,57 +12,25 @@
 #include <vector>
 
 #include "cold.hpp"
-#include "examples.hpp"
 #include "median.hpp"
+#include "recorded.hpp"
+#include "stepped.hpp"
 #include "timing.hpp"
 
 namespace {
 
 using nlohmann::json;
 
-constexpr std::size_t kSamples = 64;  ///< in turns; small enough for the second-level cache
-
-template <class Example>
-struct Stepped {
-    using Monitor = typename Example::Monitor;
-    using Atoms = typename Monitor::Atoms;
-
-    std::vector<Example> examples;
-    std::vector<decltype(std::declval<Example>().inputs())> inputs;
-    std::vector<Atoms> atoms;
-    Monitor monitor;
-
-    Stepped() {
-        bench::Random random(7);
-        for (std::size_t i = 0; i < kSamples; ++i) examples.emplace_back(random);
-        for (const Example& example : examples) inputs.push_back(example.inputs());
-        monitor.reset();
-        for (const auto& in : inputs) atoms.push_back(monitor.measure(in));
-    }
-    void step() {
-        for (const auto& in : inputs) keep(monitor.step(in));
-    }
-    void measure() {
-        for (const auto& in : inputs) keep(monitor.measure(in));
-    }
-    void judge() {
-        for (const Atoms& now : atoms) keep(monitor.judge(now));
-    }
-
-private:
-    template <class T>
-    static void keep(const T& value) {
-        asm volatile("" : : "r"(&value) : "memory");
-    }
-};
-
 template <class Example>
 json measured(bench::Effort effort) {
-    const auto stepped = std::make_shared<Stepped<Example>>();
+    using bench::kSamples;
+    const auto stepped = std::make_shared<bench::Stepped<Example>>();
+    const bench::Recorded recorded = bench::recorded(Example::kName);
     const std::vector<bench::Series> series =
         bench::measure({{"step", [=] { stepped->step(); }, kSamples},
                         {"measure", [=] { stepped->measure(); }, kSamples},
-                        {"judge", [=] { stepped->judge(); }, kSamples}},
+                        {"judge", [=] { stepped->judge(); }, kSamples},
+                        {"step, recorded", recorded.step, kSamples}},
                        effort);
     std::size_t next = 0;
     std::vector<double> cold;
@@ -76,15 +46,19 @@ json measured(bench::Effort effort) {
             {"judge_ns", series[2].median()},
             {"spread_percent", 100 * series[0].spread()},
             {"cold_step_ns", bench::median(cold)},
-            {"state_bytes", Example::Monitor::kStateBytes}};
+            {"state_bytes", Example::Monitor::kStateBytes},
+            {"recorded_ns", series[3].median()},
+            {"recorded_to_step", bench::ratio(series[3], series[0])},
+            {"recorded_state_bytes", recorded.state_bytes}};
 }
 
 void print(const json& row) {
-    std::printf("%-40s %9.1f %9.1f %9.1f %4.0f %9.0f %7.0f\n",
+    std::printf("%-40s %9.1f %9.1f %9.1f %4.0f %9.0f %7.0f %9.1f %6.2f %7.0f\n",
                 row["example"].get<std::string>().c_str(), row["step_ns"].get<double>(),
                 row["measure_ns"].get<double>(), row["judge_ns"].get<double>(),
                 row["spread_percent"].get<double>(), row["cold_step_ns"].get<double>(),
-                row["state_bytes"].get<double>());
+                row["state_bytes"].get<double>(), row["recorded_ns"].get<double>(),
+                row["recorded_to_step"].get<double>(), row["recorded_state_bytes"].get<double>());
     std::fflush(stdout);
 }
 
@@ -99,9 +73,10 @@ int main(int argc, char** argv) {
         ->check(CLI::PositiveNumber);
     CLI11_PARSE(app, argc, argv);
 
-    std::printf("%-40s %9s %9s %9s %4s %9s %7s\n%-40s %9s %9s %9s %4s %9s %7s\n", "example", "step",
-                "measure", "judge", "+-", "cold step", "state", "", "ns", "ns", "ns", "%", "ns",
-                "bytes");
+    const char* const line = "%-40s %9s %9s %9s %4s %9s %7s %9s %6s %7s\n";
+    std::printf(line, "example", "step", "measure", "judge", "+-", "cold step", "state", "recorded",
+                "/ step", "state");
+    std::printf(line, "", "ns", "ns", "ns", "%", "ns", "bytes", "ns", "", "bytes");
     json all = json::array();
     const auto add = [&](json row) {
         print(row);

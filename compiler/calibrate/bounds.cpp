@@ -4,6 +4,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 #include "check/numbers/range_arithmetic.hpp"
 #include "check/numbers/rounding.hpp"
@@ -139,38 +140,52 @@ double norm_of(const Distance& distance, const std::vector<double>& moves, const
     }
 }
 
-/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp. Each |d_i|
-/// as large as `moves` may make it.
-double magnitude_of(const Distance& distance, const float* z, const float* g,
-                    std::uint32_t dimension, const std::vector<double>& moves) {
-    std::vector<double> d(dimension);
-    for (std::uint32_t i = 0; i < dimension; ++i)
-        d[i] = std::abs(static_cast<double>(z[i]) - static_cast<double>(g[i])) +
-               (moves.empty() ? 0 : moves[i]);
-    double sum = 0;
-    for (std::size_t i = 0; i < dimension; ++i) {
-        const float* row = distance.weights.data() + i * dimension;
-        double along = 0;
-        for (std::size_t j = 0; j < dimension; ++j)
-            along += std::abs(static_cast<double>(row[j])) * d[j];
-        sum += d[i] * along;
+/// sum over i, j of |d_i| |W_ij| |d_j|, d = z - g: see etlmon/hosted/error_bounds.hpp. At least
+/// that: it is the square of a distance by weights |W|, whose terms are not negative, so that a
+/// kernel is off by roundings alone. Each |d_i| as large as `moves` may make it.
+class Magnitude {
+public:
+    explicit Magnitude(const Distance& distance) : absolute_(distance) {
+        absolute_.aggregation = Aggregation::min;
+        for (float& weight : absolute_.weights) weight = std::abs(weight);
     }
-    return sum;
-}
 
-/// Row by row, since each has an error of its own: aggregates are monotonic in every row.
+    double of(const float* z, const float* g, std::uint32_t dimension,
+              const std::vector<double>& moves) {
+        apart_.resize(dimension);
+        origin_.resize(dimension);
+        for (std::uint32_t i = 0; i < dimension; ++i)
+            apart_[i] = round_up(std::abs(static_cast<double>(z[i]) - static_cast<double>(g[i])) +
+                                 (moves.empty() ? 0 : moves[i]));
+        const auto measured = static_cast<double>(
+            plan::measure(absolute_, apart_.data(), origin_.data(), 1, dimension, nullptr).delta);
+        const double roundings = (dimension + 16.0) * static_cast<double>(FLT_EPSILON);
+        const double lost = dimension * static_cast<double>(FLT_MIN);
+        const double root = (measured + lost) * (1 + 2 * roundings);
+        return root * root;
+    }
+
+private:
+    Distance absolute_;
+    std::vector<float> apart_;
+    std::vector<float> origin_;
+};
+
+/// Row by row, since each has an error of its own: aggregates are monotonic in every row, and a
+/// minimum does not ask for `rows` that are left out.
 Interval of_full_weights(const Distance& distance, const check::Target& target, const float* z,
-                         const std::vector<double>& moves) {
+                         const std::vector<std::uint32_t>& rows, const std::vector<double>& moves) {
     Distance row = distance;
     row.aggregation = Aggregation::min;
     const double moved = norm_of(distance, moves, z);
+    Magnitude magnitude(distance);
     std::vector<double> lows;
     std::vector<double> highs;
-    for (std::uint32_t k = 0; k < target.rows; ++k) {
+    for (const std::uint32_t k : rows) {
         const float* g = target.values.data() + static_cast<std::size_t>(k) * target.dimension;
         const float delta = plan::measure(row, z, g, 1, target.dimension, nullptr).delta;
         const Interval one = spread(row, 1, target.dimension, static_cast<double>(delta),
-                                    magnitude_of(distance, z, g, target.dimension, moves), moved);
+                                    magnitude.of(z, g, target.dimension, moves), moved);
         lows.push_back(one.low);
         highs.push_back(one.high);
     }
@@ -179,6 +194,18 @@ Interval of_full_weights(const Distance& distance, const check::Target& target, 
     result.low = std::max(0.0, result.low - etlmon::mean_bound(target.rows, result.high));
     result.high += etlmon::mean_bound(target.rows, result.high);
     return result;
+}
+
+/// An end of an interval of a row is off by at most six times what a kernel rounds: see spread().
+/// Others than these rows cannot be the nearest, in any build that measures from the same point.
+std::vector<std::uint32_t> rows_that_count(const Distance& distance, const check::Target& target,
+                                           Index index, const std::vector<double>& moves,
+                                           const plan::Evaluator& measured) {
+    if (distance.aggregation == Aggregation::min && moves.empty())
+        return measured.near_rows(index, measured.point(distance.point), 16);
+    std::vector<std::uint32_t> all(target.rows);
+    std::iota(all.begin(), all.end(), 0);
+    return all;
 }
 
 /// EXPR over intervals. Exact operands give an exact result; one so small that a build may flush it
@@ -255,11 +282,12 @@ Interval Expression::of_distance(const check::Model& model, Index index,
     const check::Target& target = model.targets[distance.target];
     const float delta = measured.measured(index).delta;
     const float* const z = measured.point(distance.point);
-    const bool full = distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
     if (std::isinf(delta))
         return interval_of(distance, target.rows, target.dimension, static_cast<double>(delta));
     const std::vector<double> moves = moves_of(model, distance.point, measured);
-    if (full) return of_full_weights(distance, target, z, moves);
+    if (distance.full_weights())
+        return of_full_weights(distance, target, z,
+                               rows_that_count(distance, target, index, moves, measured), moves);
     return spread(distance, target.rows, target.dimension, static_cast<double>(delta), 0,
                   norm_of(distance, moves, z));
 }

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
@@ -25,6 +26,19 @@ struct HalfF1 {
         return true_positives * other.of < other.true_positives * of;
     }
 };
+
+/// The scores between which epsilon may lie and say the same of all frames: the one that was
+/// taken, and of <= the next above it, of < the next below. Ascending; the one alone where there is
+/// no finite other.
+std::vector<float> gap(const std::vector<Scores::Labelled>& ascending, float taken, bool strict) {
+    const auto [first, last] =
+        std::equal_range(ascending.begin(), ascending.end(), Scores::Labelled{taken, false},
+                         [](const auto& a, const auto& b) { return a.score < b.score; });
+    if (!strict && last != ascending.end() && !std::isinf(last->score)) return {taken, last->score};
+    if (strict && first != ascending.begin() && !std::isinf(std::prev(first)->score))
+        return {std::prev(first)->score, taken};
+    return {taken};
+}
 
 }  // namespace
 
@@ -77,7 +91,12 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
         result.f1 = here.value();
     }
     if (best.true_positives == 0) return Refusal::no_f1;
+    const std::vector<float> ends = gap(labelled, result.epsilon, strict);
     result.scores = {static_cast<double>(result.epsilon)};
+    const auto between = ends.size() == 2 ? check::halfway(ends[0], ends[1]) : std::nullopt;
+    if (!between) return result;
+    result.epsilon = *between;
+    result.scores.assign(ends.begin(), ends.end());
     return result;
 }
 

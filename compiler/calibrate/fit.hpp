@@ -1,7 +1,8 @@
 // From scores to thresholds.
 // Takes: the scores of a predicate in every demonstration. Gives: epsilon, or why there is none.
 // Keeps true: Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et
-// al.), mirrored for >= and >; the rank is never clamped: too few demonstrations are an error.
+// al.), mirrored for >= and >; what an F1-optimal threshold says of the frames that it is from is
+// what the definition's says; the rank is never clamped: too few demonstrations are an error.
 #pragma once
 
 #include <cstdint>
@@ -17,8 +18,8 @@ struct Fitted {
     float epsilon = 0;    ///< of an adaptive threshold: before it is put on its grid
     std::uint64_t n = 0;  ///< scores: demonstrations (conformal) or frames
     std::uint64_t k = 0;  ///< rank taken; 0 for f1
-    /// Conformal: all, as far out as any build may measure them, ascending. Of the pooled methods
-    /// the one taken.
+    /// Conformal: all, as far out as any build may measure them, ascending. Class-conditional: the
+    /// one taken. F1: that one and the next, where epsilon is halfway between them.
     std::vector<double> scores;
     double f1 = 0;  ///< f1: what epsilon reaches on the frames that it was chosen on
 };
@@ -49,8 +50,10 @@ void mirror(Fitted& fitted, bool upper_bound);
 /// The first float32 strictly beyond the k-th smallest, k the rank of alpha.
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
-/// Epsilon among the scores such that `score <= epsilon`, or < where `strict`, has the greatest F1;
-/// of equals the least. Scores are those of all labelled frames.
+/// Epsilon such that `score <= epsilon`, or < where `strict`, has the greatest F1 that a score as
+/// epsilon has; of equals it is the least. From that score it is moved halfway to the next that
+/// says another thing, where there is one: of these frames that says the same. Scores are those of
+/// all labelled frames.
 Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict);
 
 }  // namespace etlc::calibrate

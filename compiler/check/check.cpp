@@ -22,6 +22,7 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     check_fitted_frames(context);
     check_fitted_entries(context);
     check_monitors(context);
+    choose_telemetry(context);
     check_thresholds(context);
     set_robustness(context);
     warn(context);

@@ -42,6 +42,8 @@ struct Options {
     /// `--check` takes a spec before its files are there: a target file, a thresholds file or an
     /// entry of it that is missing is a note, and what builds on it is not checked.
     bool allow_missing = false;
+    /// `--lets`: what lets say at each step is telemetry.
+    bool lets = false;
     std::vector<Setting> settings;
 };
 

@@ -19,6 +19,7 @@ void check_truths(Context& context);
 void check_fitted_frames(Context& context);
 void check_fitted_entries(Context& context);
 void check_monitors(Context& context);
+void choose_telemetry(Context& context);
 void check_thresholds(Context& context);
 void set_robustness(Context& context);
 void warn(Context& context);

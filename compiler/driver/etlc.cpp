@@ -216,6 +216,8 @@ int run_command(int argc, char** argv) {
                  "after the trace, also report the last positions of sliding monitors");
     app.add_flag("--distances", call.run.distances,
                  "a column for each predicate: the distance or expression that it compares");
+    app.add_flag("--lets", call.request.check.lets,
+                 "a column for each let that does not look ahead: its robustness at that step");
     app.add_flag(
         "--summary", call.run.summary,
         "a line for each monitor, and for inputs with missing samples, on standard output; "

@@ -23,6 +23,11 @@ std::vector<Member> telemetry_members(const Context& context) {
                           fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing"),
                           ""});
     }
+    for (const auto& [of, nearest] : context.names.nearest)
+        result.push_back(
+            {"uint32_t", nearest.member,
+             fmt::format("the row nearest by {}", context.model.distances[of.second].text),
+             nearest.member + " = 0;", ""});
     return result;
 }
 
@@ -52,6 +57,8 @@ std::vector<Member> own_members(const Context& context) {
     for (const auto& [m, name] : context.names.verdict_member)
         result.push_back({context.spelling.verdict, name, "the last one, for finish()",
                           fmt::format("{} = {}();", name, context.spelling.verdict), ""});
+    const std::vector<Member> lets = let_members(context);
+    result.insert(result.end(), lets.begin(), lets.end());
     if (context.on_demand)
         result.push_back(
             {"Verdicts", "answers", "the last ones; final ones stay", "answers = Verdicts();", ""});
@@ -100,6 +107,11 @@ void print_telemetry(Printer& out, const Context& context) {
         if (plain)
             out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}",
                      predicate.name, member);
+        for (check::Index d : predicate.distances())
+            if (const auto nearest = context.names.nearest.find({p, d});
+                nearest != context.names.nearest.end())
+                out.line("uint32_t {}() const noexcept {{ return {}; }}", nearest->second.function,
+                         nearest->second.member);
     }
 }
 
@@ -285,6 +297,7 @@ void print_interface(Printer& out, const Context& context, const std::vector<Mem
         out.line();
     }
     print_why(out, context);
+    print_let_interface(out, context);
     print_adaptive_interface(out, context);
     print_doc(out,
               fmt::format("Steps on which some predicate or bool input {}was unknown; saturates.",
@@ -329,9 +342,9 @@ void print_state(Printer& out, const std::vector<Member>& all) {
 }
 
 /// Members that are made of bytes, where values are.
-bool is_bytes(const Member& member) {
-    return member.type == "Value" || member.type == "Verdicts" ||
-           member.type.find("PendingMachine") != std::string::npos;
+bool is_bytes(const Context& context, const Member& member) {
+    return member.type == "Value" || member.type == context.spelling.verdict ||
+           member.type == "Verdicts" || member.type.find("PendingMachine") != std::string::npos;
 }
 
 }  // namespace
@@ -342,7 +355,7 @@ std::vector<Member> members(const Context& context) {
     all.insert(all.end(), own.begin(), own.end());
     // Words before bytes: no padding but at the end.
     std::stable_partition(all.begin(), all.end(), [&](const Member& member) {
-        return !context.spelling.bytes || !is_bytes(member);
+        return !context.spelling.bytes || !is_bytes(context, member);
     });
     if (context.stores_targets())
         all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});

@@ -178,4 +178,11 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
 std::vector<Member> temporal_members(const Context& context);
 std::vector<Member> threshold_members(const Context& context);
 
+// Telemetry of lets, where the plan has some; nothing else prints anything then.
+std::vector<Member> let_members(const Context& context);
+/// let_NAME() and robustness_NAME()
+void print_let_interface(Printer& out, const Context& context);
+/// At the end of a step: what they say of it.
+void print_lets(Printer& out, const Context& context);
+
 }  // namespace etlc::emit

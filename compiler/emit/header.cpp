@@ -52,6 +52,8 @@ std::set<std::string> runtime_headers(const Context& context) {
     for (Index p : plan.predicates) {
         if (context.model.predicates[p].equality()) headers.insert("temporal/equality");
         if (!context.model.predicates[p].plain_distance()) headers.insert("temporal/expression");
+        if (!plan::contrast_cuts(plan, context.model.predicates[p]).empty())
+            headers.insert("distance/contrast");
     }
     if (!context.names.threshold_member.empty()) headers.insert("temporal/adaptation");
     for (Index i : plan.inputs) {

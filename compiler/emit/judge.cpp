@@ -121,6 +121,7 @@ void print_advance(Printer& out, const Context& context) {
     print_readings(out, context);
     out.gap();
     print_open_verdicts(out, context);
+    print_lets(out, context);
     print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
     print_progress(out, context, "answers");
     print_record(out, context, "answers");
@@ -149,6 +150,7 @@ void print_judge(Printer& out, const Context& context) {
         print_wrapped(out, fmt::format("{} = {};", answer, verdict(context, m)));
         if (plan.monitors[m].sliding || !plan.has_sliding) print_answer(out, context, m, answer);
     }
+    print_lets(out, context);
     print_progress(out, context, "verdicts");
     print_record(out, context, "verdicts");
     if (plan.counts_steps) print_wrapped(out, counted("position"));

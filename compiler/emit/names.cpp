@@ -42,6 +42,13 @@ std::set<std::string> functions(const check::Model& model, const plan::Plan& pla
     for (const plan::Monitor& monitor : plan.monitors)
         for (const char* prefix : {"restart_", "alarms_", "fulfilled_"})
             if (monitor.restarts != check::Restarts::never) names.insert(prefix + monitor.name);
+    for (check::Index p : plan.predicates)
+        for (check::Index d : model.predicates[p].distances())
+            names.insert(fmt::format("nearest_{}_{}", model.predicates[p].name,
+                                     model.targets[model.distances[d].target].name));
+    for (const plan::Let& let : plan.lets)
+        for (const char* prefix : {"let_", "robustness_"})
+            names.insert(prefix + model.lets[let.index].name);
     return names;
 }
 
@@ -83,6 +90,7 @@ public:
         name_atoms();
         name_sourced_atoms();
         name_measurements();
+        name_nearest();
         name_streams();
         name_readings();
         name_constants();
@@ -156,6 +164,23 @@ private:
                 local(measure_, identifier(model_.distances[d].text, "distance"));
     }
 
+    /// "nearest_P_T", T the target set.
+    void name_nearest() {
+        Scope functions;
+        for (check::Index p : plan_.predicates)
+            functions.claim("nearest_" + model_.predicates[p].name);
+        for (check::Index p : plan_.predicates) {
+            const check::Predicate& predicate = model_.predicates[p];
+            if (predicate.name.empty() || predicate.plain_distance()) continue;
+            for (check::Index d : predicate.distances()) {
+                const std::string name = fmt::format(
+                    "{}_{}", predicate.name, model_.targets[model_.distances[d].target].name);
+                names_.nearest[{p, d}] = {member(members_, name + "_nearest"),
+                                          functions.claim("nearest_" + name)};
+            }
+        }
+    }
+
     void name_streams() {
         for (const plan::Stream& stream : plan_.streams) {
             Names::OfStream& names = names_.streams.emplace_back();
@@ -226,6 +251,8 @@ private:
             names_.alarms_member[m] = member(members_, monitor.name + "_alarms");
             names_.fulfilled_member[m] = member(members_, monitor.name + "_fulfilled");
         }
+        for (const plan::Let& let : plan_.lets)
+            names_.let_member.push_back(member(members_, model_.lets[let.index].name + "_verdict"));
         for (std::uint32_t r = 0; r < plan_.readings.size(); ++r) {
             const auto given = wanted.find(r);
             const std::string name = given == wanted.end() ? part_name(r) : given->second;

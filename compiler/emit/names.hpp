@@ -17,6 +17,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "plan/plan.hpp"
 
@@ -54,6 +55,13 @@ struct Names {
     /// In judge() of a class that explains: this step's values with their samples.
     std::vector<std::string> sourced_atoms;
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
+    /// Of named predicates that are more than a distance: for each distance that they read, the
+    /// nearest row, and the function that gives it.
+    struct Nearest {
+        std::string member;
+        std::string function;
+    };
+    std::map<std::pair<check::Index, check::Index>, Nearest> nearest;
     /// Of adaptive predicates: the threshold as it is now.
     std::map<check::Index, std::string> threshold_member;
     std::map<check::Index, std::string> adaptation_constant;  ///< and how it moves
@@ -74,6 +82,7 @@ struct Names {
     std::vector<OfReading> readings;
     /// Per monitor of the plan: a prefix monitor's last verdict.
     std::map<std::size_t, std::string> verdict_member;
+    std::vector<std::string> let_member;  ///< per let of the plan: its verdict
     /// Per monitor that restarts: steps since it began, where some part of it asks.
     std::map<std::size_t, std::string> position_member;
     /// Per monitor that restarts after final verdicts: how many there were of each kind.

@@ -16,6 +16,14 @@ const char* row_of(const Context& context) {
     return context.on_demand ? "row" : "now.row_";
 }
 
+/// By a distance of an expression.
+std::string nearest_row(const Context& context, Index predicate, Index distance) {
+    const auto member = context.names.nearest.find({predicate, distance});
+    if (member != context.names.nearest.end()) return member->second.member;
+    return fmt::format("{}{}.nearest", context.names.distance_local.at(distance),
+                       context.on_demand ? "()" : "");
+}
+
 std::string steps(std::uint32_t n) {
     return diag::counted(n, "step");
 }
@@ -84,17 +92,21 @@ void print_recorded(Printer& out, const Context& context, Index predicate,
         std::find_if(context.recorded.predicates.begin(), context.recorded.predicates.end(),
                      [&](const auto& of) { return of.predicate == predicate; });
     constexpr std::string_view kDelta = ".delta";
-    if (column->nearest) {
+    if (context.model.predicates[predicate].plain_distance()) {
         const std::string measured = delta.substr(0, delta.size() - kDelta.size());
         print_wrapped(out, fmt::format("{}.figures({}, {}, {}.nearest);", row_of(context),
                                        column->figure, delta, measured));
     } else {
         print_wrapped(out,
                       fmt::format("{}.figure({}, {});", row_of(context), column->figure, delta));
+        for (std::size_t i = 0; i < column->nearest.size(); ++i)
+            print_wrapped(
+                out, fmt::format("{}.nearest({}, {});", row_of(context), column->figure + 1 + i,
+                                 nearest_row(context, predicate, column->nearest[i])));
     }
     if (column->threshold)
         print_wrapped(out, fmt::format("{}.figure({}, threshold_{}());", row_of(context),
-                                       column->figure + (column->nearest ? 2 : 1),
+                                       column->figure + 1 + column->nearest.size(),
                                        context.model.predicates[predicate].name));
 }
 

@@ -121,12 +121,13 @@ struct Statement {
 };
 
 /// When a stream that remembers has to be kept up. A monitor that restarts asks again, of a past
-/// that began with the trace.
+/// that began with the trace, and a let asks at every step.
 std::string while_open(const Context& context, Slot slot) {
     const std::vector<std::size_t>& monitors = context.dependents.of_stream[slot];
     const bool asked_again = context.plan.streams[slot].begins_with == plan::kNone &&
                              std::any_of(monitors.begin(), monitors.end(), [&](std::size_t m) {
-                                 return context.plan.monitors[m].restarts != check::Restarts::never;
+                                 return m >= context.plan.monitors.size() ||
+                                        context.plan.monitors[m].restarts != check::Restarts::never;
                              });
     return asked_again ? "" : open_monitors(context, monitors);
 }

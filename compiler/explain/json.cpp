@@ -81,9 +81,14 @@ private:
                    : "null";
     }
     std::string nearest(Sample at) const {
-        return has_nearest(observations_, at.atom) && !observations_.is_missing(at)
-                   ? std::to_string(observations_.nearest(at))
-                   : "null";
+        const std::vector<Nearest> rows = explain::nearest(observations_, at);
+        if (rows.empty() || observations_.is_missing(at)) return "null";
+        if (observations_.predicate(at.atom).plain_distance()) return std::to_string(rows[0].row);
+        std::string text;
+        for (const Nearest& one : rows)
+            text += fmt::format("{}{}: {}", text.empty() ? "" : ", ",
+                                source::json_string(one.distance->text), one.row);
+        return "{" + text + "}";
     }
 
     std::string interval(const Interval& i) const {

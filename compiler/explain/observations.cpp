@@ -64,7 +64,10 @@ void Observations::add(const plan::Evaluator& evaluator) {
         Column& column = columns_[a];
         if (atom.is_predicate) {
             column.measured.push_back(evaluator.distance(atom.index));
-            column.nearest.push_back(evaluator.nearest(atom.index));
+            const std::vector<Index> distances = model_.predicates[atom.index].distances();
+            column.nearest.resize(distances.size());
+            for (std::size_t n = 0; n < distances.size(); ++n)
+                column.nearest[n].push_back(evaluator.measured(distances[n]).nearest);
             continue;
         }
         const float* flag = evaluator.input(atom.index);

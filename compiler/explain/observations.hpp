@@ -52,9 +52,9 @@ public:
     /// The distance or expression of a predicate; of a bool 0 or 1. NaN: missing.
     float measured(Sample sample) const { return columns_[sample.atom].measured[sample.step]; }
     bool is_missing(Sample sample) const;
-    /// Row of the nearest target; plain distances only.
-    std::uint32_t nearest(Sample sample) const {
-        return columns_[sample.atom].nearest[sample.step];
+    /// Of a predicate's n-th distance the row that was nearest.
+    std::uint32_t nearest(Sample sample, std::size_t n) const {
+        return columns_[sample.atom].nearest[n][sample.step];
     }
 
     /// What the atom is worth to a formula where that is measured; NaN: what a missing sample
@@ -68,7 +68,7 @@ private:
     struct Column {
         bool is_looked_at = false;
         std::vector<float> measured;
-        std::vector<std::uint32_t> nearest;
+        std::vector<std::vector<std::uint32_t>> nearest;  ///< per distance, per step
     };
 
     const check::Model& model_;

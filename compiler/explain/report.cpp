@@ -49,12 +49,16 @@ float margin(const Observations& observations, Sample sample) {
                     observations.predicate(sample.atom).threshold.value);
 }
 
-bool has_nearest(const Observations& observations, Index atom) {
-    if (!observations.atoms()[atom].is_predicate) return false;
-    const check::Predicate& predicate = observations.predicate(atom);
-    if (!predicate.plain_distance()) return false;
-    const check::Index distance = predicate.expression.index;
-    return observations.model().distances[distance].aggregation == check::Aggregation::min;
+std::vector<Nearest> nearest(const Observations& observations, Sample sample) {
+    std::vector<Nearest> result;
+    if (!observations.atoms()[sample.atom].is_predicate) return result;
+    const std::vector<Index> distances = observations.predicate(sample.atom).distances();
+    for (std::size_t n = 0; n < distances.size(); ++n) {
+        const check::Distance& distance = observations.model().distances[distances[n]];
+        if (distance.aggregation == check::Aggregation::min)
+            result.push_back({&distance, observations.nearest(sample, n)});
+    }
+    return result;
 }
 
 }  // namespace etlc::explain

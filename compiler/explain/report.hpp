@@ -40,6 +40,12 @@ std::string name_of(const Observations& observations, Index atom);
 const char* word(Status status);
 /// How far from its threshold a predicate was measured.
 float margin(const Observations& observations, Sample sample);
-bool has_nearest(const Observations& observations, Index atom);
+
+/// The row that was nearest then by a distance of the predicate that takes the minimum.
+struct Nearest {
+    const check::Distance* distance = nullptr;
+    std::uint32_t row = 0;
+};
+std::vector<Nearest> nearest(const Observations& observations, Sample sample);
 
 }  // namespace etlc::explain

@@ -101,10 +101,19 @@ private:
             fmt::format("{} is {:.6g}", check::print(model_, predicate.expression), low);
         if (low < high) text += fmt::format(" to {:.6g}", high);
         text += fmt::format(", threshold {:.6g}", predicate.threshold.value);
-        if (has_nearest(observations_, i.atom))
-            text += fmt::format(", nearest row {}{}", observations_.nearest({i.atom, i.closest}),
-                                i.first == i.last ? "" : " then");
-        return text;
+        return text + nearest(i);
+    }
+
+    /// ", nearest row 3 then"; of more than a distance ", nearest row 3 of people, 0 of walls".
+    std::string nearest(const Interval& i) const {
+        const std::vector<Nearest> rows = explain::nearest(observations_, {i.atom, i.closest});
+        std::string text;
+        for (const Nearest& one : rows) {
+            text += fmt::format("{}{}", text.empty() ? ", nearest row " : ", ", one.row);
+            if (!observations_.predicate(i.atom).plain_distance())
+                text += " of " + model_.targets[one.distance->target].name;
+        }
+        return text.empty() || i.first == i.last ? text : text + " then";
     }
 
     void critical() {

@@ -119,10 +119,12 @@ private:
 }  // namespace
 
 Program lower(const check::Model& model) {
-    Program program{Graph(model), {}, {}, {}};
+    Program program{Graph(model), {}, {}, {}, {}};
     Lowering lowering(model, program.graph);
     for (const check::Monitor& monitor : model.monitors)
         program.monitors.push_back(lowering.lower(monitor.formula, false));
+    for (const check::Let& let : model.lets)
+        program.lets.push_back(let.telemetry ? lowering.lower(let.formula, false) : check::kNone);
     program.formulas = lowering.take_nodes();
     return program;
 }

@@ -14,6 +14,7 @@ namespace etlc::ir {
 struct Program {
     Graph graph;
     std::vector<NodeId> monitors;  ///< per monitor of the model
+    std::vector<NodeId> lets;      ///< per let of the model; kNone where it is no telemetry
     /// Of some formulas an equal one, whose windows end before an unbounded future begins: what is
     /// cheaper to monitor, the plan decides (opt/split_windows.cpp).
     std::unordered_map<NodeId, NodeId> split_windows;
@@ -22,7 +23,7 @@ struct Program {
     std::array<std::vector<NodeId>, 2> formulas;
 };
 
-/// Every node that a monitor reaches, operands first: `--emit graph`.
+/// Every node that a monitor or a let reaches, operands first: `--emit graph`.
 std::string print(const Program& program);
 
 Program lower(const check::Model& model);

@@ -79,11 +79,16 @@ std::string print(const Program& program) {
     const Graph& graph = program.graph;
     std::vector<bool> reached(graph.size(), false);
     for (NodeId root : program.monitors) mark(graph, root, reached);
+    for (NodeId root : program.lets)
+        if (root != check::kNone) mark(graph, root, reached);
     std::string text = fmt::format("graph {}\n", graph.model().name);
     for (NodeId id = 0; id < graph.size(); ++id)
         if (reached[id]) text += "  " + definition(graph, id);
     for (std::size_t m = 0; m < program.monitors.size(); ++m)
         text += fmt::format("  {} = n{}\n", graph.model().monitors[m].name, program.monitors[m]);
+    for (std::size_t i = 0; i < program.lets.size(); ++i)
+        if (program.lets[i] != check::kNone)
+            text += fmt::format("  let {} = n{}\n", graph.model().lets[i].name, program.lets[i]);
     return text;
 }
 

@@ -29,7 +29,9 @@ class Rewriting {
 public:
     Rewriting(const check::Model& model, Index monitor, plan::Among among, const Options& options)
         : model_(model), monitor_(among == plan::Among::all ? monitor : 0), options_(options) {
-        if (among == plan::Among::alone) model_.monitors = {model.monitors[monitor]};
+        if (among != plan::Among::alone) return;
+        model_.monitors = {model.monitors[monitor]};
+        for (check::Let& let : model_.lets) let.telemetry = false;
     }
 
     /// Of `G f`, and of a formula that looks ahead for a bounded time.

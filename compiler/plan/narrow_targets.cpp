@@ -36,10 +36,6 @@ std::uint16_t half_bits(double half) {
         sign + fraction + (static_cast<std::uint32_t>(exponent - kLeastExponent) << kFractionBits));
 }
 
-bool full_weights(const check::Distance& distance) {
-    return distance.metric == check::Metric::mahalanobis && !distance.weights_diagonal;
-}
-
 /// Of |e_0|, |e_1|, ...: the norm in which a row's move changes its distance, as
 /// etlmon::detail::change() takes it.
 class Norm {
@@ -192,12 +188,17 @@ bool reads(const check::Expr& e, Index distance) {
     return found;
 }
 
-/// Only predicates that compare it as it is, with a number that stays, read the distance.
-bool compared_as_it_is(const Plan& plan, Index distance) {
+bool is_adaptive(const check::Predicate& predicate) {
+    return predicate.threshold.origin == check::ThresholdOrigin::adaptive;
+}
+
+/// Only predicates that compare it with a number that stays, as it is or less another one, read the
+/// distance.
+bool can_be_enclosed(const Plan& plan, Index distance) {
     return std::none_of(plan.predicates.begin(), plan.predicates.end(), [&](Index p) {
         const check::Predicate& predicate = plan.model->predicates[p];
-        const bool adaptive = predicate.threshold.origin == check::ThresholdOrigin::adaptive;
-        return (adaptive || !predicate.plain_distance()) && reads(predicate.expression, distance);
+        const bool plain = predicate.plain_distance() && !is_adaptive(predicate);
+        return !plain && !contrast(predicate) && reads(predicate.expression, distance);
     });
 }
 
@@ -210,8 +211,8 @@ std::string why_float32(const Plan& plan, Index d) {
             "'{}' lies in a file beside the header, which keeps float32; --inline-targets {} has "
             "it in the header",
             target.name, target.values.size() * sizeof(float));
-    if (full_weights(distance)) return "mahalanobis with full weights is measured on float32";
-    if (!compared_as_it_is(plan, d))
+    if (distance.full_weights()) return "mahalanobis with full weights is measured on float32";
+    if (!can_be_enclosed(plan, d))
         return "an expression or an adaptive threshold takes this distance as a float32";
     return "";
 }
@@ -260,11 +261,35 @@ void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink) {
         }
         for (const Index p : plan.predicates) {
             const check::Predicate& predicate = plan.model->predicates[p];
-            if (reads(predicate.expression, d)) add_cuts(plan, predicate, set.cuts);
+            if (predicate.plain_distance() && predicate.expression.index == d)
+                add_cuts(plan, predicate, set.cuts);
         }
         plan.narrow.push_back(std::move(set));
     }
     if (plan.narrow.empty() && !sink.has_errors()) refuse_unchanged(plan, storage, sink);
+}
+
+std::optional<std::pair<Index, Index>> contrast(const check::Predicate& predicate) {
+    const check::Expr& e = predicate.expression;
+    const auto is_distance = [](const check::Expr& operand) {
+        return operand.kind == check::Expr::Kind::distance;
+    };
+    const bool is_contrast = e.kind == check::Expr::Kind::subtract && !predicate.name.empty() &&
+                             !is_adaptive(predicate) &&
+                             std::all_of(e.arguments.begin(), e.arguments.end(), is_distance);
+    if (!is_contrast) return std::nullopt;
+    return std::pair(e.arguments[0].index, e.arguments[1].index);
+}
+
+std::vector<Cut> contrast_cuts(const Plan& plan, const check::Predicate& predicate) {
+    std::vector<Cut> cuts;
+    const auto both = contrast(predicate);
+    const auto is_open = [&](Index d) {
+        const NarrowSet* set = narrow_set(plan, d);
+        return set != nullptr && !set->lossless;
+    };
+    if (both && (is_open(both->first) || is_open(both->second))) add_cuts(plan, predicate, cuts);
+    return cuts;
 }
 
 const NarrowSet* narrow_set(const Plan& plan, Index distance) {

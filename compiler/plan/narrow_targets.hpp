@@ -6,6 +6,8 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "diag/diag.hpp"
@@ -17,9 +19,18 @@ namespace etlc::plan {
 double to_f16(double x);
 
 /// Fills plan.narrow with every distance that can be measured on narrow rows: those that predicates
-/// compare with a number as they are. Expressions, adaptive thresholds and mahalanobis with full
-/// weights keep float32. Reports what makes it impossible.
+/// compare with a number as they are, or whose difference they compare (a contrast). Other
+/// expressions, adaptive thresholds and mahalanobis with full weights keep float32. Reports what
+/// makes it impossible.
 void narrow_targets(Plan& plan, Storage storage, diag::Sink& sink);
+
+/// Both distances of a predicate that has a name and compares their difference with a number that
+/// stays; nothing for others.
+std::optional<std::pair<Index, Index>> contrast(const check::Predicate& predicate);
+
+/// Of a contrast of which narrow rows leave something open: the numbers at which it turns; else
+/// nothing.
+std::vector<Cut> contrast_cuts(const Plan& plan, const check::Predicate& predicate);
 
 /// The narrow rows of a distance; null where it is measured on float32.
 const NarrowSet* narrow_set(const Plan& plan, Index distance);

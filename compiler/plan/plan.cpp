@@ -90,6 +90,12 @@ public:
         return true;
     }
 
+    void add_lets() {
+        streams_.begin_with(kNone);
+        for (Index i = 0; i < program_.lets.size(); ++i)
+            if (program_.lets[i] != kNone) plan_.lets.push_back({i, streams_.of(program_.lets[i])});
+    }
+
     Plan finish(Storage targets_as, diag::Sink& sink) {
         keep_used_streams();
         share_windows(plan_);
@@ -146,6 +152,7 @@ private:
         for (Reading& reading : plan_.readings) plan::for_each_slot(reading, visit);
         for (Monitor& monitor : plan_.monitors)
             if (monitor.sliding) visit(monitor.stream);
+        for (Let& let : plan_.lets) visit(let.stream);
     }
 
     void collect_inputs() {
@@ -175,6 +182,7 @@ std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag:
     for (Index m = 0; m < program.monitors.size(); ++m)
         complete = planning.add_monitor(m, sink, complete ? advice : Advice{}) && complete;
     if (!complete) return std::nullopt;
+    planning.add_lets();
     Plan result = planning.finish(targets_as, sink);
     check_budget(result, limits, advice, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -34,6 +34,12 @@ struct Monitor {
     float shift = 0;
 };
 
+/// A let whose verdict at the present step is telemetry.
+struct Let {
+    Index index = 0;  ///< of the model's lets
+    Slot stream = kNone;
+};
+
 /// Worst case of one step and fixed sizes, of the whole or of one monitor (what it shares is
 /// counted in each).
 struct Cost {
@@ -100,6 +106,7 @@ struct Plan {
     std::vector<Stream> streams;
     std::vector<Reading> readings;
     std::vector<Monitor> monitors;
+    std::vector<Let> lets;
     bool has_sliding = false;
     bool counts_steps = false;  ///< some part needs the number of the step
     std::optional<Recorder> recorder;

@@ -44,10 +44,12 @@ std::string columns_text(const Plan& plan) {
     const check::Model& model = *plan.model;
     const RecorderColumns columns = recorder_columns(plan);
     std::string text;
-    for (const RecorderColumns::OfPredicate& column : columns.predicates)
-        text +=
-            fmt::format("predicate{}{} {}\n", column.nearest ? " nearest" : "",
-                        column.threshold ? " threshold" : "", column_name(model, column.predicate));
+    for (const RecorderColumns::OfPredicate& column : columns.predicates) {
+        text += "predicate";
+        for (std::size_t i = 0; i < column.nearest.size(); ++i) text += " nearest";
+        text += fmt::format("{} {}\n", column.threshold ? " threshold" : "",
+                            column_name(model, column.predicate));
+    }
     for (const Index i : columns.bools) text += "bool " + model.inputs[i].name + "\n";
     for (const Monitor& monitor : plan.monitors) text += "monitor " + monitor.name + "\n";
     return text;
@@ -83,10 +85,11 @@ RecorderColumns recorder_columns(const Plan& plan) {
     RecorderColumns columns;
     for (const Index p : plan.predicates) {
         const check::Predicate& predicate = model.predicates[p];
-        const RecorderColumns::OfPredicate column{p, columns.figures, predicate.plain_distance(),
+        const RecorderColumns::OfPredicate column{p, columns.figures, predicate.distances(),
                                                   predicate.threshold.adaptation.has_value()};
         columns.predicates.push_back(column);
-        columns.figures += 1U + (column.nearest ? 1U : 0U) + (column.threshold ? 1U : 0U);
+        columns.figures +=
+            static_cast<std::uint32_t>(1 + column.nearest.size()) + (column.threshold ? 1U : 0U);
     }
     for (const Index i : plan.inputs)
         if (model.inputs[i].type == check::InputType::boolean) columns.bools.push_back(i);

@@ -33,9 +33,9 @@ void add_recorder(Plan& plan, const RecorderRequest& request, const Limits& limi
 struct RecorderColumns {
     struct OfPredicate {
         Index predicate = 0;
-        std::uint32_t figure = 0;  ///< the first of its figures: the distance or expression
-        bool nearest = false;      ///< then the row of the nearest target
-        bool threshold = false;    ///< then the threshold, which adapts
+        std::uint32_t figure = 0;    ///< the first of its figures: the distance or expression
+        std::vector<Index> nearest;  ///< then, of each of these distances, the nearest row
+        bool threshold = false;      ///< then the threshold, which adapts
     };
     std::vector<OfPredicate> predicates;
     std::vector<Index> bools;    ///< inputs

@@ -30,6 +30,11 @@ struct Less {
     }
 };
 
+/// Of a monitor that is calibrated as a whole: its values are less by it.
+double shift_of(const check::Monitor& monitor) {
+    return monitor.calibration ? static_cast<double>(monitor.calibration->threshold.value) : 0;
+}
+
 }  // namespace
 
 Explained::Explained(const check::Model& model, NormalForm form, const Trace& trace,
@@ -43,7 +48,13 @@ Explained::Explained(const check::Model& model, NormalForm form, const Trace& tr
       root_(form_.roots[monitor]),
       position_(position),
       step_(step),
-      said_(said_by(value(literals_))) {}
+      shift_(shift_of(model.monitors[monitor])),
+      said_(said_of(value(literals_))) {}
+
+Said Explained::said_of(const Value& value) const {
+    return said_by(
+        {value.lower - shift_, value.rho - shift_, value.rho_high - shift_, value.upper - shift_});
+}
 
 Value Explained::value(const Literals& literals) const {
     return Prefix(form_, literals, step_).at(root_, position_);
@@ -71,11 +82,11 @@ Said Explained::said_with_only(const SampleSet& known) const {
                 literals.values[n][step] = {range.lowest, range.lowest, range.highest,
                                             range.highest};
     }
-    return said_by(value(literals));
+    return said_of(value(literals));
 }
 
 Said Explained::said_with(const std::vector<Alteration>& alterations) const {
-    return said_by(value(literals(model_, form_, trace_, values_, alterations)));
+    return said_of(value(literals(model_, form_, trace_, values_, alterations)));
 }
 
 /// Every value of a literal gets a number of its own, in their order, and so do the ranges of what

@@ -70,6 +70,7 @@ public:
 
 private:
     Value value(const Literals& literals) const;
+    Said said_of(const Value& value) const;
     double deciding(const Value& value) const;
     Sample sample(const Node& literal, std::uint64_t step) const;
 
@@ -81,6 +82,7 @@ private:
     Index root_;
     std::uint64_t position_;
     std::uint64_t step_;
+    double shift_;
     Said said_;
 };
 

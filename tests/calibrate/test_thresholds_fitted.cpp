@@ -6,6 +6,7 @@
 #include <cfloat>
 #include <cmath>
 #include <limits>
+#include <optional>
 
 #include "calibrate/calibrate.hpp"
 #include "check/check.hpp"
@@ -180,6 +181,20 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
     EXPECT_GT(outside, 10);
 }
 
+/// The observed value next to `taken` on the side where the answer changes; nothing where there is
+/// none. By <= and > it lies above, by < and >= below.
+std::optional<float> next_observed(const std::string& comparison, float taken,
+                                   const std::vector<Episode>& episodes) {
+    const bool above = comparison == "<=" || comparison == ">";
+    std::optional<float> next;
+    for (const Episode& episode : episodes)
+        for (const Frame& frame : episode) {
+            if (above ? !(frame.delta > taken) : !(frame.delta < taken)) continue;
+            if (!next || (above ? frame.delta < *next : frame.delta > *next)) next = frame.delta;
+        }
+    return next;
+}
+
 TEST(Fitted, F1AsBruteForceDoes) {
     Random random(42);
     for (const std::string comparison : {"<=", "<", ">=", ">"}) {
@@ -222,12 +237,49 @@ TEST(Fitted, F1AsBruteForceDoes) {
                 continue;
             }
             const auto& fitted = std::get<Fitted>(fit);
-            ASSERT_EQ(fitted.epsilon, expected) << comparison << " " << n;
             ASSERT_DOUBLE_EQ(fitted.f1, best);
             ASSERT_EQ(fitted.n, frames);
-            ASSERT_EQ(fitted.scores, std::vector<double>{static_cast<double>(expected)});
+            const auto next = next_observed(comparison, expected, episodes);
+            std::vector<double> scores{static_cast<double>(expected)};
+            if (next) scores.push_back(static_cast<double>(*next));
+            std::sort(scores.begin(), scores.end());
+            ASSERT_EQ(fitted.scores, scores) << comparison << " " << n;
+            ASSERT_EQ(fitted.epsilon,
+                      next ? static_cast<float>((scores[0] + scores[1]) / 2) : expected);
+            for (const Episode& episode : episodes)
+                for (const Frame& frame : episode)
+                    ASSERT_EQ(holds(comparison, frame.delta, fitted.epsilon),
+                              holds(comparison, frame.delta, expected));
         }
     }
+}
+
+TEST(Fitted, F1IsHalfwayToTheNextValue) {
+    const auto fit = [](const std::string& comparison, const Episode& frames) {
+        const auto model = model_of(comparison, "calibrated(f1)");
+        return std::get<Fitted>(
+            calibrate::fit(model.predicates[0], demonstrations({frames}, comparison[0] == '<'), 0));
+    };
+    const Episode apart{{1, true}, {1.5F, true}, {9, false}, {9.5F, false}};
+    EXPECT_EQ(fit("<=", apart).epsilon, 5.25F);
+    EXPECT_EQ(fit("<=", apart).scores, (std::vector<double>{1.5, 9}));
+    EXPECT_EQ(fit(">=", {{-1, true}, {-1.5F, true}, {-9, false}}).epsilon, -5.25F);
+    EXPECT_EQ(fit(">=", {{-1, true}, {-1.5F, true}, {-9, false}}).scores,
+              (std::vector<double>{-9, -1.5}));
+    EXPECT_EQ(fit("<", apart).epsilon, 5.25F);  // 9 takes in as much as 5.25 does
+    EXPECT_EQ(fit(">", {{-1, true}, {-1.5F, true}, {-9, false}}).epsilon, -5.25F);
+    // Nothing beyond, or nothing finite: what was observed.
+    EXPECT_EQ(fit("<=", {{1, true}, {1.5F, true}}).epsilon, 1.5F);
+    EXPECT_EQ(fit("<=", {{1, true}, {kInfinity, false}}).epsilon, 1.0F);
+    EXPECT_EQ(fit("<", {{-kInfinity, true}, {1, false}}).epsilon, 1.0F);
+    // Nor is there a float32 between neighbours; between others none of the two is crossed.
+    const float next = std::nextafter(1.0F, 2.0F);
+    EXPECT_EQ(fit("<=", {{1, true}, {next, false}}).epsilon, 1.0F);
+    EXPECT_EQ(fit("<=", {{1, true}, {next, false}}).scores, std::vector<double>{1});
+    EXPECT_EQ(fit("<", {{1, true}, {next, false}}).epsilon, next);
+    EXPECT_EQ(fit("<=", {{1, true}, {std::nextafter(next, 2.0F), false}}).epsilon, next);
+    EXPECT_EQ(fit("<=", {{-FLT_MAX, true}, {FLT_MAX, false}}).epsilon, 0.0F);
+    EXPECT_EQ(fit("<=", {{FLT_MAX / 2, true}, {FLT_MAX, false}}).epsilon, FLT_MAX / 4 * 3);
 }
 
 TEST(Fitted, InfiniteScoresAreRefused) {

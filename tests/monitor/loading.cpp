@@ -13,6 +13,7 @@
 #include <limits>
 
 #include "check/check.hpp"
+#include "check/formulas/horizons.hpp"
 #include "check/guarantees/conformal.hpp"
 #include "diag/render.hpp"
 #include "parse/parse.hpp"
@@ -20,6 +21,12 @@
 namespace etlc::tests {
 
 namespace {
+
+/// As telemetry, wherever they have a value at every step.
+void keep_lets(check::Model& model) {
+    const std::vector<check::Reach> reach = check::reaches(model);
+    for (check::Let& let : model.lets) let.telemetry = reach[let.formula].future == check::kNone;
+}
 
 std::optional<check::Model> load(const std::string& text, const std::string& path,
                                  const check::Options& options) {
@@ -29,6 +36,7 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
     std::optional<check::Model> model;
     if (!sink.has_errors()) model = check::check(std::move(spec), file, options, sink);
     if (!model) ADD_FAILURE() << "the spec was refused:\n" << diag::render_text(file, sink) << text;
+    if (model) keep_lets(*model);
     return model;
 }
 

@@ -93,6 +93,11 @@ sliding monitor thirteen = second_y;
 sliding monitor fourteen = far_y;
 sliding monitor fifteen = along_y;
 sliding monitor sixteen = angle_y;
+// As far from one set as from the other, but for roundings.
+predicate nearer = min l2(z, a) - min l2(y, b) <= 0;
+predicate farther = kth(1) l2(z, a) - kth(1) l2(y, b) > 0;
+sliding monitor seventeen = nearer;
+sliding monitor eighteen = farther;
 END
 
 # encloses WIDE NARROW [ROUNDED]: lines of the first are lines of the second but for the numbers,
@@ -107,7 +112,7 @@ encloses() {
   paste -d, "$1" "$2" | awk -F, -v rounded="${3:-}" 'BEGIN {
     split("soon .5 kept .5 all 5.25 each 5.25 one .5 two .25 three 2.5 four .15 five .02 six 1 " \
           "seven 5.25 eight 5.25 nine 5.25 ten .5 eleven .25 twelve 6.1 thirteen 6.3 " \
-          "fourteen 7.4 fifteen .01 sixteen 1", words, " ")
+          "fourteen 7.4 fifteen .01 sixteen 1 seventeen .5 eighteen .5", words, " ")
     for (i = 1; i in words; i += 2) scale[words[i]] = words[i + 1]
   }
   function size(x) { return x < 0 ? -x : x }
@@ -180,7 +185,8 @@ int main() {
             show(step, "twelve", v.twelve);
         show(step, "thirteen", v.thirteen), show(step, "fourteen", v.fourteen),
             show(step, "fifteen", v.fifteen);
-        show(step, "sixteen", v.sixteen);
+        show(step, "sixteen", v.sixteen), show(step, "seventeen", v.seventeen);
+        show(step, "eighteen", v.eighteen);
     }
 }
 END

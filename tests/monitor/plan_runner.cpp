@@ -66,6 +66,7 @@ Observed PlanRunner::run(const reference::Trace& trace, const Labels* labels) {
                 evaluator_->restart(m);
         }
         result.verdicts.push_back(verdicts(evaluator_->step(samples_of(trace[n]))));
+        if (n % 2 == 1) take_from_lets(result.verdicts.back());
         result.positions.push_back(positions());
         result.telemetry.push_back(telemetry());
     }
@@ -94,6 +95,14 @@ std::vector<reference::Verdict> PlanRunner::verdicts(
     for (std::size_t n = 0; n < from.size(); ++n)
         result[plan_->monitors[n].index] = observed(from[n]);
     return result;
+}
+
+void PlanRunner::take_from_lets(std::vector<reference::Verdict>& verdicts) const {
+    for (std::size_t l = 0; l < plan_->lets.size(); ++l)
+        for (std::size_t m = 0; m < model_.monitors.size(); ++m)
+            if (model_.monitors[m].sliding &&
+                model_.monitors[m].formula == model_.lets[plan_->lets[l].index].formula)
+                verdicts[m] = observed(evaluator_->lets()[l]);
 }
 
 std::vector<std::uint64_t> PlanRunner::positions() const {

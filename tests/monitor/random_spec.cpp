@@ -244,8 +244,13 @@ std::string random_spec(std::uint64_t seed, const SpecShape& shape) {
         const std::string kind = slides      ? "sliding "
                                  : !restarts ? ""
                                              : random.word({"restartable ", "repeating "});
-        const std::string text = formula.make();
-        result += formula.take_lets() + fmt::format("{}monitor m{} = {};\n", kind, n, text);
+        std::string text = formula.make();
+        result += formula.take_lets();
+        if (slides) {  // by a name of its own: what a let says is compared with what it says
+            result += fmt::format("let said{} = {};\n", n, text);
+            text = fmt::format("said{}", n);
+        }
+        result += fmt::format("{}monitor m{} = {};\n", kind, n, text);
     }
     return result;
 }

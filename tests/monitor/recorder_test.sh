@@ -186,3 +186,51 @@ END
   cut -d, -f1-3,8 >found
 printf '%s\n' step,distance_low,threshold_low,alarm 0,0.899999976,1, 1,0.949999988,0.9375,both |
   diff - found || fail "an adaptive threshold is not what it was"
+
+# Of a contrast the nearest row of each set is known, as that of a distance by itself is.
+cat >contrast.etl <<'END'
+spec contrast;
+input z : f32[2];
+target hand = [[0, 0], [2, 0], [0, 2]];
+target wall = [[3, 3], [1, 1], [-3, 1]];
+predicate at_hand = min l2(z, hand) <= 0.5;
+predicate at_wall = min l2(z, wall) <= 0.5;
+predicate closer = min l2(z, hand) - min l2(z, wall) <= 0;
+monitor apart = G !closer;
+sliding monitor hand_now = at_hand;
+sliding monitor wall_now = at_wall;
+sliding monitor closer_now = closer;
+END
+"$etlc" contrast.etl --values "$values" --recorder 2,2,1 -o contrast.hpp
+cat >contrast.cpp <<'END'
+#include <cstdio>
+
+#include "contrast.hpp"
+
+int main() {
+    static contrast::Monitor monitor;
+    const float samples[][2] = {{1.2f, 1.3f}, {2.5f, 2.75f}, {0.1f, 1.5f}, {-3, 0.5f}, {1.75f, 0}};
+    uint32_t sum = 0;
+    for (const auto& z : samples) {
+        contrast::Inputs in;
+        in.z = z;
+        monitor.step(in);
+        if (monitor.nearest_closer_hand() != monitor.nearest_at_hand()) return 1;
+        if (monitor.nearest_closer_wall() != monitor.nearest_at_wall()) return 2;
+        sum += monitor.nearest_closer_hand() + monitor.nearest_closer_wall();
+    }
+    if (sum == 0) return 3;
+    monitor.close_incidents();
+    const bool written = monitor.write_incident(0, [](const uint8_t* data, size_t size) {
+        std::fwrite(data, 1, size, stdout);
+    });
+    return written ? 0 : 4;
+}
+END
+"$cxx" -std=c++17 -Wall -Wextra -Werror "$@" -I . -I "$runtime" contrast.cpp -o contrast
+./contrast >leaning
+"$etlc" incident leaning --spec contrast.etl --values "$values" --format csv >contrast.csv
+head -1 contrast.csv | grep -q ',distance_closer,nearest_closer_hand,nearest_closer_wall,' ||
+  fail "an incident lacks the rows of a contrast: $(head -1 contrast.csv)"
+awk -F, 'NR > 1 && ($3 != $7 || $5 != $8) { bad = 1 } END { exit bad || NR != 4 }' contrast.csv ||
+  fail "the rows of a contrast are others than those of its distances"

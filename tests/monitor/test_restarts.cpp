@@ -85,6 +85,40 @@ TEST(Restarts, OthersGoOn) {
     EXPECT_TRUE(step(monitor).shut.alarm());
 }
 
+/// Both verdicts are about this step.
+template <class Verdict>
+void expect_same(const Verdict& let, const Verdict& monitor, int at) {
+    EXPECT_EQ(let.decided(), monitor.decided()) << at;
+    EXPECT_EQ(let.satisfied(), monitor.satisfied()) << at;
+    EXPECT_EQ(let.violated(), monitor.violated()) << at;
+    EXPECT_EQ(let.unknown(), monitor.unknown()) << at;
+}
+
+/// With samples missing, whatever restarts, and until the end of the trace.
+TEST(Lets, SayOfEachStepWhatASlidingMonitorSaysOfIt) {
+    Monitor monitor;
+    EXPECT_FALSE(monitor.let_calm().decided());
+    int unknown = 0;
+    Verdicts last;
+    for (int i = 0; i < 60; ++i) {
+        if (i % 7 == 3) monitor.restart_shut();
+        if (i == 30) monitor.reset();
+        last = step(monitor, [&](Inputs& in) {
+            in.open = i % 5 == 1;
+            in.near = i % 4 == 1 ? 0.5F : 2.0F;
+            if (i % 11 == 6) in.open = etlmon::Flag();
+            in.pick = i == 50;
+        });
+        expect_same(monitor.let_calm(), last.calm_now, i);
+        unknown += monitor.let_calm().unknown() ? 1 : 0;
+    }
+    EXPECT_GT(unknown, 3);
+    monitor.finish();
+    expect_same(monitor.let_calm(), last.calm_now, 60);
+    monitor.reset();
+    EXPECT_FALSE(monitor.let_calm().decided());
+}
+
 TEST(Missing, CountsAsTheSpecSays) {
     Monitor monitor;
     const Verdicts verdicts = step(monitor, [](Inputs& in) { in.near = etlmon::kMissing; });

@@ -53,10 +53,11 @@ protected:
         }
     }
 
-    /// What `etlc run` prints of the short trace.
-    std::string watched(const std::string& options) const {
-        std::ofstream(folder_ / "watch.etl") << kWatchSpec;
-        std::ofstream(folder_ / "watch.csv") << kWatchTrace;
+    /// What `etlc run` prints of a short trace.
+    std::string watched(const std::string& options, const std::string& spec = kWatchSpec,
+                        const std::string& samples = kWatchTrace) const {
+        std::ofstream(folder_ / "watch.etl") << spec;
+        std::ofstream(folder_ / "watch.csv") << samples;
         const std::string call = std::string("cd '") + folder_.string() + "' && '" + ETLC_COMMAND +
                                  "' run watch.etl --trace watch.csv " + options;
         std::FILE* const pipe = ::popen(call.c_str(), "r");
@@ -130,6 +131,24 @@ TEST_F(Run, RowsSayPositionTimeAndDistances) {
               "4,above,-inf,-inf,1.5,unknown,0,0,1,0,-0.5\n"
               "5,soon,-0.5,-0.5,-0.5,violated,1,4,1.25,,\n"
               "5,above,-inf,-inf,1.5,unknown,0,0,1.25,,\n");
+}
+
+/// A let that looks ahead has no column, and an unknown one an empty cell; comparisons of one
+/// expression have one column.
+TEST_F(Run, RowsSayWhatLetsDo) {
+    const std::string spec =
+        "spec watch;\n"
+        "input x : f32;\n"
+        "let low = x <= 1 && O[0, 1] x <= 0.5;\n"
+        "let soon = F[0, 2] low;\n"
+        "monitor m = G x <= 2;\n";
+    EXPECT_EQ(watched("--lets --distances", spec, "x\n0.25\n0.75\n\"\"\n2\n"),
+              "step,monitor,lower,robustness,upper,status,final,position,distance_x,"
+              "robustness_low\n"
+              "0,m,-inf,1.75,1.75,satisfied,0,0,0.25,0.25\n"
+              "1,m,-inf,1.25,1.25,satisfied,0,0,0.75,0.25\n"
+              "2,m,-inf,-inf,1.25,unknown,0,0,,\n"
+              "3,m,-inf,-inf,0,unknown,0,0,2,-1.5\n");
 }
 
 TEST_F(Run, SummaryCountsVerdictsAndSamples) {

@@ -79,8 +79,12 @@ TEST(Consistency, CountsFollowFromAlphaAndTheScores) {
     EXPECT_EQ(said(pooled("class_conditional"),
                    [](Entry& e) { e.n = std::numeric_limits<std::uint64_t>::max(); }),
               "'predicates.p.n' is 18446744073709551615, expected a number of scores from 1");
-    EXPECT_EQ(said(pooled("f1"), [](Entry& e) { e.scores.clear(); }),
-              "'predicates.p.scores' has 0 elements, expected 1, the score that was taken");
+    EXPECT_EQ(
+        said(pooled("f1"), [](Entry& e) { e.scores.clear(); }),
+        "'predicates.p.scores' has 0 elements, expected 1 or 2, the score that was taken and the "
+        "next");
+    EXPECT_EQ(said(pooled("class_conditional"), [](Entry& e) { e.scores.push_back(9); }),
+              "'predicates.p.scores' has 2 elements, expected 1, the score that was taken");
 }
 
 TEST(Consistency, EpisodesAreThereOnceEach) {
@@ -114,6 +118,13 @@ TEST(Consistency, TheThresholdIsThatOfItsScore) {
     EXPECT_EQ(
         said(pooled("f1"), [](Entry& e) { e.epsilon = 0.5F; }),
         "'predicates.p.epsilon' is 0.5, expected 0.25: that is 'predicates.p.scores[0]', 0.25");
+    Entry halfway = pooled("f1");
+    halfway.scores = {0.25, 0.75};
+    halfway.epsilon = 0.5F;
+    EXPECT_EQ(said(halfway, [](Entry&) {}), "");
+    EXPECT_EQ(said(halfway, [](Entry& e) { e.epsilon = 0.25F; }),
+              "'predicates.p.epsilon' is 0.25, expected 0.5: halfway between the two "
+              "'predicates.p.scores', 0.25 and 0.75");
     for (const bool upper : {false, true}) {
         Entry infinite = conformal(upper);
         infinite.scores.assign(9, upper ? INFINITY : -INFINITY);

@@ -79,7 +79,7 @@ std::vector<Broken> broken() {
         {"missing key of many", zip_of(many), "other", Code::no_such_array,
          "has no array 'other'; it holds 'a0', 'a1', 'a2', 'a3', 'a4', 'a5', 'a6', 'a7', 'a8', "
          "'a9' and 2 more"},
-        {"key twice", two_z, "z1", Code::no_such_array, "holds two arrays named 'z1'"},
+        {"key twice", two_z, "z1", Code::malformed_archive, "holds two arrays named 'z1'"},
         {"encrypted", zip_of({{"z.npy", array, true, true}}), "z", Code::malformed_archive,
          "array 'z': is encrypted, expected plain members"},
         {"method", method, "z", Code::malformed_archive,

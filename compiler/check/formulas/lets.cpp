@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "check/formulas/formulas.hpp"
+#include "check/formulas/horizons.hpp"
 #include "check/steps.hpp"
 
 namespace etlc::check {
@@ -109,6 +110,34 @@ private:
 };
 
 }  // namespace
+
+void choose_telemetry(Context& c) {
+    if (!c.options.lets || c.sink.has_errors()) return;
+    const std::vector<Reach> reach = reaches(c.model);
+    bool any = false;
+    for (Let& let : c.model.lets) {
+        let.telemetry = let.formula != kNone && reach[let.formula].future == kNone;
+        any = any || let.telemetry;
+    }
+    for (Index i = 0; i < c.model.lets.size(); ++i) {
+        const Let& let = c.model.lets[i];
+        c.scope.entity(NameKind::let, i).used = true;
+        if (let.telemetry || let.formula == kNone) continue;
+        diag::Diagnostic found{Code::let_without_value,
+                               fmt::format("'{}' looks ahead, so at its own step it has no value: "
+                                           "--lets leaves it out",
+                                           let.name)};
+        found.span = let.span;
+        found.is_allowed = any;
+        c.sink.report(std::move(found))
+            .note(c.operator_spans[reach[let.formula].future], "it looks ahead here")
+            .note(fmt::format("'sliding monitor ... = {};' reports it as soon as it can be known, "
+                              "where the future is bounded",
+                              let.name));
+    }
+    if (c.model.lets.empty())
+        c.report(Code::let_without_value, {}, "--lets changes nothing: the spec has no let");
+}
 
 void check_lets(Context& c) {
     std::vector<const ast::Let*> written;

@@ -51,4 +51,10 @@ float beyond(double score, bool upper_bound) {
     return upper_bound ? strictly_above(score) : 0.0F - strictly_above(-score);
 }
 
+std::optional<float> halfway(float low, float high) {
+    if (!(std::nextafter(low, high) < high)) return std::nullopt;
+    // Of a float32 between them the middle is nearer than of either.
+    return static_cast<float>((static_cast<double>(low) + static_cast<double>(high)) / 2);
+}
+
 }  // namespace etlc::check

@@ -1,10 +1,11 @@
-// Conformal thresholds: which score is taken, and the number beyond it.
+// Thresholds from scores: which score is taken, and the number beyond it or halfway to the next.
 // Takes: alpha as the spec writes it, and scores. Gives: the rank k, exactly, and epsilon. Keeps
 // true: no binary rounding of alpha anywhere; with it k would be wrong for some alpha and n. What
 // calibrates and what reads thresholds back reckon alike.
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -27,6 +28,9 @@ float strictly_above(double high);
 /// Epsilon strictly beyond a score, on the side that takes in more: above it where the comparison
 /// is <= or <, else below. Infinite where there is none; 0 rather than -0 below.
 float beyond(double score, bool upper_bound);
+
+/// The float32 nearest to the middle of two; nothing where there is none between them.
+std::optional<float> halfway(float low, float high);
 
 /// Which of n ascending scores has rank k, counted from the best: the smallest where the comparison
 /// is <= or <, else the greatest.

@@ -16,7 +16,7 @@ using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
 /// One score a demonstration, all of them kept; the other methods pool frames and keep the score
-/// that was taken.
+/// that was taken, f1 with the next one.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }
@@ -29,15 +29,17 @@ std::string shown(const std::string& alpha) {
 }
 
 Found counts(const Entry& entry, const std::string& place) {
-    const std::uint64_t kept = keeps_all(entry) ? entry.n : 1;
+    const bool is_pair = entry.method == "f1" && entry.scores.size() == 2;
+    const std::uint64_t kept = keeps_all(entry) ? entry.n : is_pair ? 2 : 1;
     if (entry.n == 0 || entry.n > kMaxScores)
         return Contradiction{
             fmt::format("'{}.n' is {}, expected a number of scores from 1", place, entry.n)};
     if (entry.scores.size() != kept)
         return Contradiction{fmt::format(
             "'{}.scores' has {}, expected {}", place, diag::counted(entry.scores.size(), "element"),
-            keeps_all(entry) ? fmt::format("n of them, which is {}", kept)
-                             : "1, the score that was taken")};
+            keeps_all(entry)       ? fmt::format("n of them, which is {}", kept)
+            : entry.method == "f1" ? "1 or 2, the score that was taken and the next"
+                                   : "1, the score that was taken")};
     for (std::size_t i = 1; i < entry.scores.size(); ++i)
         if (entry.scores[i] < entry.scores[i - 1])
             return Contradiction{
@@ -73,17 +75,30 @@ Found episodes_of(const Entry& entry, const std::string& place,
     return std::nullopt;
 }
 
+/// What an F1-optimal threshold follows from, in words, and what it then is.
+std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string& place) {
+    const auto score = static_cast<float>(entry.scores[0]);
+    if (entry.scores.size() == 1)
+        return {fmt::format("that is '{}.scores[0]', {:.9g}", place, score), score};
+    const auto next = static_cast<float>(entry.scores[1]);
+    return {
+        fmt::format("halfway between the two '{}.scores', {:.9g} and {:.9g}", place, score, next),
+        halfway(score, next).value_or(score)};
+}
+
 Found threshold(const Entry& entry, const std::string& place, bool upper_bound) {
-    const bool f1 = entry.method == "f1";
-    const std::uint64_t at = keeps_all(entry) ? at_rank(entry.k, entry.n, upper_bound) : 0;
-    const double score = entry.scores[at];
-    const float expected = f1 ? static_cast<float>(score) : beyond(score, upper_bound);
+    const auto from = [&]() -> std::pair<std::string, float> {
+        if (entry.method == "f1") return f1_threshold(entry, place);
+        const std::uint64_t at = keeps_all(entry) ? at_rank(entry.k, entry.n, upper_bound) : 0;
+        const double score = entry.scores[at];
+        return {fmt::format("the first float32 beyond '{}.scores[{}]', {:.17g}", place, at, score),
+                beyond(score, upper_bound)};
+    };
+    const auto [words, expected] = from();
     if (entry.epsilon == expected) return std::nullopt;
-    return Contradiction{
-        fmt::format("'{0}.epsilon' is {1:.9g}, expected {2:.9g}: {3} '{0}.scores[{4}]', {5:.17g}",
-                    place, entry.epsilon, expected, f1 ? "that is" : "the first float32 beyond", at,
-                    score),
-        true};
+    return Contradiction{fmt::format("'{}.epsilon' is {:.9g}, expected {:.9g}: {}", place,
+                                     entry.epsilon, expected, words),
+                         true};
 }
 
 }  // namespace

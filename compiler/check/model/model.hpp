@@ -5,6 +5,7 @@
 // topological order, a `let` is the node it names, not a copy).
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <limits>
 #include <map>
@@ -132,6 +133,9 @@ struct Distance {
                                ///< or a target
     std::string text;          ///< canonical text, "min l2(z, goal_a)"
     Span span;
+
+    /// mahalanobis by a whole matrix.
+    bool full_weights() const { return metric == Metric::mahalanobis && !weights_diagonal; }
 };
 
 /// EXPR, evaluated in float32, each operation rounded once, in the order given.
@@ -265,8 +269,16 @@ struct Predicate {
     }
     /// What messages call it: its name, or what it says.
     std::string shown() const { return name.empty() ? text + threshold.text : name; }
-    /// A plain aggregated distance, not a general expression: it has a nearest row.
+    /// A plain aggregated distance, not a general expression.
     bool plain_distance() const { return expression.kind == Expr::Kind::distance; }
+    /// The distances that it reads, each once, in order; each has a nearest row.
+    std::vector<Index> distances() const {
+        std::vector<Index> found;
+        for_each_distance(expression, [&](Index d) {
+            if (std::find(found.begin(), found.end(), d) == found.end()) found.push_back(d);
+        });
+        return found;
+    }
 };
 
 // ---- what must hold -----------------------------------------------------------------------------
@@ -382,6 +394,7 @@ struct Let {
     std::string name;
     Index formula = 0;
     Span span;
+    bool telemetry = false;  ///< its verdict at the present step is kept: --lets
 };
 
 struct Constant {

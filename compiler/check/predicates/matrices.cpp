@@ -75,9 +75,10 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
         diag::Diagnostic diagnostic = data::in_file(array.failure(), path);
         diagnostic.span = load.span;
         std::error_code unknown;
-        diagnostic.is_allowed = c.options.allow_missing &&
-                                diagnostic.code == Code::unreadable_data_file &&
+        const bool lacks_file = diagnostic.code == Code::unreadable_data_file &&
                                 !std::filesystem::exists(path, unknown) && !unknown;
+        const bool lacks_key = diagnostic.code == Code::no_such_array && !load.key.empty();
+        diagnostic.is_allowed = c.options.allow_missing && (lacks_file || lacks_key);
         c.lacks_data = c.lacks_data || diagnostic.is_allowed;
         c.sink.report(std::move(diagnostic));
         return std::nullopt;

@@ -178,7 +178,7 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
     const auto found = std::find(keys_.begin(), keys_.end(), key);
     if (found == keys_.end()) return missing(key);
     if (std::find(found + 1, keys_.end(), key) != keys_.end())
-        return Failure{Code::no_such_array,
+        return Failure{Code::malformed_archive,
                        fmt::format("holds two arrays named {}", in_quotes(key))};
     const std::uint64_t index = indices_[static_cast<std::size_t>(found - keys_.begin())];
     auto member = open_member(index);

@@ -110,29 +110,43 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
     return episodes;
 }
 
+namespace {
+
+/// Of each number the bits as float32, in the order of bytes of a file; one pattern of bits for all
+/// that is none. Without branches, several at a time: a billion elements pass here.
+void narrow_to_bits(const double* __restrict numbers, std::size_t n,
+                    std::uint32_t* __restrict bits) {
+    constexpr std::uint32_t kNaN = 0x7fc00000;
+    constexpr std::uint32_t kMagnitude = 0x7fffffff;
+    constexpr std::uint32_t kInfinity = 0x7f800000;
+    for (std::size_t i = 0; i < n; ++i) {
+        const auto narrowed = std::bit_cast<std::uint32_t>(static_cast<float>(numbers[i]));
+        const std::uint32_t one = (narrowed & kMagnitude) > kInfinity ? kNaN : narrowed;
+        bits[i] = std::endian::native == std::endian::big ? __builtin_bswap32(one) : one;
+    }
+}
+
+}  // namespace
+
 EpisodeHash::EpisodeHash(std::vector<HashedInput> inputs) : inputs_(std::move(inputs)) {
     for (const HashedInput& input : inputs_) readers_.emplace_back(input.is_vector);
 }
 
 void EpisodeHash::add(const Sample& sample) {
-    constexpr std::uint32_t kNaN = 0x7fc00000;  // one pattern of bits for all that is missing
-    const auto bits_of = [](double value) {
-        const auto narrowed = static_cast<float>(value);
-        const auto bits = narrowed == narrowed ? std::bit_cast<std::uint32_t>(narrowed) : kNaN;
-        return std::endian::native == std::endian::big ? __builtin_bswap32(bits) : bits;
-    };
-    bits_.clear();
+    std::size_t size = 0;
+    for (const HashedInput& input : inputs_) size += sample.values[input.channel].size();
+    bits_.resize(size);
+    std::uint32_t* bits = bits_.data();
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-        const std::vector<double>& values = sample.values[inputs_[i].channel];
-        const bool present = sample.present[inputs_[i].channel];
-        const std::size_t begin = bits_.size();
-        bits_.resize(begin + values.size());
-        std::transform(values.begin(), values.end(), bits_.begin() + static_cast<long>(begin),
-                       [&](double value) { return bits_of(present ? value : NAN); });
-        readers_[i].add(bits_.data() + begin, values.size());
+        const std::size_t channel = inputs_[i].channel;
+        const std::vector<double>& values = sample.values[channel];
+        if (!sample.present[channel]) missing_.assign(values.size(), NAN);
+        narrow_to_bits(sample.present[channel] ? values.data() : missing_.data(), values.size(),
+                       bits);
+        readers_[i].add(bits, values.size());
+        bits += values.size();
     }
-    const std::string_view bytes(reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size());
-    hash_ = xxh64(bytes, hash_);
+    hash_ = xxh64({reinterpret_cast<const char*>(bits_.data()), 4 * size}, hash_);
     ++steps_;
 }
 

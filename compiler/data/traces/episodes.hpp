@@ -49,6 +49,7 @@ private:
     std::vector<HashedInput> inputs_;
     std::vector<ContentReader> readers_;  ///< per input
     std::vector<std::uint32_t> bits_;     ///< of one step
+    std::vector<double> missing_;         ///< in place of a sample that is not there
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };

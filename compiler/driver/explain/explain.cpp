@@ -31,6 +31,9 @@ struct History {
     void add(const etlmon::Verdict& verdict, std::uint64_t position) {
         if (verdict.alarm() && !first_alarm) first_alarm = verdicts.size();
         if (verdict.final() && !first_final) first_final = verdicts.size();
+        add_after_trace(verdict, position);
+    }
+    void add_after_trace(const etlmon::Verdict& verdict, std::uint64_t position) {
         verdicts.push_back(verdict);
         positions.push_back(position);
     }
@@ -51,8 +54,9 @@ public:
         const History& history = choose_monitor();
         const auto step = choose_step(history);
         if (!step) return std::nullopt;
+        const std::uint64_t last_frame = observations_.steps() - 1;
         const explain::Question question{plan_.monitors[chosen_].index, history.positions[*step],
-                                         *step};
+                                         std::min(*step, last_frame)};
         const etlmon::Verdict& verdict = history.verdicts[*step];
         const explain::Report report{observations_, question, verdict.final(),
                                      explain::explain(ir::lower(model_), observations_, question)};
@@ -107,7 +111,15 @@ private:
                 histories_[m].add(monitors.verdicts()[m], monitors.evaluator().position(m));
             return true;
         };
-        const auto done = episodes::replay(*recording, {&monitors, &atoms}, frame);
+        // The last positions of sliding monitors, whose verdicts are of the trace as it ended.
+        const auto rest = [&] {
+            for (std::size_t m = 0; m < histories_.size(); ++m)
+                if (monitors.reports(plan_.monitors[m].index))
+                    histories_[m].add_after_trace(monitors.verdicts()[m],
+                                                  monitors.evaluator().position(m));
+            return true;
+        };
+        const auto done = episodes::replay(*recording, {&monitors, &atoms}, frame, rest);
         if (!done) return fail(done.failure());
         return observations_.steps() > 0 || fail(data::no_steps());
     }
@@ -130,7 +142,7 @@ private:
     std::optional<std::uint64_t> choose_step(const History& history) {
         const plan::Monitor& monitor = plan_.monitors[chosen_];
         const std::uint64_t steps = history.verdicts.size();
-        std::uint64_t step = steps - 1;
+        std::uint64_t step = observations_.steps() - 1;
         if (request_.step) {
             step = *request_.step;
         } else if (request_.at) {

@@ -43,7 +43,8 @@ void add_explain_options(CLI::App& app, ExplainRequest& request) {
         ->type_name("NAME");
     auto* step = add_number(app, "--step", request.step,
                             "the verdict after this step (default: after that of the first "
-                            "alarm, else the first that is final, else the last)",
+                            "alarm, else the first that is final, else the last); of a sliding "
+                            "monitor also steps after the trace, as etlc run --finish has them",
                             0, std::numeric_limits<std::uint32_t>::max());
     app.add_option_function<std::string>(
            "--at", [&request](const std::string& text) { request.at = seconds(text); },

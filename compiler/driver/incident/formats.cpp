@@ -77,7 +77,8 @@ public:
         for (const RecorderColumns::OfPredicate& column : columns_.predicates) {
             const std::string name = plan::column_name(model_, column.predicate);
             cells.push_back(distance + name);
-            if (column.nearest) cells.push_back(nearest.empty() ? "row" : nearest + name);
+            for (const Index d : column.nearest)
+                cells.push_back(nearest_name(column, d, nearest, name));
             if (column.threshold) cells.push_back("threshold_" + name);
         }
         for (const Index i : columns_.bools) cells.push_back(model_.inputs[i].name);
@@ -92,8 +93,8 @@ public:
             const std::uint32_t* at = row.figures.data() + column.figure;
             const bool known = *at != etlmon::kUnaskedBits && *at != etlmon::detail::kMissingBits;
             result.push_back(figure(*at++, words));
-            if (column.nearest) result.push_back(known ? fmt::format("{}", *at) : "");
-            if (column.nearest) ++at;
+            for (std::size_t i = 0; i < column.nearest.size(); ++i, ++at)
+                result.push_back(known ? fmt::format("{}", *at) : "");
             if (column.threshold) result.push_back(figure(*at, words));
         }
         for (std::size_t b = 0; b < columns_.bools.size(); ++b)
@@ -117,6 +118,16 @@ public:
     const RecorderColumns& columns() const { return columns_; }
 
 private:
+    /// "row", or "nearest_near"; of more than a distance with its target: "row of goal",
+    /// "nearest_near_goal".
+    std::string nearest_name(const RecorderColumns::OfPredicate& column, Index distance,
+                             const std::string& prefix, const std::string& name) const {
+        const std::string& target = model_.targets[model_.distances[distance].target].name;
+        const bool plain = model_.predicates[column.predicate].plain_distance();
+        if (prefix.empty()) return plain ? "row" : "row of " + target;
+        return prefix + name + (plain ? "" : "_" + target);
+    }
+
     std::uint8_t verdict(const Incident::Row& row, std::size_t monitor) const {
         return row.bytes[columns_.bools.size() + monitor];
     }
@@ -245,6 +256,12 @@ std::string incident_spec(const plan::Plan& plan) {
         inputs += fmt::format("input {} : f32{};\n", input, range_of(predicate));
         change_everywhere(changes, model, p, comparison(model, predicate, input));
     }
+    for (const plan::Monitor& monitor : plan.monitors)
+        if (monitor.shifted) {
+            const source::Span clause = model.monitors[monitor.index].calibration->threshold.span;
+            changes[clause.begin] = {
+                clause, fmt::format("/* calibrated as a whole: less by {} */", monitor.shift)};
+        }
     std::string text;
     std::uint32_t copied = 0;
     const auto end = static_cast<std::uint32_t>(model.file.text().size());

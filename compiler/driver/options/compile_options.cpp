@@ -66,6 +66,9 @@ void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, b
            "etlc incident prints what the class writes")
         ->type_name("B,A,N")
         ->check(CLI::Validator(mistake_in_recorder, ""));
+    app.add_flag("--lets", request.check.lets,
+                 "telemetry of lets too: let_NAME() and robustness_NAME(), of those that do not "
+                 "look ahead");
     add_limit(app, "--inline-targets", request.limits.inline_target_bytes,
               "target sets of more bytes are not spelled out in the header, but go to a file "
               "beside it");

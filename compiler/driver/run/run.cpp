@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <cmath>
+#include <set>
 
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
@@ -34,7 +35,9 @@ public:
           sink_(sink),
           monitors_(compiled.plan),
           summary_(compiled.plan),
-          output_(sink) {}
+          output_(sink) {
+        if (request.distances) choose_columns();
+    }
 
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
@@ -57,12 +60,22 @@ private:
 
     bool writes_rows() const { return !request_.output.empty(); }
 
+    /// Comparisons without a name that are of one expression have one column.
+    void choose_columns() {
+        std::set<std::string> seen;
+        for (const check::Index p : plan_.predicates)
+            if (const std::string name = plan::column_name(*plan_.model, p);
+                seen.insert(name).second)
+                distances_.emplace_back(name, p);
+    }
+
     void print_head() {
         text_ = "step,monitor,lower,robustness,upper,status,final,position";
         if (plan_.model->step_seconds > 0) text_ += ",time";
-        if (request_.distances)
-            for (const check::Index p : plan_.predicates)
-                text_ += "," + source::csv_cell("distance_" + plan::column_name(*plan_.model, p));
+        for (const auto& [name, predicate] : distances_)
+            text_ += "," + source::csv_cell("distance_" + name);
+        for (const plan::Let& let : plan_.lets)
+            text_ += ",robustness_" + plan_.model->lets[let.index].name;
         text_ += "\n";
     }
 
@@ -101,16 +114,16 @@ private:
 
     bool report() {
         const std::vector<Verdict>& verdicts = monitors_.verdicts();
-        const std::string distances = request_.distances ? distance_cells() : "";
+        const std::string telemetry = distance_cells() + let_cells();
         for (std::size_t m = 0; m < verdicts.size(); ++m) {
             if (monitors_.reports(plan_.monitors[m].index)) summary_.add(m, step_, verdicts[m]);
-            if (writes_rows()) print_row(m, verdicts[m], distances);
+            if (writes_rows()) print_row(m, verdicts[m], telemetry);
         }
         ++step_;
         return text_.size() < kBufferBytes || flush();
     }
 
-    void print_row(std::size_t m, const Verdict& v, const std::string& distances) {
+    void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {
         const std::string& name = plan_.monitors[m].name;
         const auto out = std::back_inserter(text_);
         if (v.decided())
@@ -121,17 +134,27 @@ private:
             fmt::format_to(out, "{},{},,,,undecided,0,", step_, name);
         if (plan_.model->step_seconds > 0)
             fmt::format_to(out, ",{:.9g}", static_cast<double>(step_) * plan_.model->step_seconds);
-        text_ += distances;
+        text_ += telemetry;
         text_ += "\n";
     }
 
     /// Of this step's frame; empty after the last one, and where a sample is missing.
     std::string distance_cells() const {
         std::string cells;
-        for (const check::Index p : plan_.predicates) {
-            const float distance = monitors_.evaluator().distance(p);
+        for (const auto& [name, predicate] : distances_) {
+            const float distance = monitors_.evaluator().distance(predicate);
             const bool is_there = step_ < steps_ && !std::isnan(distance);
             cells += is_there ? fmt::format(",{:.9g}", distance) : ",";
+        }
+        return cells;
+    }
+
+    /// The same of lets: empty too where a missing sample leaves it open whether one holds.
+    std::string let_cells() const {
+        std::string cells;
+        for (const Verdict& let : monitors_.evaluator().lets()) {
+            const bool is_there = step_ < steps_ && !let.unknown();
+            cells += is_there ? fmt::format(",{:.9g}", let.robustness) : ",";
         }
         return cells;
     }
@@ -155,6 +178,8 @@ private:
     episodes::Follower monitors_;
     RunSummary summary_;
     OutputFiles output_;
+    /// Of each column of distances its name, and a predicate whose distance it shows.
+    std::vector<std::pair<std::string, check::Index>> distances_;
     std::string text_;
     std::uint64_t step_ = 0;   ///< rows so far, those after the trace included
     std::uint64_t steps_ = 0;  ///< frames so far

@@ -18,7 +18,8 @@ struct RunRequest {
     std::string output = "-";
     /// A line for each monitor, and for each input with missing samples, on standard output.
     bool summary = false;
-    /// A column for each predicate: the distance, or expression, that it compares.
+    /// Beside the columns of lets, which the plan has: one for each predicate, the distance, or
+    /// expression, that it compares.
     bool distances = false;
     /// Also the positions that sliding monitors report after the end of the trace.
     bool finish = false;

@@ -79,27 +79,6 @@ std::string enclosing_call(const Context& context, const plan::NarrowSet& set,
                        averaged);
 }
 
-/// The thresholds that a distance is compared with, by name where they have one, and the other cuts
-/// as numbers.
-std::string cuts(const Context& context, const plan::NarrowSet& set) {
-    std::string text;
-    for (const plan::Cut& cut : set.cuts) {
-        std::string one = cut.low == cut.high
-                              ? float_literal(cut.low)
-                              : fmt::format("etlmon::Cut({}, {})", float_literal(cut.low),
-                                            float_literal(cut.high));
-        for (const auto& [p, name] : context.names.predicate_member) {
-            const check::Predicate& predicate = context.model.predicates[p];
-            const bool compared =
-                predicate.plain_distance() && predicate.expression.index == set.distance;
-            if (compared && predicate.threshold.value == cut.low && cut.low == cut.high)
-                one = fmt::format("threshold_{}()", predicate.name);
-        }
-        text += (text.empty() ? "" : ", ") + one;
-    }
-    return text;
-}
-
 /// The conditions under which all of some scalars are there: "!etlmon::is_nan(x) &&
 /// !etlmon::is_nan(y)".
 std::string all_present(const Context& context, const std::vector<Index>& scalars) {
@@ -131,8 +110,9 @@ void print_measurement(Printer& out, const Context& context, Index d, const std:
         return print_wrapped(out, fmt::format("{} = {};", into, only_call(context, d, z)));
     const plan::NarrowSet& set = *plan::narrow_set(context.plan, d);
     print_wrapped(out, fmt::format("{} = {};", into, enclosing_call(context, set, z)));
+    if (set.cuts.empty()) return;  // of contrasts alone
     print_comment(out, "//", "too near to a threshold to say: measured on float32 rows");
-    print_wrapped(out, fmt::format("if ({}.doubtful({{{}}})) {{", into, cuts(context, set)));
+    print_wrapped(out, fmt::format("if ({}.doubtful({})) {{", into, cuts(context, set)));
     out.indent();
     print_wrapped(out, fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
     out.close();
@@ -183,16 +163,15 @@ void print_projected(Printer& out, const Context& context, Index index) {
                            : fmt::format("const float* const {} = {};", local, call));
 }
 
-void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
+namespace {
+
+/// A statement that measures, made by `measure` of what the point is called, where the inputs are
+/// there.
+template <class Measure>
+void print_where_there(Printer& out, const Context& context, Index d, const Measure& measure) {
     const Index index = context.model.distances[d].point;
     const check::Point& point = context.model.points[index];
     const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
-    if (!point.is_vector() && !context.enclosed(d)) {
-        const std::string z = elements_of(context, index);
-        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into,
-                                       only_call(context, d, z)));
-        return;
-    }
     std::string z = "point";
     const std::string present = point.is_vector() ? all_present(context, point.inputs)
                                                   : elements_of(context, index) + " != nullptr";
@@ -205,8 +184,66 @@ void print_distance(Printer& out, const Context& context, Index d, const std::st
     } else {
         z = elements_of(context, index);
     }
-    print_measurement(out, context, d, z, into);
+    measure(z);
     out.close();
+}
+
+}  // namespace
+
+void print_distance(Printer& out, const Context& context, Index d, const std::string& into) {
+    const Index point = context.model.distances[d].point;
+    if (!context.model.points[point].is_vector() && !context.enclosed(d)) {
+        const std::string ready = plan::stored_set(context.plan, d) == nullptr ? "" : "ready() && ";
+        const std::string z = elements_of(context, point);
+        print_wrapped(out, fmt::format("if ({}{} != nullptr) {} = {};", ready, z, into,
+                                       only_call(context, d, z)));
+        return;
+    }
+    print_where_there(out, context, d,
+                      [&](const std::string& z) { print_measurement(out, context, d, z, into); });
+}
+
+void print_exact_distance(Printer& out, const Context& context, Index d, const std::string& into) {
+    print_where_there(out, context, d, [&](const std::string& z) {
+        print_wrapped(out,
+                      fmt::format("{} = etlmon::exactly({});", into, wide_call(context, d, z)));
+    });
+}
+
+namespace {
+
+template <class Name>
+std::string cut_list(const std::vector<plan::Cut>& cuts, const Name& name) {
+    std::string text;
+    for (const plan::Cut& cut : cuts) {
+        std::string one = cut.low == cut.high
+                              ? float_literal(cut.low)
+                              : fmt::format("etlmon::Cut({}, {})", float_literal(cut.low),
+                                            float_literal(cut.high));
+        if (cut.low == cut.high) name(cut.low, one);
+        text += (text.empty() ? "" : ", ") + one;
+    }
+    return "{" + text + "}";
+}
+
+}  // namespace
+
+std::string cuts(const Context& context, const plan::NarrowSet& set) {
+    return cut_list(set.cuts, [&](float at, std::string& text) {
+        for (const auto& [p, name] : context.names.predicate_member) {
+            const check::Predicate& predicate = context.model.predicates[p];
+            const bool compared =
+                predicate.plain_distance() && predicate.expression.index == set.distance;
+            if (compared && predicate.threshold.value == at)
+                text = fmt::format("threshold_{}()", predicate.name);
+        }
+    });
+}
+
+std::string cuts(const std::vector<plan::Cut>& cuts, const check::Predicate& of) {
+    return cut_list(cuts, [&](float at, std::string& text) {
+        if (of.threshold.value == at) text = fmt::format("threshold_{}()", of.name);
+    });
 }
 
 }  // namespace etlc::emit

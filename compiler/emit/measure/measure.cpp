@@ -1,8 +1,11 @@
 // measure(): from the samples of a step to the robustness of every predicate. In a Boolean monitor
 // the same samples and predicates, each found out when a verdict first depends on it
 // (etlmon/temporal/demand.hpp).
+#include <algorithm>
+
 #include "emit/measure/measurements.hpp"
 #include "plan/decide/point_checks.hpp"
+#include "plan/narrow_targets.hpp"
 #include "plan/program/predicate_values.hpp"
 
 namespace etlc::emit {
@@ -11,6 +14,11 @@ namespace {
 
 using check::Expr;
 using check::Index;
+
+/// What the kernel gave, for expressions.
+std::string distance(const Context& context, Index d) {
+    return context.names.distance_local.at(d) + (context.on_demand ? "()" : "");
+}
 
 std::string expression(const Context& context, const Expr& e) {
     const auto apply = [&](std::string_view function) {
@@ -24,9 +32,7 @@ std::string expression(const Context& context, const Expr& e) {
     switch (e.kind) {
         case Expr::Kind::number: return float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
-        case Expr::Kind::distance:
-            return context.names.distance_local.at(e.index) + (context.on_demand ? "()" : "") +
-                   ".delta";
+        case Expr::Kind::distance: return distance(context, e.index) + ".delta";
         case Expr::Kind::negate: return apply("negate");
         case Expr::Kind::add: return apply("add");
         case Expr::Kind::subtract: return apply("subtract");
@@ -106,7 +112,7 @@ private:
         out_.line(enclosed ? "etlmon::Enclosed measured;"
                            : "etlmon::Measured measured = etlmon::kUnmeasured;");
         print_distance(out_, context_, d, "measured");
-        out_.line(enclosed ? "return measured.measured;" : "return measured;");
+        out_.line(enclosed && !is_contrasted(d) ? "return measured.measured;" : "return measured;");
         out_.close("});");
     }
 
@@ -121,10 +127,14 @@ private:
                                            : float_literal(predicate.threshold.value);
         out_.gap();
         print_comment(out_, "//", context_.place(predicate.span), 4);
+        const bool is_contrast = !plan::contrast_cuts(context_.plan, predicate).empty();
         if (context_.on_demand)
             out_.open(fmt::format("const etlmon::Lazy {}([&]() noexcept {{", atom));
+        else if (is_contrast)
+            out_.open("{");
         const std::string delta = predicate.plain_distance() ? plain(predicate, variable, kept)
-                                                             : general(predicate, variable, kept);
+                                  : is_contrast              ? contrast(p, variable)
+                                                             : general(p, variable, kept);
         if (context_.on_demand) {
             const std::string range =
                 context_.literal(plan::missing_value(predicate, context_.plan.values));
@@ -139,14 +149,17 @@ private:
         }
         const bool enclosed =
             predicate.plain_distance() && context_.enclosed(predicate.expression.index);
-        const std::string known =
-            enclosed ? context_.names.distance_local.at(predicate.expression.index) : delta;
+        const std::string known = enclosed
+                                      ? context_.names.distance_local.at(predicate.expression.index)
+                                  : is_contrast ? "apart"
+                                                : delta;
         print_wrapped(
             out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom, robustness_name(predicate),
                               known, threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
         print_seen(out_, context_, p, delta);
         print_recorded(out_, context_, p, delta);
+        if (is_contrast) out_.close();
     }
 
     /// What stands for a predicate whose sample is not there.
@@ -161,9 +174,8 @@ private:
         const Index d = predicate.expression.index;
         if (has_local(d)) {
             std::string shared = context_.names.distance_local.at(d);
-            if (context_.on_demand)
-                shared += "()";
-            else if (context_.enclosed(d))
+            if (context_.on_demand) shared += "()";
+            if (context_.enclosed(d) && (!context_.on_demand || is_contrasted(d)))
                 shared += ".measured";
             if (kept) out_.line("{} = {};", variable, shared);
             return (kept ? variable : shared) + ".delta";
@@ -181,10 +193,51 @@ private:
     }
 
     /// EXPR: what is not there is NaN, and stays NaN in all arithmetic.
-    std::string general(const check::Predicate& predicate, const std::string& variable, bool kept) {
+    std::string general(Index p, const std::string& variable, bool kept) {
+        const check::Predicate& predicate = context_.model.predicates[p];
         print_wrapped(out_, fmt::format("{}{} = {};", kept ? "" : "const float ", variable,
                                         expression(context_, predicate.expression)));
+        for (const Index d : kept ? predicate.distances() : std::vector<Index>{})
+            out_.line("{} = {}.nearest;", context_.names.nearest.at({p, d}).member,
+                      distance(context_, d));
         return variable;
+    }
+
+    /// Two distances of which narrow rows leave something open.
+    std::string contrast(Index p, const std::string& variable) {
+        const check::Predicate& predicate = context_.model.predicates[p];
+        const auto both = *plan::contrast(predicate);
+        const auto enclosed = [&](Index d) {
+            const std::string known = distance(context_, d);
+            return context_.enclosed(d) ? known : fmt::format("etlmon::exactly({})", known);
+        };
+        out_.line("etlmon::Enclosed left = {};", enclosed(both.first));
+        out_.line("etlmon::Enclosed right = {};", enclosed(both.second));
+        out_.line("etlmon::Enclosed apart = etlmon::difference(left, right);");
+        print_comment(out_, "//", "too near to a threshold to say: measured on float32 rows");
+        print_wrapped(out_,
+                      fmt::format("if (apart.doubtful({})) {{",
+                                  cuts(plan::contrast_cuts(context_.plan, predicate), predicate)));
+        out_.indent();
+        if (context_.enclosed(both.first)) print_exact_distance(out_, context_, both.first, "left");
+        if (context_.enclosed(both.second))
+            print_exact_distance(out_, context_, both.second, "right");
+        out_.line("apart = etlmon::difference(left, right);");
+        out_.close();
+        out_.line("{} = apart.measured.delta;", variable);
+        for (const Index d : predicate.distances())
+            out_.line("{} = {}.measured.nearest;", context_.names.nearest.at({p, d}).member,
+                      d == both.first ? "left" : "right");
+        return variable;
+    }
+
+    /// Some contrast asks what narrow rows leave open about the distance.
+    bool is_contrasted(Index d) const {
+        return std::any_of(context_.plan.predicates.begin(), context_.plan.predicates.end(),
+                           [&](Index p) {
+                               const auto both = plan::contrast(context_.model.predicates[p]);
+                               return both && (both->first == d || both->second == d);
+                           });
     }
 
     Printer& out_;

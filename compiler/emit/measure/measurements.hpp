@@ -27,6 +27,14 @@ std::optional<std::string> measured_at_once(const Context& context, check::Index
 /// A projected point, by the name of names.point_local: where its elements lie, null where it is
 /// unknown.
 void print_projected(Printer& out, const Context& context, check::Index point);
+/// `into = ...` where the inputs are there, on float32 rows: an Enclosed that is exact.
+void print_exact_distance(Printer& out, const Context& context, check::Index distance,
+                          const std::string& into);
+
+/// "{threshold_near(), 0.5f}": where comparisons turn. The threshold of a predicate that compares
+/// the distance, or of this one, by name.
+std::string cuts(const Context& context, const plan::NarrowSet& set);
+std::string cuts(const std::vector<plan::Cut>& cuts, const check::Predicate& of);
 
 /// `into = ...` where the inputs are there: a Measured that was unmeasured, or an Enclosed.
 void print_distance(Printer& out, const Context& context, check::Index distance,

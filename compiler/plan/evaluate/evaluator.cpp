@@ -57,6 +57,7 @@ void Evaluator::reset() {
         reset_reading(plan_.readings[i], reading_states_[i]);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
     std::fill(verdicts_.begin(), verdicts_.end(), etlmon::Verdict{});
+    lets_.assign(plan_.lets.size(), etlmon::Verdict{});
     std::fill(starts_.begin(), starts_.end(), 0);
     std::fill(restarts_.begin(), restarts_.end(), false);
     steps_ = 0;
@@ -173,13 +174,20 @@ void Evaluator::measure_predicates() {
         etlmon::Measured measured{etlmon::kMissing, 0};
         if (present && predicate.plain_distance())
             measured = distances_[predicate.expression.index];
-        if (present && !predicate.plain_distance())
+        const bool is_contrast = present && !contrast_cuts_[p].empty();
+        const etlmon::Enclosed contrast =
+            is_contrast ? measure_contrast(predicate) : etlmon::Enclosed{};
+        if (is_contrast)
+            measured.delta = contrast.measured.delta;
+        else if (present && !predicate.plain_distance())
             measured.delta = expression(predicate.expression);
         measured_[p] = measured;
         predicate_values_[p] = value_of(predicate, measured.delta, thresholds_[p], plan_.values);
         if (predicate.plain_distance() && plan_.values != check::Values::boolean)
             predicate_values_[p] =
                 value_of(predicate, enclosed_[predicate.expression.index], thresholds_[p]);
+        if (is_contrast && plan_.values == check::Values::robustness)
+            predicate_values_[p] = value_of(predicate, contrast, thresholds_[p]);
         if (replacement_ && !std::isnan(measured.delta)) predicate_values_[p] = replacement_(p);
         missing |= std::isnan(measured.delta);
     }
@@ -325,6 +333,8 @@ void Evaluator::judge() {
                 monitor.shifted ? etlmon::shifted(reading, monitor.shift) : reading);
         }
     }
+    for (std::size_t l = 0; finished_ == 0 && l < plan_.lets.size(); ++l)
+        lets_[l] = etlmon::sliding_verdict(streams_[plan_.lets[l].stream]);
 }
 
 }  // namespace etlc::plan

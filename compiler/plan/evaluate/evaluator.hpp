@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <vector>
 
@@ -14,6 +15,7 @@
 #include "etlmon/temporal/reading.hpp"
 #include "etlmon/temporal/verdict.hpp"
 #include "plan/evaluate/inputs.hpp"
+#include "plan/evaluate/near_rows.hpp"
 #include "plan/evaluate/pending_evaluator.hpp"
 #include "plan/plan.hpp"
 
@@ -38,6 +40,9 @@ public:
     /// The trace has ended: sliding monitors report one of their last positions per call, prefix
     /// monitors their last verdict.
     const std::vector<etlmon::Verdict>& finish();
+
+    /// What each let of the plan said of the last step.
+    const std::vector<etlmon::Verdict>& lets() const { return lets_; }
 
     /// From the next step on, this monitor of the plan is about that step.
     void restart(std::size_t monitor);
@@ -64,6 +69,12 @@ public:
     etlmon::Measured measured(Index distance) const { return distances_[distance]; }
     /// The elements of a point of the model from which the plan measures; null where it is unknown.
     const float* point(Index point) const { return point_at_[point]; }
+    /// Of a distance by full weights to its nearest row: the rows that may be nearest to z (see
+    /// near_rows.hpp).
+    const std::vector<std::uint32_t>& near_rows(Index distance, const float* z,
+                                                double margin) const {
+        return near_.at(distance).of(z, margin);
+    }
 
     /// From now on formulas see, of predicates that are measured, this instead of their robustness:
     /// calibration reckons with what other builds measure. Both ends go through formulas
@@ -102,6 +113,9 @@ private:
     void measure_distances();
     void measure_predicates();
     etlmon::Enclosed measure(Index distance, const float* z);
+    etlmon::Measured measure_wide(Index distance, const float* z);
+    etlmon::Enclosed measure_contrast(const check::Predicate& predicate);
+    etlmon::Measured measure_near(Index distance, const float* z);
     float expression(const check::Expr& e) const;
     void advance_streams();
     Value advance(const Stream& stream, StreamState& state) const;
@@ -127,6 +141,10 @@ private:
     std::vector<float> centred_;              ///< scratch of a projection
     /// Per target and distance: rows as the kernels want them.
     std::vector<std::vector<float>> prepared_;
+    /// Of distances by full weights to the nearest row, the rows that have to be measured, and room
+    /// for them.
+    mutable std::map<Index, NearRows> near_;
+    std::vector<float> near_values_;
     /// Per distance: what its narrow rows stand for, where it has some.
     std::vector<std::vector<float>> widened_;
     std::vector<const float*>
@@ -136,6 +154,8 @@ private:
     std::vector<etlmon::Measured> distances_;
     /// Per distance: the same, with what narrow targets leave open.
     std::vector<etlmon::Enclosed> enclosed_;
+    /// Per predicate: where the difference turns that narrow targets leave open.
+    std::vector<std::vector<Cut>> contrast_cuts_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate
@@ -147,6 +167,7 @@ private:
     std::vector<etlmon::Reading> readings_;
     std::vector<ReadingState> reading_states_;
     std::vector<etlmon::Verdict> verdicts_;
+    std::vector<etlmon::Verdict> lets_;
     std::uint64_t steps_ = 0;            ///< index of the current step, calls of finish() included
     std::vector<std::uint64_t> starts_;  ///< per monitor: the position that it is about
     std::vector<bool> restarts_;         ///< per monitor: with the next step

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <set>
 
+#include "etlmon/distance/contrast.hpp"
 #include "etlmon/hosted/dynamic.hpp"
 #include "etlmon/hosted/dynamic_enclosed.hpp"
 #include "etlmon/temporal/expression.hpp"
@@ -51,12 +52,16 @@ void Evaluator::prepare_distances() {
     for (Index d : plan_.distances) {
         const check::Distance& distance = model_.distances[d];
         prepared_[d] = prepared_rows(model_, distance);
+        if (distance.full_weights() && distance.aggregation == check::Aggregation::min)
+            near_.try_emplace(d, distance, model_.targets[distance.target]);
         if (const NarrowSet* set = narrow_set(plan_, d)) {
             widened_[d] = widened_rows(*set);
         }
         scratch = std::max<std::size_t>(scratch, distance.kth);
     }
     scratch_.resize(scratch);
+    for (const check::Predicate& predicate : model_.predicates)
+        contrast_cuts_.push_back(contrast_cuts(plan_, predicate));
 }
 
 void Evaluator::measure_points() {
@@ -95,6 +100,24 @@ void Evaluator::measure_distances() {
     }
 }
 
+etlmon::Measured Evaluator::measure_wide(Index d, const float* z) {
+    const check::Distance& distance = model_.distances[d];
+    const check::Target& target = model_.targets[distance.target];
+    return plan::measure(distance, z, prepared_[d].data(), target.rows, target.dimension,
+                         scratch_.data());
+}
+
+/// Two distances known within bounds; where that leaves the comparison open, on float32.
+etlmon::Enclosed Evaluator::measure_contrast(const check::Predicate& predicate) {
+    const auto [a, b] = *contrast(predicate);
+    const etlmon::Enclosed known = etlmon::difference(enclosed_[a], enclosed_[b]);
+    if (!doubtful(known, contrast_cuts_[&predicate - model_.predicates.data()])) return known;
+    const auto exactly = [&](Index d) {
+        return etlmon::exactly(measure_wide(d, point_at_[model_.distances[d].point]));
+    };
+    return etlmon::difference(exactly(a), exactly(b));
+}
+
 /// On narrow rows where there are some; where these leave a comparison open, or there are none, on
 /// float32. The kernels give narrow rows the bits that they give what these widen to
 /// (tests/runtime/test_narrow_*.cpp), so one kernel does.
@@ -105,13 +128,32 @@ etlmon::Enclosed Evaluator::measure(Index d, const float* z) {
         return plan::measure(distance, z, rows.data(), target.rows, target.dimension,
                              scratch_.data());
     };
+    if (near_.contains(d)) return etlmon::exactly(measure_near(d, z));
     const NarrowSet* set = narrow_set(plan_, d);
-    if (set == nullptr) return etlmon::exactly(measured_on(prepared_[d]));
+    if (set == nullptr) return etlmon::exactly(measure_wide(d, z));
     if (set->lossless) return etlmon::exactly(measured_on(widened_[d]));
     const etlmon::Enclosed enclosed =
         etlmon::enclose(metric_id(distance), aggregation_id(distance), measured_on(widened_[d]),
                         set->moved, set->rows, set->dimension);
-    return doubtful(enclosed, set->cuts) ? etlmon::exactly(measured_on(prepared_[d])) : enclosed;
+    return doubtful(enclosed, set->cuts) ? etlmon::exactly(measure_wide(d, z)) : enclosed;
+}
+
+/// The kernels give a row the same bits whatever others they measure with it
+/// (tests/runtime/test_kernel_twins.cpp).
+etlmon::Measured Evaluator::measure_near(Index d, const float* z) {
+    const check::Distance& distance = model_.distances[d];
+    const std::uint32_t dimension = model_.targets[distance.target].dimension;
+    const std::vector<std::uint32_t>& rows = near_rows(d, z, 2);
+    near_values_.clear();
+    for (const std::uint32_t row : rows) {
+        const auto begin = prepared_[d].begin() + static_cast<std::ptrdiff_t>(row) * dimension;
+        near_values_.insert(near_values_.end(), begin, begin + dimension);
+    }
+    etlmon::Measured measured =
+        plan::measure(distance, z, near_values_.data(), static_cast<std::uint32_t>(rows.size()),
+                      dimension, scratch_.data());
+    if (measured.nearest < rows.size()) measured.nearest = rows[measured.nearest];
+    return measured;
 }
 
 /// EXPR in float32, each operation rounded once; NaN where an operand is.

@@ -227,6 +227,7 @@ private:
         if (predicate.name.empty()) return {.code_bytes = kCodePerRing};
         Cost cost{.state_bytes = predicate.plain_distance() ? 2 * kWord : kWord,
                   .code_bytes = kCodePerRing};
+        if (!predicate.plain_distance()) cost.state_bytes += kWord * predicate.distances().size();
         if (predicate.threshold.adaptation)
             cost = cost + Cost{.state_bytes = kWord, .code_bytes = kCodePerAdaptation};
         return cost;
@@ -315,6 +316,10 @@ void add_costs(Plan& plan) {
     if (type.sourced) {
         fixed.state_bytes += bytes_of(samples(plan), plan.monitors.size());
         fixed.code_bytes += kCodePerSamples;
+    }
+    for (const Let& let : plan.lets) {
+        all.stream(let.stream);
+        fixed.state_bytes += type.verdict;
     }
     plan.cost = all.cost() + fixed;
     plan.cost.state_bytes = (plan.cost.state_bytes + kWord - 1) / kWord * kWord;

@@ -43,6 +43,8 @@ Dependents dependents(const Plan& plan) {
         plan.monitors[m].sliding ? walk.stream(plan.monitors[m].stream)
                                  : walk.reading(plan.monitors[m].reading);
     }
+    for (std::size_t l = 0; l < plan.lets.size(); ++l)
+        Walk(plan, plan.monitors.size() + l, result).stream(plan.lets[l].stream);
     return result;
 }
 

@@ -1,6 +1,6 @@
-// Which monitors a part of the plan works for.
-// Takes: a plan. Gives: per stream and per reading, the monitors whose verdicts depend on it. Keeps
-// true: a part none of whose monitors can change any more need not be computed.
+// Which monitors and lets a part of the plan works for.
+// Takes: a plan. Gives: per stream and per reading, the monitors and lets whose verdicts depend on
+// it. Keeps true: a part none of which can change any more need not be computed.
 #pragma once
 
 #include <vector>
@@ -10,8 +10,9 @@
 namespace etlc::plan {
 
 struct Dependents {
-    std::vector<std::vector<std::size_t>> of_stream;   ///< indices of plan.monitors, ascending
-    std::vector<std::vector<std::size_t>> of_reading;  ///< the same
+    /// Indices of plan.monitors, ascending; behind them those of plan.lets.
+    std::vector<std::vector<std::size_t>> of_stream;
+    std::vector<std::vector<std::size_t>> of_reading;
 };
 
 Dependents dependents(const Plan& plan);

@@ -189,6 +189,9 @@ std::string print(const Plan& plan) {
                                 : fmt::format("  {} = r{}{}\n", monitor.name, monitor.reading,
                                               restarting(monitor.restarts));
     }
+    if (!plan.lets.empty()) text += "lets\n";
+    for (const Let& let : plan.lets)
+        text += fmt::format("  {} = s{}\n", plan.model->lets[let.index].name, let.stream);
     return text;
 }
 

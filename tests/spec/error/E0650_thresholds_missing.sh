@@ -21,3 +21,9 @@ echo "exit status $?"
 "$ETLC" t.etl -o t.hpp
 mkdir goal.npy
 "$ETLC" t.etl --check
+# A key that its file has not yet got.
+cp "$SPECS/E0408_two.npz" two.npz
+sed 's/load("goal.npy")/load("two.npz", "goal_c")/' t.etl > u.etl
+"$ETLC" u.etl --check
+echo "exit status $?"
+"$ETLC" u.etl -o u.hpp

@@ -13,7 +13,7 @@ spec expression;
 input z : f32[2];
 target a = [[1.5, 2.5]];
 target b = [[0.5, 3]];
-predicate contrast = l2(z, a) - l2(z, b) <= 0.1;
+predicate contrast = 2 * l2(z, a) - l2(z, b) <= 0.1;
 predicate within = mahalanobis([[2, 0.5], [0.5, 1]])(z, a) <= 1;
 monitor m = F (contrast && within);
 END

@@ -54,8 +54,10 @@ struct RecorderRow {
   /// A distance and the row of the nearest target.
   void figures(uint32_t at, const float& delta, uint32_t nearest) noexcept {
     figure(at, delta);
-    words[2 + at] = nearest;
+    this->nearest(at + 1, nearest);
   }
+  /// That row alone, beside an expression.
+  void nearest(uint32_t at, uint32_t row) noexcept { words[1 + at] = row; }
   void flag(uint32_t at, const Flag& x) noexcept {
     bytes[at] = x.present() ? (x.value() ? kRecordedTrue : kRecordedFalse) : kRecordedMissing;
   }

@@ -1,0 +1,163 @@
+#include "plan/evaluate/near_rows.hpp"
+
+#include <algorithm>
+#include <cfloat>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+#include "etlmon/hosted/error_bounds.hpp"
+
+namespace etlc::plan {
+
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Of what kernels add up; beyond it they may overflow.
+constexpr double kGreatest = static_cast<double>(FLT_MAX) / 4;
+
+/// A bound of |W|, the matrix of absolute values, as a map: its greatest row sum, or its Frobenius
+/// norm.
+double spread_of(const std::vector<float>& weights, std::size_t n) {
+    double greatest = 0;
+    double squares = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        double sum = 0;
+        for (std::size_t j = 0; j < n; ++j) {
+            const auto w = static_cast<double>(weights[i * n + j]);
+            sum += std::abs(w);
+            squares += w * w;
+        }
+        greatest = std::max(greatest, sum);
+    }
+    return std::min(greatest, std::sqrt(squares));
+}
+
+template <class Number>
+double length(const Number* v, std::size_t n) {
+    double squares = 0;
+    for (std::size_t i = 0; i < n; ++i)
+        squares += static_cast<double>(v[i]) * static_cast<double>(v[i]);
+    return std::sqrt(squares);
+}
+
+double squared_distance(const float* z, const float* g, std::size_t n) {
+    double squares = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+        const double apart = static_cast<double>(z[i]) - static_cast<double>(g[i]);
+        squares += apart * apart;
+    }
+    return squares;
+}
+
+/// to[j] += factor x from[j]
+void add_multiple(const double* __restrict from, double factor, double* __restrict to,
+                  std::size_t n) {
+    for (std::size_t j = 0; j < n; ++j) to[j] += factor * from[j];
+}
+
+/// to[j] += (x - from[j])^2, several at a time: row after row there would be one sum to wait for.
+void add_squares(const float* __restrict from, float x, float* __restrict to, std::size_t n) {
+    for (std::size_t j = 0; j < n; ++j) to[j] += (x - from[j]) * (x - from[j]);
+}
+
+}  // namespace
+
+NearRows::NearRows(const check::Distance& distance, const check::Target& target)
+    : target_(target),
+      spread_(spread_of(distance.weights, target.dimension)),
+      whitened_(target.values.size()),
+      point_(target.dimension),
+      distances_(target.rows) {
+    decompose(distance.weights);
+    whiten_rows();
+}
+
+/// Cholesky, row after row.
+void NearRows::decompose(const std::vector<float>& weights) {
+    const std::size_t n = target_.dimension;
+    factor_.resize(n * n);
+    for (std::size_t i = 0; i < n; ++i) {
+        double* row = &factor_[i * n];
+        for (std::size_t j = 0; j <= i; ++j) {
+            const double* other = &factor_[j * n];
+            const double rest = static_cast<double>(weights[i * n + j]) -
+                                std::inner_product(row, row + j, other, 0.0);
+            row[j] = i == j ? std::sqrt(rest) : rest / other[j];
+        }
+    }
+    factor_length_ = length(factor_.data(), factor_.size());
+}
+
+void NearRows::whiten_rows() {
+    const std::size_t n = target_.dimension;
+    std::vector<double> whitened(n);
+    for (std::size_t k = 0; k < target_.rows; ++k) {
+        const float* g = &target_.values[k * n];
+        std::fill(whitened.begin(), whitened.end(), 0);
+        for (std::size_t i = 0; i < n; ++i)
+            add_multiple(&factor_[i * n], static_cast<double>(g[i]), whitened.data(), i + 1);
+        for (std::size_t i = 0; i < n; ++i)
+            whitened_[i * target_.rows + k] = static_cast<float>(whitened[i]);
+        whitened_lengths_.push_back(length(whitened.data(), n));
+        lengths_.push_back(length(g, n));
+    }
+}
+
+void NearRows::measure(const float* z) {
+    const std::size_t n = target_.dimension;
+    const std::size_t rows = target_.rows;
+    std::fill(point_.begin(), point_.end(), 0);
+    std::fill(distances_.begin(), distances_.end(), 0);
+    for (std::size_t i = 0; i < n; ++i)
+        add_multiple(&factor_[i * n], static_cast<double>(z[i]), point_.data(), i + 1);
+    for (std::size_t i = 0; i < n; ++i)
+        add_squares(&whitened_[i * rows], static_cast<float>(point_[i]), distances_.data(), rows);
+    for (float& distance : distances_) distance = std::sqrt(distance);
+    whitened_length_ = length(point_.data(), n);
+    length_ = length(z, n);
+}
+
+double NearRows::error(std::uint32_t row, double apart, double margin) const {
+    const double n = target_.dimension;
+    const double magnitude = spread_ * apart;
+    if (magnitude > kGreatest) return kInfinity;
+    const auto distance = static_cast<double>(distances_[row]);
+    // L^T z and L^T g in double, D roundings of each element's terms; then as float32, their
+    // difference, D squares and their sum, of which denormal ones are lost.
+    const double in_double = 2 * (n + 8) * DBL_EPSILON * factor_length_ * (length_ + lengths_[row]);
+    const double as_float = FLT_EPSILON * (whitened_length_ + whitened_lengths_[row]) +
+                            (n + 8) * FLT_EPSILON * distance + std::sqrt(n * FLT_MIN);
+    return in_double + as_float +
+           margin * etlmon::rounding_bound(etlmon::MetricId::mahalanobis, target_.dimension,
+                                           distance, magnitude);
+}
+
+/// At first with a bound of |z - g| that costs nothing; then with the distance itself for the rows
+/// that this leaves.
+const std::vector<std::uint32_t>& NearRows::of(const float* z, double margin) {
+    measure(z);
+    near_.resize(target_.rows);
+    std::iota(near_.begin(), near_.end(), 0);
+    std::vector<double> errors(target_.rows);
+    const auto keep_near = [&](const auto& apart) {
+        double least = kInfinity;
+        for (const std::uint32_t k : near_) {
+            errors[k] = error(k, apart(k), margin);
+            least = std::min(least, static_cast<double>(distances_[k]) + errors[k]);
+        }
+        // What is no number stays.
+        std::erase_if(near_, [&](std::uint32_t k) {
+            return static_cast<double>(distances_[k]) - errors[k] > least;
+        });
+    };
+    keep_near([&](std::uint32_t k) { return std::pow(length_ + lengths_[k], 2); });
+    keep_near([&](std::uint32_t k) {
+        const float* g = &target_.values[std::size_t{k} * target_.dimension];
+        return squared_distance(z, g, target_.dimension);
+    });
+    return near_;
+}
+
+}  // namespace etlc::plan
