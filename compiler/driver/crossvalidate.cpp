@@ -72,7 +72,8 @@ public:
         if (!model) return std::nullopt;
         auto compiled = pipeline::compile(std::move(*model), request_, sink_);
         if (!compiled) return std::nullopt;
-        return Trained{std::move(*compiled), std::move(thresholds_)};
+        return Trained{std::move(*compiled), std::move(calibration_.fitted),
+                       std::move(thresholds_)};
     }
 
 private:
@@ -102,9 +103,8 @@ private:
         if (!model) return false;
         auto found = fit::fit(*model, request, sink_);
         if (!found) return false;
-        fitted_ = std::move(found->file);
-        fitted_.path = kOthers;
-        calibration_.fitted = fitted_;  // which it refuses the episodes of
+        calibration_.fitted = std::move(found->file);
+        calibration_.fitted.path = kOthers;
         return true;
     }
 
@@ -133,7 +133,7 @@ private:
         options.allow_unfitted = lacks.fitted;
         options.allow_uncalibrated = lacks.predicates;
         options.allow_uncalibrated_monitors = lacks.monitors;
-        options.fitted = &fitted_;
+        options.fitted = &calibration_.fitted;
         options.thresholds = &thresholds_;
         diag::Sink told_before;  // what is wrong with the spec itself
         auto model = check::check(parse::parse(file_, told_before), file_, options, told_before);
@@ -145,9 +145,8 @@ private:
 
     const source::File& file_;
     const Request& request_;
-    calibrate::Request calibration_;
+    calibrate::Request calibration_;  ///< with what is fitted, once it is
     diag::Sink& sink_;
-    fitted::File fitted_;
     thresholds::File thresholds_;
 };
 
@@ -162,6 +161,7 @@ std::optional<Folds> deal(const check::Model& model, const calibrate::Request& r
     if (!read) return std::nullopt;
     const auto recorded = episodes::recorded(*read);
     Folds result{folds, episodes::folds_of(recorded, folds), episodes::by_content(recorded), {}};
+    // What is fitted in a file does not count here.
     result.allowance = episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;

@@ -12,6 +12,7 @@
 #include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile.hpp"
+#include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::driver {
@@ -26,6 +27,7 @@ struct Folds {
 /// What the folds other than one give.
 struct Trained {
     pipeline::Compiled spec;
+    fitted::File fitted;
     thresholds::File thresholds;
 };
 

@@ -103,7 +103,6 @@ public:
     /// Every fold by what the others give. The folds are those of the first spec.
     std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
                                                 diag::Sink& sink) {
-        calibration_.fitted = fitted_of(one);
         if (!folds_) folds_ = deal(one.model(), calibration_, count, sink);
         if (!folds_) return std::nullopt;
         const auto trained = train(one.spec.file, request_, calibration_, *folds_, sink);
@@ -112,7 +111,7 @@ public:
         for (std::uint32_t fold = 0; fold < count; ++fold) {
             const Trained& others = (*trained)[fold];
             trials.push_back(
-                {others.spec, others.thresholds, episodes_of(*folds_, fold), calibration_.fitted});
+                {others.spec, others.thresholds, episodes_of(*folds_, fold), others.fitted});
         }
         auto result = evaluate::judge(trials, asked_, sink);
         if (result && folds_->allowance.overlapping > 0)
