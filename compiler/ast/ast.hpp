@@ -58,7 +58,7 @@ struct VectorLiteral {
 struct Frames {
     std::string path;
     std::string key;
-    std::vector<Number> frames;    ///< with a stride: the first and the last
+    std::vector<Number> frames;  ///< with a stride: the first and the last
     std::optional<Number> stride;
     Span path_span;
     Span key_span;

@@ -56,9 +56,9 @@ struct Projection {
     std::vector<float> matrix;    ///< A: R x D, row-major, all finite; empty: not fitted yet
     std::vector<float> offset;    ///< m: D, all finite; empty: none
     std::string origin;           ///< "pca.npz:A", "literal" or "fitted", as in Target
-    std::string path;  ///< of the file that the matrix was read from; empty for a literal
-    std::string hash;  ///< content hash of shape and values
-    Index fitted = kNone;            ///< of Model::fitted
+    std::string path;      ///< of the file that the matrix was read from; empty for a literal
+    std::string hash;      ///< content hash of shape and values
+    Index fitted = kNone;  ///< of Model::fitted
     Span span;
 };
 
@@ -327,7 +327,8 @@ constexpr bool looks_one_step_away(Formula::Kind kind) {
     return kind == Kind::next || kind == Kind::previous || kind == Kind::rise || kind == Kind::fall;
 }
 
-// ---- what is fitted to episodes ------------------------------------------------------------------
+// ---- what is fitted to episodes
+// ------------------------------------------------------------------
 
 enum class FittedMethod : std::uint8_t {
     mean,
