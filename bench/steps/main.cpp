@@ -24,7 +24,7 @@ using nlohmann::json;
 template <class Example>
 json measured(bench::Effort effort) {
     using bench::kSamples;
-    const auto stepped = std::make_shared<bench::Stepped<Example>>();
+    const auto stepped = std::make_shared<bench::SteppedExample<Example>>();
     const bench::Recorded recorded = bench::recorded(Example::kName);
     const std::vector<bench::Series> series =
         bench::measure({{"step", [=] { stepped->step(); }, kSamples},

@@ -24,7 +24,7 @@ namespace {
 template <class Example>
 bool take(const std::string& name, Recorded& result) {
     if (name != Example::kName) return false;
-    const auto stepped = std::make_shared<Stepped<Example>>();
+    const auto stepped = std::make_shared<SteppedExample<Example>>();
     result = {[=] { stepped->step(); }, Example::Monitor::kStateBytes};
     return true;
 }

@@ -11,7 +11,7 @@ namespace bench {
 constexpr std::size_t kSamples = 64;  ///< in turns; small enough for the second-level cache
 
 template <class Example>
-struct Stepped {
+struct SteppedExample {
     using Monitor = typename Example::Monitor;
     using Atoms = typename Monitor::Atoms;
 
@@ -20,7 +20,7 @@ struct Stepped {
     std::vector<Atoms> atoms;
     Monitor monitor;
 
-    Stepped() {
+    SteppedExample() {
         Random random(7);
         for (std::size_t i = 0; i < kSamples; ++i) examples.emplace_back(random);
         for (const Example& example : examples) inputs.push_back(example.inputs());
