@@ -58,7 +58,7 @@ struct VectorLiteral {
 struct Frames {
     std::string path;
     std::string key;
-    std::vector<Number> frames;    ///< with a stride: the first and the last
+    std::vector<Number> frames;  ///< with a stride: the first and the last
     std::optional<Number> stride;
     Span path_span;
     Span key_span;
@@ -318,7 +318,6 @@ struct Spec {
 /// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again
 /// gives the same tree.
 std::string print(const Spec& spec);
-std::string print(const Point& point);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);
 

@@ -1,8 +1,8 @@
 // What the steps of check share while they build the model.
 // Takes: the tree. Gives: the model under construction, the names, and the one way to report.
 // Keeps true: model.inputs, .projections, .targets, .lets and .monitors and the named predicates
-// begin with one element a declaration, in file order; an element that had an error is marked broken in
-// `scope`.
+// begin with one element a declaration, in file order; an element that had an error is marked
+// broken in `scope`.
 #pragma once
 
 #include <map>

@@ -39,7 +39,7 @@ Provenance provenance(const Model& model, const Monitor& monitor);
 /// What something is fitted to, besides the demonstrations: what `etlc fit` writes and check/
 /// compares.
 struct FittedProvenance {
-    std::string of;     ///< "Q(z), Q = 0123456789abcdef": the point, and the maps that it goes through
+    std::string of;  ///< "Q(z), Q = 0123456789abcdef": the point, and the maps that it goes through
     std::string truth;  ///< `where`, the truths of its predicates and what they measure; or "true"
 };
 FittedProvenance provenance(const Model& model, const Fitted& fitted);

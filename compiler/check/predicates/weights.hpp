@@ -26,9 +26,9 @@ struct Weights {
     Index fitted = kNone;  ///< of model.fitted
 };
 
-/// The weights for distances from the model's `point`; nothing, with a diagnostic, where they do not
-/// fit.
-std::optional<Weights> check_weights(Context& context, const ast::Weights& weights,
-                                     Index point, Span span);
+/// The weights for distances from the model's `point`; nothing, with a diagnostic, where they do
+/// not fit.
+std::optional<Weights> check_weights(Context& context, const ast::Weights& weights, Index point,
+                                     Span span);
 
 }  // namespace etlc::check

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: MIT
 // Points of distances that are projected first: y = A (z - m), by the kernels' own sums. Takes: z
 // of D floats, or a view of them; A, R x D row-major; m, D or none. Gives: y, R floats, or nothing
-// where z is missing. Keeps true: y is unknown as a whole where an element of z is not finite or one
-// of y exceeds FLT_MAX; the order of additions depends on R and D alone, so generated code and
+// where z is missing. Keeps true: y is unknown as a whole where an element of z is not finite or
+// one of y exceeds FLT_MAX; the order of additions depends on R and D alone, so generated code and
 // `etlc run` agree bit for bit on one machine; nothing is allocated. Errors: projection_bound() in
 // hosted/error_bounds.hpp.
 #pragma once
@@ -57,8 +57,7 @@ ETLMON_INLINE const float* project(Vector<float, D> z, const float* matrix, cons
 
 /// The same for scalars of this step, each NaN where it is missing.
 template <uint32_t R, uint32_t D>
-ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix,
-                                   float (&y)[R]) noexcept {
+ETLMON_INLINE const float* project(const Point<D>& z, const float* matrix, float (&y)[R]) noexcept {
   return project<R, D>(z.elements, matrix, y);
 }
 template <uint32_t R, uint32_t D>
