@@ -318,7 +318,6 @@ struct Spec {
 /// A spec rebuilt as text, one declaration a line in canonical form. `--emit ast`; parsing it again
 /// gives the same tree.
 std::string print(const Spec& spec);
-std::string print(const Point& point);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);
 

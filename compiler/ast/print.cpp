@@ -50,8 +50,7 @@ std::string text_of(const Load& load) {
 }
 
 std::string text_of(const Frames& frames) {
-    const std::string stride =
-        frames.stride ? fmt::format(", stride = {}", frames.stride->text) : "";
+    const std::string stride = frames.stride ? ", stride = " + frames.stride->text : "";
     return fmt::format("frames(\"{}\", \"{}\", {}{})", frames.path, frames.key,
                        text_of(VectorLiteral{frames.frames, {}}), stride);
 }
@@ -64,7 +63,11 @@ std::string text_of(const FormulaPtr& formula) {
 }
 
 std::string text_of(const Point& point) {
-    return print(point);
+    std::string text = joined(point.inputs, ", ", [](const Name& n) { return n.text; });
+    if (point.is_vector) text = fmt::format("[{}]", text);
+    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
+        text = fmt::format("{}({})", map->text, text);
+    return text;
 }
 
 std::string text_of(const ExprPtr& expression) {
@@ -91,7 +94,7 @@ std::string text_of(const Distance& distance) {
     const std::string weights =
         distance.weights ? fmt::format("({})", text_of(*distance.weights)) : "";
     return fmt::format("{}{}{}({}, {})", aggregation, distance.metric.text, weights,
-                       print(distance.point), distance.target.text);
+                       text_of(distance.point), distance.target.text);
 }
 
 std::string text_of(const Fitted& fitted) {
@@ -340,7 +343,7 @@ std::string text_of(const Projection& projection) {
 
 std::string text_of(const Target& target) {
     const auto source = [](const Target::Source& one) { return text_of(one); };
-    const std::string space = target.space ? fmt::format(" of {}", print(*target.space)) : "";
+    const std::string space = target.space ? fmt::format(" of {}", text_of(*target.space)) : "";
     return fmt::format("target {} = {}{}", target.name.text, joined(target.sources, ", ", source),
                        space);
 }
@@ -379,14 +382,6 @@ std::string print(const Spec& spec) {
     if (!spec.name.text.empty()) text += fmt::format("spec {};\n", spec.name.text);
     for (const Declaration& declaration : spec.declarations)
         text += std::visit([](const auto& d) { return text_of(d); }, declaration) + ";\n";
-    return text;
-}
-
-std::string print(const Point& point) {
-    std::string text = joined(point.inputs, ", ", [](const Name& n) { return n.text; });
-    if (point.is_vector) text = fmt::format("[{}]", text);
-    for (auto map = point.projections.rbegin(); map != point.projections.rend(); ++map)
-        text = fmt::format("{}({})", map->text, text);
     return text;
 }
 
