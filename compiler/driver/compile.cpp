@@ -7,6 +7,7 @@
 #include "driver/version.hpp"
 #include "emit/emit.hpp"
 #include "parse/parse.hpp"
+#include "plan/stored.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {
