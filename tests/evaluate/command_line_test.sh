@@ -158,7 +158,7 @@ grep -q '^fold  episodes held out  near of the others  arrive of the others$' wh
 sed 's/^target goal = .*/projection along = fitted(discriminant, r = 1, of = z, where = near);\
 target goal = fitted(mean, of = along(z), where = near);/
     s/l2(z, goal)/l2(along(z), goal)/; s/alpha = 0.4/alpha = 0.5/' folded.etl >fitted.etl
-"$etlc" crossvalidate fitted.etl --data episodes --folds 3 >fitted.txt
+"$etlc" crossvalidate fitted.etl --data episodes --folds 3 >fitted.txt 2>fitted.err
 grep -q '^near .* 1.000 \[' fitted.txt || fail "$(cat fitted.txt)"
 [ ! -e fitted.fitted.npz ] || fail "a fold has written a file"
 

@@ -34,7 +34,7 @@ std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std:
     for (const char* option : {"--thresholds", "--fitted"}) {
         if (app.count(option) == 0) continue;
         if (evaluation.folds > 0)
-            return fmt::format("{} does not go with folds, which take it from the episodes",
+            return fmt::format("{} does not go with folds, which learn theirs from the episodes",
                                option);
         if (specs.size() > 1)
             return fmt::format("{} goes with one spec; the files of several lie beside them",
