@@ -362,13 +362,6 @@ std::vector<Member> members(const Context& context) {
     return all;
 }
 
-void open_half(Printer& out, const Context& context, std::string_view result,
-               std::string_view function) {
-    const std::string_view qualifier = context.step_qualifier();
-    out.open(fmt::format("{}{} Monitor::{} noexcept {{", qualifier.empty() ? "inline " : qualifier,
-                         result, function));
-}
-
 void print_class(Printer& out, const Context& context) {
     const std::vector<Member> all = members(context);
     print_doc(out,

@@ -97,6 +97,13 @@ void print_open_verdicts(Printer& out, const Context& context) {
 
 }  // namespace
 
+void open_half(Printer& out, const Context& context, std::string_view result,
+               std::string_view function) {
+    const std::string_view qualifier = context.step_qualifier();
+    out.open(fmt::format("{}{} Monitor::{} noexcept {{", qualifier.empty() ? "inline " : qualifier,
+                         result, function));
+}
+
 void print_advance(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
     open_half(
