@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""coverage_test.py ETLC: 200 times over, fit on some episodes and calibrate on others. A new episode
-is then covered with probability 1 - alpha at least; it is not where the threshold is taken, in
-spite of `etlc calibrate`, from the episodes that were fitted on."""
+"""coverage_test.py ETLC: 200 times over, fit on some episodes and calibrate on others. A new
+episode is then covered with probability 1 - alpha at least; it is not where the threshold is taken,
+in spite of `etlc calibrate`, from the episodes that were fitted on."""
 import json
 import math
 import pathlib
