@@ -131,7 +131,7 @@ TEST(Thresholds, EpsilonComesFromTheFile) {
     const Checked checked(
         "spec t; input z : f32[1]; target goal = [[1]]; predicate good = l2(z, goal) <= "
         "calibrated(conformal, alpha = 0.10); monitor m = F good;",
-        {file, false});
+        {.thresholds_path = file});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     const Predicate& good = checked.predicate("good");
     EXPECT_EQ(good.threshold.value, 0.5F);
@@ -144,7 +144,7 @@ TEST(Thresholds, EpsilonComesFromTheFile) {
 }
 
 TEST(Thresholds, UncalibratedIsAllowedForCalibration) {
-    const Checked checked(kCalibrated, {"", true});
+    const Checked checked(kCalibrated, {.allow_uncalibrated = true});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_TRUE(std::isnan(checked.predicate("a").threshold.value));
     EXPECT_TRUE(std::isinf(checked.predicate("a").robustness.low));
@@ -152,11 +152,11 @@ TEST(Thresholds, UncalibratedIsAllowedForCalibration) {
 }
 
 TEST(Thresholds, ANamedFileMustBeThere) {
-    EXPECT_EQ(Checked(kCalibrated, {"no/such/file.json", false}).codes(), "E0601");
+    EXPECT_EQ(Checked(kCalibrated, {.thresholds_path = "no/such/file.json"}).codes(), "E0601");
 }
 
 Provenance provenance_of(const std::string& text, const std::string& predicate) {
-    const Checked checked(text, {"", true});
+    const Checked checked(text, {.allow_uncalibrated = true});
     EXPECT_TRUE(checked.model) << checked.diagnostics();
     for (Index i = 0; checked.model && i < checked.model->predicates.size(); ++i)
         if (checked.model->predicates[i].name == predicate) return provenance(*checked.model, i);

@@ -22,7 +22,7 @@ Checked adaptive(const std::string& comparison, const std::string& arguments) {
         fmt::format(
             "spec t; input x : f32; predicate p = x {} calibrated(adaptive, {}); monitor m = F p;",
             comparison, arguments),
-        {"", true});
+        {.allow_uncalibrated = true});
 }
 
 bool is_multiple(double x, double grid) {
@@ -116,7 +116,7 @@ TEST(Adaptation, StartsOnTheGenerousSide) {
 /// The thresholds of tests/spec/ok/adaptive.etl, as if x had been declared as in this spec when
 /// they were calibrated.
 std::string thresholds_for(const std::string& spec) {
-    const Checked uncalibrated(spec, {"", true});
+    const Checked uncalibrated(spec, {.allow_uncalibrated = true});
     std::ifstream file(std::string(ETLC_SOURCE_DIR) + "/tests/spec/ok/adaptive.thresholds.json");
     std::string json{std::istreambuf_iterator<char>(file), {}};
     const std::string declared = "\"x\": \"";
@@ -138,7 +138,7 @@ TEST(Adaptation, WidensTheRangeOfItsPredicate) {
         "calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = 0.5, hi = 2); predicate high = x > "
         "calibrated(adaptive, alpha = 0.25, gamma = 0.25, lo = 1, hi = 3); truth low = y < 1; "
         "truth high = y > 2; monitor m = F low && G high;",
-        {path, false});
+        {.thresholds_path = path});
     ASSERT_TRUE(checked.model) << checked.diagnostics();
     EXPECT_EQ(checked.predicate("low").threshold.value, 1.0F);
     EXPECT_EQ(checked.predicate("low").robustness.low, -3.5F);
@@ -155,7 +155,7 @@ TEST(Adaptation, ConstantForEveryThreshold) {
                                  "; input y : f32; predicate low = x <= calibrated(adaptive, alpha "
                                  "= 0.25, gamma = 0.25, lo = " +
                                  lo + ", hi = 2); truth low = y < 1; monitor m = F low;";
-        return Checked(spec, {thresholds_for(spec), false}).codes();
+        return Checked(spec, {.thresholds_path = thresholds_for(spec)}).codes();
     };
     EXPECT_EQ(codes("[0, 0.75]", "0.5"), "");
     EXPECT_EQ(codes("[0, 0.75]", "0.75"), "W0301");

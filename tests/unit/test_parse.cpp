@@ -70,7 +70,7 @@ TEST(Declarations, SpansInsideDistances) {
     EXPECT_EQ(text(d.span), "kth(2) mahalanobis(load(\"w.npz\", \"k\"))([x, y], t)");
     EXPECT_EQ(text(d.aggregation->span), "kth(2)");
     EXPECT_EQ(text(d.metric.span), "mahalanobis");
-    EXPECT_EQ(text(d.point_span), "[x, y]");
+    EXPECT_EQ(text(d.point.span), "[x, y]");
     EXPECT_EQ(text(d.target.span), "t");
     const auto& load = std::get<ast::Load>(*d.weights);
     EXPECT_EQ(text(load.span), "load(\"w.npz\", \"k\")");

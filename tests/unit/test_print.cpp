@@ -148,19 +148,35 @@ private:
         }
         d->metric.text = pick({"l2", "l2sq", "l1", "linf", "cosine", "angular", "mahalanobis"});
         if (d->metric.text == "mahalanobis") d->weights = weights();
-        d->point_is_vector = below(2) != 0;
-        const int size = d->point_is_vector ? 1 + below(3) : 1;
-        for (int i = 0; i < size; ++i) d->point.push_back({name(), {}});
+        d->point = point();
         d->target.text = name();
         return d;
     }
 
+    ast::Point point() {
+        ast::Point point;
+        for (int i = below(3); i > 0; --i) point.projections.push_back({name(), {}});
+        point.is_vector = below(2) != 0;
+        for (int i = point.is_vector ? 1 + below(3) : 1; i > 0; --i)
+            point.inputs.push_back({name(), {}});
+        return point;
+    }
+
+    ast::Fitted fitted() {
+        ast::Fitted fitted;
+        fitted.method.text = name();
+        fitted.arguments.push_back({{"of", {}}, point()});
+        if (below(2) != 0) fitted.arguments.push_back({{"k", {}}, ast::Number{"8", {}}});
+        return fitted;
+    }
+
     ast::Weights weights() {
-        switch (below(4)) {
+        switch (below(5)) {
             case 0: return ast::Load{"w.npy", below(2) != 0 ? "key" : "", {}, {}, {}};
             case 1:
                 return ast::MatrixLiteral{{{{"1", {}}, {"-2", {}}}, {{"3", {}}, {"4", {}}}}, {}};
             case 2: return ast::VectorLiteral{{{"1", {}}, {"-2", {}}}, {}};
+            case 3: return fitted();
             default: return ast::Name{name(), {}};
         }
     }

@@ -34,7 +34,6 @@ std::string_view word_for_operator(std::string_view letter) {
     if (letter == "O") return "once";
     if (letter == "H") return "historically";
     if (letter == "S") return "since";
-    if (letter == "T") return "trigger";
     if (letter == "X") return "next";
     if (letter == "Y") return "previous";
     return letter;
@@ -46,9 +45,11 @@ void append_word(std::string& name, std::string_view word) {
     name += word;
 }
 
-/// "F[0, 3]", "O": a temporal operator without its operands.
+/// "F[0, 3]", "O": a temporal operator without its operands. T is no word of the language, but may
+/// be a name of the spec.
 std::string head_of(const ir::Node& node) {
-    const std::string symbol = ir::info(node.op).symbol;
+    const std::string letter = ir::info(node.op).symbol;
+    const std::string symbol = letter == "T" ? "trigger" : letter;
     if (node.interval == ir::Interval{}) return symbol;
     if (!node.interval.bounded()) return fmt::format("{}[{}, inf]", symbol, node.interval.low);
     return fmt::format("{}[{}, {}]", symbol, node.interval.low, node.interval.high);

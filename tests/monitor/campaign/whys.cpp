@@ -47,7 +47,7 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
     why.predicate = predicate.shown();
     why.threshold = predicate.threshold.value;
     if (predicate.plain_distance() && !observations.is_missing(sample))
-        why.row = observations.nearest(sample);
+        why.row = observations.nearest(sample, 0);
     return why;
 }
 
