@@ -100,7 +100,7 @@ std::vector<reference::Verdict> PlanRunner::verdicts(
 void PlanRunner::take_from_lets(std::vector<reference::Verdict>& verdicts) const {
     for (std::size_t l = 0; l < plan_->lets.size(); ++l)
         for (std::size_t m = 0; m < model_.monitors.size(); ++m)
-            if (model_.monitors[m].sliding &&
+            if (model_.monitors[m].sliding && !model_.monitors[m].calibration &&
                 model_.monitors[m].formula == model_.lets[plan_->lets[l].index].formula)
                 verdicts[m] = observed(evaluator_->lets()[l]);
 }

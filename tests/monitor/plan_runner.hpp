@@ -40,7 +40,8 @@ private:
     std::string refusal_;
 
     std::vector<reference::Verdict> verdicts(const std::vector<etlmon::Verdict>& from) const;
-    /// In place of what sliding monitors say, what lets of the same formulas do.
+    /// In place of what sliding monitors say, what lets of the same formulas do; not of shifted
+    /// monitors, whose lets are not.
     void take_from_lets(std::vector<reference::Verdict>& verdicts) const;
     std::vector<Observed::Predicate> telemetry() const;
     std::vector<std::uint64_t> positions() const;

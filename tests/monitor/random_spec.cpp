@@ -90,26 +90,28 @@ private:
         return fmt::format("f32[{}]", dimension_);
     }
 
-    std::string matrix(int rows, int columns) {
+    std::string matrix(int rows, int columns, double grid) {
         std::string text;
         for (int row = 0; row < rows; ++row) {
             std::string values;
-            for (int n = 0; n < columns; ++n) values += (n > 0 ? ", " : "") + number(-2, 2);
+            for (int n = 0; n < columns; ++n)
+                values += fmt::format("{}{}", n > 0 ? ", " : "", random_.grid(-1, 1, grid));
             text += fmt::format("{}[{}]", row > 0 ? ", " : "", values);
         }
         return fmt::format("[{}]", text);
     }
 
-    std::string projection(const char* name, int rows, int columns) {
+    std::string projection(const char* name, int rows, int columns, double grid) {
         const std::string offset =
-            random_.chance(0.5) ? fmt::format(" offset {}", matrix(1, columns)) : "";
-        return fmt::format("projection {} = {}{};\n", name, matrix(rows, columns), offset);
+            random_.chance(0.5) ? fmt::format(" offset {}", matrix(1, columns, 0.25)) : "";
+        return fmt::format("projection {} = {}{};\n", name, matrix(rows, columns, grid), offset);
     }
 
+    /// Of few binary digits: a sum of squares of Q(P(v)) must be exact in float32.
     std::string projections() {
         projected_ = random_.between(1, 3);
-        return projection("P", projected_, dimension_) + projection("Q", 2, projected_) +
-               projection("T", 1, 2);
+        return projection("P", projected_, dimension_, 0.25) + projection("Q", 2, projected_, 1) +
+               projection("T", 1, 2, 0.25);
     }
 
     /// Rows are 1, 2 or 4, so that their mean is exact.

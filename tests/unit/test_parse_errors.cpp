@@ -182,7 +182,8 @@ TEST(Places, MessagesNameWhatWasExpected) {
         {"let f = F[-1, 2] a;", "2:11 expected a number or inf after '[', found '-'"},
         {"let f = F[5] a;", "2:12 expected ',' after '5', found ']'"},
         {"let f = l2(3, t) < 1;",
-         "2:12 expected the name of an input, or a vector [x, y] of scalar inputs after '(', found "
+         "2:12 expected the name of an input or a projection, or a vector [x, y] of scalar inputs "
+         "after '(', found "
          "'3'"},
         {"let f = l2([x, 3], t) < 1;",
          "2:16 expected the name of a scalar input after ',', found '3'"},
@@ -198,7 +199,8 @@ TEST(Places, MessagesNameWhatWasExpected) {
         {"const n = x;", "2:11 expected a number after '=', found 'x'"},
         {"period 3;", "2:9 expected a unit of time (us, ms, s or min) after '3', found ';'"},
         {"target t = 3;",
-         "2:12 expected load(\"FILE\") or a matrix [[...], ...] after '=', found '3'"},
+         "2:12 expected load(\"FILE\") or a matrix [[...], ...], 'fitted' or 'frames' after '=', "
+         "found '3'"},
         {"target t = load(t_npy);",
          "2:17 expected a file name between double quotes after '(', found 't_npy'"},
         {"target t = [];",
