@@ -1,7 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
 #                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
-#                  [EXPLAIN] [LETS]
-#                  [STANDALONE] [SET name=value ...])
+#                  [EXPLAIN] [LETS] [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
