@@ -1,6 +1,7 @@
 // What the user of the class fills in and gets back, and the constants behind it.
 #include <algorithm>
 
+#include "diag/diag.hpp"
 #include "emit/context.hpp"
 #include "plan/kernels.hpp"
 #include "plan/narrow_targets.hpp"
@@ -74,9 +75,10 @@ void print_place(Printer& out, const Context& context, const std::string& name,
 }
 
 std::string rows_of(const check::Target& target, const check::Distance& distance) {
-    return fmt::format("{}: {} of {} elements{}{}", target.origin,
+    return fmt::format("{}: {} of {}{}{}", target.origin,
                        target.rows == 1 ? "one row" : fmt::format("{} rows", target.rows),
-                       target.dimension, target.source == check::kNone ? "" : ", projected",
+                       diag::counted(target.dimension, "element"),
+                       target.source == check::kNone ? "" : ", projected",
                        plan::rows_as_given(distance) ? "" : ", scaled to length 1");
 }
 
@@ -87,10 +89,10 @@ void print_projections(Printer& out, const Context& context) {
     out.line("namespace projections {");
     for (const auto& [index, name] : context.names.matrix_array) {
         const check::Projection& projection = context.model.projections[index];
-        print_doc(out, fmt::format("{}: {} of {} elements", projection.origin,
+        print_doc(out, fmt::format("{}: {} of {}", projection.origin,
                                    projection.rows == 1 ? "one row"
                                                         : fmt::format("{} rows", projection.rows),
-                                   projection.dimension));
+                                   diag::counted(projection.dimension, "element")));
         if (const plan::StoredSet* set = plan::stored_projection(context.plan, index))
             print_place(out, context, name, *set);
         else
