@@ -21,7 +21,7 @@ inline namespace ETLMON_BUILD {
 
 /// How early a sample is: its distance from the middle, above it where the key is not negative and
 /// below it where it is. So comparing keys, then ranks, puts equal keys of earlier samples farther
-/// from 0. Negation is the complement; the lowest bit tells whether a value was negated.
+/// from 0. Below it are the complements; what was negated is one less, which its lowest bit tells.
 using Rank = uint32_t;
 constexpr Rank kUnseen = 0x80000000u;  ///< the middle: of what stands for samples to come
 constexpr Rank kItself = 0x7fffffffu;  ///< the distance of true and false: no sample is as early
@@ -83,7 +83,7 @@ constexpr Sourced max_of(Sourced a, Sourced b) noexcept {
 }
 /// Both the key and the rank turn around.
 constexpr SourcedKey negate(SourcedKey a) noexcept {
-  return SourcedKey::of(int64_t{0xffffffff} - a.order);
+  return SourcedKey::of(int64_t{0xfffffffe} - a.order);
 }
 constexpr Sourced negate(Sourced a) noexcept { return {negate(a.high), negate(a.low)}; }
 
@@ -140,7 +140,7 @@ class Window<Operator<Sourced>, N> : public PairWindow<Operator, Sourced, N> {};
 
 /// A value of the sample of this rank, as it stands above the middle.
 ETLMON_INLINE SourcedKey sourced(Key key, Rank rank) noexcept {
-  return {key, rank ^ static_cast<uint32_t>(key >> 31) << 1};
+  return {key, rank ^ static_cast<uint32_t>(key >> 31)};
 }
 ETLMON_INLINE Sourced sourced(Value value, Rank rank) noexcept {
   return {sourced(value.low, rank), sourced(value.high, rank)};
@@ -158,17 +158,19 @@ struct Ranks {
     return kUnseen + 2 * (kSamples - (step < kLastStep ? step : kLastStep) * count);
   }
   static constexpr bool is_sample(Rank rank) noexcept {
-    return distance(rank) != 0 && distance(rank) != kItself;
+    return earliness(rank) != 0 && earliness(rank) <= kSamples;
   }
   static constexpr uint32_t code(Rank rank) noexcept { return number(rank) % count; }
   static constexpr uint32_t step(Rank rank) noexcept { return number(rank) / count; }
-  static constexpr bool is_negated(Rank rank) noexcept { return (rank & 1) != 0; }
+  static constexpr bool is_negated(Rank rank) noexcept {
+    return (rank & 1) == (rank < kUnseen ? 0 : 1);
+  }
 
  private:
-  static constexpr uint32_t distance(Rank rank) noexcept {
-    return (rank < kUnseen ? ~rank : rank) - kUnseen;
+  static constexpr uint32_t earliness(Rank rank) noexcept {
+    return (rank < kUnseen ? ~rank - kUnseen : rank - kUnseen + 1) / 2;
   }
-  static constexpr uint32_t number(Rank rank) noexcept { return kSamples - distance(rank) / 2; }
+  static constexpr uint32_t number(Rank rank) noexcept { return kSamples - earliness(rank); }
 };
 
 /// The shift moves keys alone: the sample stays that of the formula.
