@@ -22,7 +22,7 @@ struct Sample {
   const char* predicate = nullptr;  ///< its name, or its comparison; nullptr: there is no sample
   uint32_t step = 0;                ///< of the episode; UINT32_MAX: too late to be counted
   float robustness = kMissing;      ///< of the predicate at that step; NaN: a sample was missing
-  float distance = kMissing;        ///< or expression, to one rounding; of a bool 1 or 0
+  float distance = kMissing;        ///< or expression, to the last place; of a bool 1 or 0
   float threshold = kMissing;       ///< NaN: it adapts, or is that of a bool
   uint32_t row = kNoRow;            ///< of the target that was nearest; kNoRow: none is named
 
