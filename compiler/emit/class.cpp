@@ -83,8 +83,8 @@ std::vector<Member> own_members(const Context& context) {
     result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
                       "incomplete = 0;", ""});
     if (context.explains && !context.sampled.places.empty())
-        result.push_back(
-            {"Samples", "samples", "those whose values verdicts have", "samples.reset();", ""});
+        result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding",
+                          "the values that decide the verdicts", "deciding.reset();", ""});
     if (plan.recorder)
         result.push_back({"Recorder", "recorder", "the last steps, and incidents",
                           "recorder.end_episode();", ""});
@@ -147,7 +147,6 @@ void print_types(Printer& out, const Context& context) {
     if (has_tables)
         types.emplace_back(fmt::format("using Key = {};", words.key), "one end of a value");
     print_aligned(out, types, "///<");
-    print_samples_type(out, context);
     print_recorder_type(out, context);
     out.line();
     if (context.on_demand) return;
@@ -155,7 +154,7 @@ void print_types(Printer& out, const Context& context) {
     out.open("struct Atoms {");
     for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
     for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
-    print_seen_field(out, context);
+    print_codes_field(out, context);
     if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
     out.close("};");
     out.line();

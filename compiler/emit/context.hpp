@@ -142,21 +142,16 @@ void print_recorded_flag(Printer& out, const Context& context, check::Index inpu
 void print_record(Printer& out, const Context& context, const std::string& verdicts);
 
 // Explanations, where values know their sample; nothing else prints anything then.
-void print_samples_type(Printer& out, const Context& context);
-/// The field of Atoms that holds what was measured.
-void print_seen_field(Printer& out, const Context& context);
-/// What this step has seen of a predicate whose distance or expression is `delta`, and of a bool.
-void print_seen(Printer& out, const Context& context, check::Index predicate,
+/// The field of Atoms that says which samples they are.
+void print_codes_field(Printer& out, const Context& context);
+/// Which sample of a predicate whose distance or expression is `delta` this step has, and of a
+/// bool.
+void print_code(Printer& out, const Context& context, check::Index predicate,
                 const std::string& delta);
-void print_seen_flag(Printer& out, const Context& context, check::Index input,
+void print_flag_code(Printer& out, const Context& context, check::Index input,
                      const std::string& flag);
 /// At the beginning of judge(): this step's values with their samples.
 void print_sourced_atoms(Printer& out, const Context& context);
-/// In judge(): of a monitor, what its verdict, in `verdict`, is made from.
-void print_answer(Printer& out, const Context& context, std::size_t m, const std::string& verdict);
-/// What outlives the steps, after it was computed.
-void print_followed_streams(Printer& out, const Context& context);
-void print_followed_readings(Printer& out, const Context& context);
 /// why_NAME(), and what they share.
 void print_why(Printer& out, const Context& context);
 void print_why_of(Printer& out, const Context& context);

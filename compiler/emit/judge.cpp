@@ -17,24 +17,42 @@ std::string robustness(const Context& context, const std::string& value) {
     return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
 }
 
-std::string prefix_verdict(const Context& context, const plan::Monitor& monitor) {
+/// The verdict, from values that know their sample: the one that decides it is kept.
+std::string deciding(const plan::Monitor& monitor, std::string_view kind, std::size_t m,
+                     const std::string& value) {
+    return fmt::format("deciding.{}({}, {}{})", kind, m, value,
+                       monitor.shifted ? ", " + float_literal(monitor.shift) : "");
+}
+
+bool is_deciding(const Context& context) {
+    return context.explains && !context.sampled.places.empty();
+}
+
+std::string prefix_verdict(const Context& context, std::size_t m) {
+    const plan::Monitor& monitor = context.plan.monitors[m];
     const std::string& reading = context.names.readings[monitor.reading].local;
+    if (is_deciding(context)) return deciding(monitor, "prefix", m, reading);
     return fmt::format("etlmon::prefix_verdict({})",
                        shifted(monitor, robustness(context, reading)));
 }
 
 /// About the position that its horizon is behind, where there is one.
-std::string sliding_verdict(const Context& context, const plan::Monitor& monitor) {
-    return fmt::format("exists({}) ? etlmon::sliding_verdict({}) : {}()", monitor.horizon,
-                       shifted(monitor, robustness(context, context.value(monitor.stream))),
-                       context.spelling.verdict);
+std::string sliding_verdict(const Context& context, std::size_t m) {
+    const plan::Monitor& monitor = context.plan.monitors[m];
+    const std::string value = context.value(monitor.stream);
+    const std::string exists = fmt::format("exists({}) ? ", monitor.horizon);
+    if (is_deciding(context))
+        return fmt::format("{}{} : deciding.undecided({})", exists,
+                           deciding(monitor, "sliding", m, value), m);
+    return fmt::format("{}etlmon::sliding_verdict({}) : {}()", exists,
+                       shifted(monitor, robustness(context, value)), context.spelling.verdict);
 }
 
 std::string verdict(const Context& context, std::size_t m) {
     const plan::Monitor& monitor = context.plan.monitors[m];
-    if (monitor.sliding) return sliding_verdict(context, monitor);
+    if (monitor.sliding) return sliding_verdict(context, m);
     if (context.plan.has_sliding) return context.names.verdict_member.at(m);
-    return prefix_verdict(context, monitor);
+    return prefix_verdict(context, m);
 }
 
 /// In a Boolean monitor: computed while some verdict can still change.
@@ -66,13 +84,9 @@ void print_readings(Printer& out, const Context& context) {
         context.on_demand ? print_reading_while_open(out, context, r)
                           : print_reading(out, context, r);
     }
-    print_followed_readings(out, context);
     if (!ends) return;
-    for (const auto& [m, name] : context.names.verdict_member) {
-        print_wrapped(out,
-                      fmt::format("{} = {};", name, prefix_verdict(context, plan.monitors[m])));
-        print_answer(out, context, m, name);
-    }
+    for (const auto& [m, name] : context.names.verdict_member)
+        print_wrapped(out, fmt::format("{} = {};", name, prefix_verdict(context, m)));
     out.close();
 }
 
@@ -86,8 +100,8 @@ void print_open_verdicts(Printer& out, const Context& context) {
     for (std::size_t m = 0; m < context.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = context.plan.monitors[m];
         if (monitor.sliding)
-            print_wrapped(out, fmt::format("answers.{} = {};", monitor.name,
-                                           sliding_verdict(context, monitor)));
+            print_wrapped(
+                out, fmt::format("answers.{} = {};", monitor.name, sliding_verdict(context, m)));
         else
             print_wrapped(
                 out, fmt::format("{}answers.{} = etlmon::prefix_verdict({});", if_open(context, m),
@@ -148,14 +162,12 @@ void print_judge(Printer& out, const Context& context) {
     out.gap();
     print_sourced_atoms(out, context);
     print_streams(out, context);
-    print_followed_streams(out, context);
     print_readings(out, context);
     out.gap();
     out.line("Verdicts verdicts;");
     for (std::size_t m = 0; m < plan.monitors.size(); ++m) {
         const std::string answer = "verdicts." + plan.monitors[m].name;
         print_wrapped(out, fmt::format("{} = {};", answer, verdict(context, m)));
-        if (plan.monitors[m].sliding || !plan.has_sliding) print_answer(out, context, m, answer);
     }
     print_lets(out, context);
     print_progress(out, context, "verdicts");

@@ -48,7 +48,7 @@ const Spelling& spelling(check::Values values) {
         .key = "etlmon::SourcedKey",
         .reading = "etlmon::BasicReading<Value>",
         .verdict = "etlmon::Verdict",
-        .kept = "Value",
+        .kept = "etlmon::SourcedRegister",
         .bytes = false,
         .yes = "etlmon::kTrueItself",
         .no = "etlmon::kFalseItself",

@@ -80,7 +80,7 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
     }
     if (plan::value_type(plan.values).sourced) {
         const plan::Samples samples = plan::samples(plan);
-        rows.push_back(cost_row({"samples", diag::counted(samples.steps, "step")},
+        rows.push_back(cost_row({"samples", "of the last verdicts"},
                                 {.state_bytes = plan::bytes_of(samples, plan.monitors.size())},
                                 both_layouts));
     }

@@ -1,4 +1,4 @@
-// Five monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that
+// Six monitors in loops as firmware has them: no heap, no operating system, inputs in buffers that
 // are used again. Writes a line per step: the monitor class, the step, and of every verdict its
 // status, lower bound, robustness and upper bound, as the bits of the floats. Everywhere the same
 // lines, which tests/firmware compares.
@@ -12,6 +12,7 @@
 #include "hover.hpp"
 #include "line.hpp"
 #include "recording.hpp"
+#include "sort.hpp"
 
 namespace {
 
@@ -31,6 +32,9 @@ void show(const belt::Verdicts& v, Line& to) noexcept {
 }
 void show(const gauge::Verdicts& v, Line& to) noexcept {
     to.verdict(v.returns), to.verdict(v.explains);
+}
+void show(const sort::Verdicts& v, Line& to) noexcept {
+    to.verdict(v.sorted), to.verdict(v.found);
 }
 
 // What a driver would do: fill the buffers that live as long as the loop, and hand out views of
@@ -66,6 +70,11 @@ void sample(Recording& from, gauge::Inputs& in) noexcept {
     from.fill(v, 3, 0.75f, 1.25f);
     if (!from.once_in(9)) in.v = v;
     in.t = 1.0f + from.noise();
+}
+void sample(Recording& from, sort::Inputs& in) noexcept {
+    static float z[12];
+    from.fill(z, 12, 0.25f, 0.75f);
+    if (!from.once_in(9)) in.z = z;
 }
 
 /// All episodes of one monitor class. Returns the instructions of a step, on average.
@@ -105,10 +114,12 @@ int main() {
     const uint32_t hovers = run<hover::Monitor, hover::Inputs>("hover");
     const uint32_t belts = run<belt::Monitor, belt::Inputs>("belt");
     const uint32_t gauges = run<gauge::Monitor, gauge::Inputs>("gauge");
+    const uint32_t sorts = run<sort::Monitor, sort::Inputs>("sort");
     report("instructions grasp", grasps);
     report("instructions dock", docks);
     report("instructions hover", hovers);
     report("instructions belt", belts);
     report("instructions gauge", gauges);
+    report("instructions sort", sorts);
     return 0;
 }

@@ -87,7 +87,7 @@ done
 objects() {  # PREFIX FLAG...: what the object of a monitor refers to and holds
     local prefix=$1
     shift
-    for spec in grasp dock hover belt gauge; do
+    for spec in grasp dock hover belt gauge sort; do
         cat >"$box/$spec.cpp" <<END
 #include "$spec.hpp"
 $spec::Verdicts step(${spec}::Monitor& m, const $spec::Inputs& in);

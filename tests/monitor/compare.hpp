@@ -38,6 +38,7 @@ struct Observed {
         static constexpr std::uint32_t kNoRow = 0xffffffff;
         std::string predicate;
         std::uint32_t step = 0;
+        float robustness = std::numeric_limits<float>::quiet_NaN();
         float distance = std::numeric_limits<float>::quiet_NaN();
         float threshold = std::numeric_limits<float>::quiet_NaN();
         std::uint32_t row = kNoRow;

@@ -128,6 +128,7 @@ std::optional<Observed::Why> Decoder::why() {
     const auto length = take<std::uint32_t>();
     for (std::uint32_t n = 0; n < length; ++n) why.predicate += take<char>();
     why.step = take<std::uint32_t>();
+    why.robustness = take<float>();
     why.distance = take<float>();
     why.threshold = take<float>();
     why.row = take<std::uint32_t>();

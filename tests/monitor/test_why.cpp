@@ -128,57 +128,89 @@ TEST(Why, AnUnknownVerdictHasNone) {
     EXPECT_FALSE(monitor.why_calm());
 }
 
-TEST(Why, AnAdaptiveThresholdIsTheOneOfThatStep) {
+TEST(Why, OfAnAdaptivePredicateTheRobustnessIsKnown) {
     adaptive::Monitor monitor;
     adaptive::Inputs in;
     in.x = 1.125F;
-    monitor.step(in);
     const float then = monitor.threshold_low();
+    monitor.step(in);
     monitor.observe_low(1.125F, true);
     ASSERT_NE(monitor.threshold_low(), then);
     in.x = 4.0F;
     monitor.step(in);
-    EXPECT_EQ(std::string(monitor.why_both().predicate), "low");
-    EXPECT_EQ(monitor.why_both().step, 0U);
-    EXPECT_EQ(monitor.why_both().threshold, then);
+    const etlmon::Sample why = monitor.why_both();
+    EXPECT_EQ(std::string(why.predicate), "low");
+    EXPECT_EQ(why.step, 0U);
+    EXPECT_EQ(why.robustness, then - 1.125F);
+    EXPECT_TRUE(std::isnan(why.threshold));
+    EXPECT_TRUE(std::isnan(why.distance));
 }
 
-/// One predicate, of which one step and one value are remembered.
-using Samples = etlmon::Samples<etlmon::SeenNumber, 1, 1, 1, 1>;
-constexpr etlmon::Place kPlaces[] = {{"p", 0.5F}};
+/// Two predicates: one whose three rows are told apart, and one without rows.
+constexpr etlmon::Place kPlaces[] = {{"near", etlmon::Place::Kind::at_most, 0.5F, 0, 3},
+                                     {"fast", etlmon::Place::Kind::at_least, 2.0F, 4, 0}};
+constexpr std::uint32_t kCodes = 6;
+using Order = etlmon::Ranks<kCodes>;
 
-void take(Samples& samples, std::uint32_t at, const etlmon::Verdict& verdict) {
-    const etlmon::SeenNumber seen[] = {{2.0F}};
-    samples.step(at, seen);
-    const etlmon::Sourced value =
-        etlmon::sourced(etlmon::known(-1.5F), etlmon::Ranks<1>::first(at));
-    samples.answer(0, value, verdict);
+etlmon::SourcedKey key(float robustness, std::uint32_t step, std::uint32_t code) {
+    return etlmon::sourced(etlmon::known(robustness), Order::first(step) - code).low;
 }
 
-TEST(Why, BeyondTheLastStepThatIsCountedASampleHasNone) {
-    const etlmon::Verdict violated = etlmon::sliding_verdict(etlmon::known(-1.5F));
-    Samples samples;
-    samples.reset();
-    take(samples, etlmon::Ranks<1>::kLastStep - 1, violated);
-    EXPECT_EQ(samples.sample(0, kPlaces).step, etlmon::Ranks<1>::kLastStep - 1);
-    EXPECT_EQ(samples.sample(0, kPlaces).distance, 2.0F);
-    for (const std::uint32_t late : {etlmon::Ranks<1>::kLastStep, UINT32_MAX}) {
-        take(samples, late, violated);
-        EXPECT_EQ(std::string(samples.sample(0, kPlaces).predicate), "p");
-        EXPECT_EQ(samples.sample(0, kPlaces).step, UINT32_MAX);
-        EXPECT_TRUE(std::isnan(samples.sample(0, kPlaces).distance));
+TEST(Why, AValueSaysItsSampleHoweverOftenItIsNegated) {
+    const std::uint32_t near = etlmon::code_of(0, 0.75F, 2, 3), fast = etlmon::code_of(4, 3.0F);
+    for (const float robustness : {-0.25F, 0.0F, 0.125F}) {
+        for (etlmon::SourcedKey value :
+             {key(robustness, 7, near), etlmon::negate(key(robustness, 7, near))}) {
+            const etlmon::Sample why = etlmon::sample_of<kCodes>(value, kPlaces);
+            EXPECT_EQ(std::string(why.predicate), "near");
+            EXPECT_EQ(why.step, 7U);
+            EXPECT_EQ(why.row, 2U);
+            EXPECT_EQ(why.robustness, robustness);
+            EXPECT_EQ(why.distance, 0.5F - robustness);
+        }
+    }
+    const auto why = etlmon::sample_of<kCodes>(etlmon::negate(key(1.0F, 0, fast)), kPlaces);
+    EXPECT_EQ(std::string(why.predicate), "fast");
+    EXPECT_EQ(why.distance, 3.0F);
+    EXPECT_EQ(why.row, etlmon::kNoRow);
+}
+
+TEST(Why, OfASampleThatWasMissingNothingWasMeasured) {
+    const float missing = etlmon::kMissing;
+    for (const std::uint32_t code :
+         {etlmon::code_of(0, missing, 0, 3), etlmon::code_of(4, missing)}) {
+        const auto why = etlmon::sample_of<kCodes>(key(-1.0F, 2, code), kPlaces);
+        EXPECT_EQ(why.step, 2U);
+        EXPECT_TRUE(std::isnan(why.distance));
+        EXPECT_TRUE(std::isnan(why.robustness));
+        EXPECT_EQ(why.row, etlmon::kNoRow);
     }
 }
 
-TEST(Why, ASampleThatNothingHoldsIsForgottenButForItsStep) {
-    const etlmon::Verdict violated = etlmon::sliding_verdict(etlmon::known(-1.5F));
-    const etlmon::SeenNumber later[] = {{3.0F}};
-    Samples samples;
-    samples.reset();
-    take(samples, 0, violated);
-    samples.step(1, later);
-    EXPECT_EQ(samples.sample(0, kPlaces).step, 0U);
-    EXPECT_TRUE(std::isnan(samples.sample(0, kPlaces).distance));
+TEST(Why, EarlierSamplesAreFartherFromZero) {
+    const std::uint32_t last = 2 * (kCodes - 1);
+    for (const std::uint32_t step : {0U, 1U, 1000U, Order::kLastStep - 1}) {
+        EXPECT_GT(key(1.0F, step, last).order, key(1.0F, step + 1, 0).order);
+        EXPECT_GT(key(1.0F, step, 0).order, key(1.0F, step, last).order);
+        EXPECT_LT(key(-1.0F, step, last).order, key(-1.0F, step + 1, 0).order);
+        EXPECT_LT(key(-1.0F, step, 0).order, key(-1.0F, step, last).order);
+        EXPECT_GT(key(0.0F, step, 0).order, etlmon::negate(key(0.0F, step, 0)).order);
+    }
+    EXPECT_GT(key(1.0F, Order::kLastStep, last).order,
+              etlmon::SourcedKey(etlmon::key_of(1.0F)).order);
+    EXPECT_LT(key(-1.0F, Order::kLastStep, last).order,
+              etlmon::SourcedKey(etlmon::key_of(-1.0F)).order);
+}
+
+TEST(Why, BeyondTheLastStepThatIsCountedASampleHasNone) {
+    const auto step_of = [](std::uint32_t step) {
+        return etlmon::sample_of<kCodes>(key(-1.5F, step, 8), kPlaces).step;
+    };
+    EXPECT_EQ(step_of(Order::kLastStep - 1), Order::kLastStep - 1);
+    EXPECT_EQ(step_of(Order::kLastStep), UINT32_MAX);
+    EXPECT_EQ(step_of(UINT32_MAX), UINT32_MAX);
+    EXPECT_EQ(std::string(etlmon::sample_of<kCodes>(key(-1.5F, UINT32_MAX, 8), kPlaces).predicate),
+              "fast");
 }
 
 }  // namespace

@@ -65,6 +65,20 @@ none: leave one of the two out" t.etl -o - --explain --values boolean
 ! cmp -s boolean.hpp robustness.hpp || fail "--values makes no difference"
 "$etlc" t.etl -o usual.hpp 2>err.txt && cmp usual.hpp robustness.hpp
 
+# A class that says why names rows where 2^22 steps can be told apart: not those of the larger set.
+rows() { seq -s ', ' 1 "$1" | sed 's/[0-9][0-9]*/[&]/g'; }
+for sizes in '120 133 named' '120 134 left'; do
+    read -r small large names <<<"$sizes"
+    printf '%s\n' 'spec rows;' 'input z : f32[1];' "target few = [$(rows "$small")];" \
+        "target many = [$(rows "$large")];" \
+        'monitor m = G (min l2(z, few) > 1 || min l1(z, many) > 1);' >rows.etl
+    "$etlc" rows.etl --explain -o rows.hpp 2>err.txt || fail "$(cat err.txt)"
+    grep -q "1.0f, 0, $small}" rows.hpp || fail "$small rows are not named"
+    named=left
+    if grep -q "1.0f, $((small + 1)), $large}" rows.hpp; then named=named; fi
+    [ $named = "$names" ] || fail "the rows of $large and $small are $named"
+done
+
 # Warnings of the spec belong to those who write it.
 "$etlc" t.etl --check 2>err.txt
 grep -q W0201 err.txt || fail "--check does not warn"

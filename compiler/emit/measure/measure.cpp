@@ -157,7 +157,7 @@ private:
             out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom, robustness_name(predicate),
                               known, threshold, missing_value(p)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
-        print_seen(out_, context_, p, delta);
+        print_code(out_, context_, p, delta);
         print_recorded(out_, context_, p, delta);
         if (is_contrast) out_.close();
     }

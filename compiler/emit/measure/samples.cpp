@@ -77,7 +77,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
         out.line("now.{} = etlmon::value_of(in.{}{});", context.names.flag_atom.at(i), input.name,
                  missing);
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
-        print_seen_flag(out, context, i, "in." + input.name);
+        print_flag_code(out, context, i, "in." + input.name);
         return print_recorded_flag(out, context, i, "in." + input.name);
     }
     const std::string& word = context.names.input_buffer.at(i);
@@ -98,7 +98,7 @@ void print_flag(Printer& out, const Context& context, Index i) {
     print_wrapped(out, fmt::format("now.{} = etlmon::value_of({}{});",
                                    context.names.flag_atom.at(i), held_flag(local), missing));
     out.line(missed(local + " == nullptr"));
-    print_seen_flag(out, context, i, held_flag(local));
+    print_flag_code(out, context, i, held_flag(local));
     print_recorded_flag(out, context, i, held_flag(local));
 }
 

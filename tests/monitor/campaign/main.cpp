@@ -50,10 +50,10 @@ int report(const Effort& effort, const Tally& tally) {
     good &= show_refused("truth values, all of these", tally.boolean, kMayBeRefused);
     fmt::print(
         "{} pairs of a formula and a trace evaluated, {} formulas compiled in {} builds "
-        "({} verdicts said why, {} of them had forgotten what was measured), "
+        "({} verdicts said why, {} of them with another distance by rounding), "
         "{} explained ({} for good, {} by samples, {} with what would turn them): "
         "{} mismatches\n",
-        tally.pairs, tally.compiled, effort.builds, tally.whys.asked, tally.whys.forgotten,
+        tally.pairs, tally.compiled, effort.builds, tally.whys.asked, tally.whys.rounded,
         tally.explained, tally.for_good, tally.with_samples, tally.with_change,
         tally.findings.size());
     good = good && tally.findings.empty();

@@ -2,7 +2,9 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 
 #include "explain/explain.hpp"
@@ -39,6 +41,8 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
     const explain::Atom& atom = observations.atoms()[sample.atom];
     Why why{.step = static_cast<std::uint32_t>(sample.step),
             .distance = observations.measured(sample)};
+    if (!observations.is_missing(sample))
+        why.robustness = etlmon::float_of(observations.value(sample).low);
     if (!atom.is_predicate) {
         why.predicate = observations.model().inputs[atom.index].name;
         return why;
@@ -53,22 +57,30 @@ std::optional<Why> expected(const Observations& observations, const Explanation&
 
 std::string words(const std::optional<Why>& why) {
     if (!why) return "no sample";
-    return fmt::format("{} at step {}, distance {}, threshold {}, row {}", why->predicate,
-                       why->step, why->distance, why->threshold, why->row);
+    return fmt::format("{} at step {}, robustness {}, distance {}, threshold {}, row {}",
+                       why->predicate, why->step, why->robustness, why->distance, why->threshold,
+                       why->row);
 }
 
 bool same(float a, float b) {
     return a == b || (std::isnan(a) && std::isnan(b));
 }
 
-/// But for what a class may forget.
+/// Robustness is exact, so the distance is the one measured but for the rounding of what was
+/// subtracted; of a yes or no, and where it is infinite, it is not known.
+bool same_distance(const Why& found, const Why& expected) {
+    const float a = found.distance, b = expected.distance;
+    if (same(a, b)) return true;
+    if (std::isnan(a)) return std::isinf(found.robustness);
+    const float larger = std::max(std::abs(b), std::abs(expected.threshold));
+    return std::abs(a - b) <= larger * std::numeric_limits<float>::epsilon();
+}
+
 bool agree(const std::optional<Why>& found, const std::optional<Why>& expected) {
     if (!found || !expected) return found.has_value() == expected.has_value();
-    const bool forgotten = std::isnan(found->distance) && found->row == Why::kNoRow;
     return found->predicate == expected->predicate && found->step == expected->step &&
-           same(found->threshold, expected->threshold) &&
-           (forgotten ||
-            (same(found->distance, expected->distance) && found->row == expected->row));
+           same(found->threshold, expected->threshold) && found->row == expected->row &&
+           same(found->robustness, expected->robustness) && same_distance(*found, *expected);
 }
 
 }  // namespace
@@ -94,8 +106,7 @@ std::optional<std::string> why_mismatch(const check::Model& model, const referen
             const auto wanted = expected(observations, explanation);
             if (!agree(found, wanted)) return where + ", expected " + words(wanted);
             ++tally.asked;
-            if (found && std::isnan(found->distance) && !std::isnan(wanted->distance))
-                ++tally.forgotten;
+            if (found && !same(found->distance, wanted->distance)) ++tally.rounded;
         }
     }
     return {};

@@ -11,8 +11,8 @@
 namespace etlc::tests {
 
 struct WhyTally {
-    int asked = 0;      ///< verdicts whose sample was compared
-    int forgotten = 0;  ///< of these: the step is known, what was measured there is not
+    int asked = 0;    ///< verdicts whose sample was compared
+    int rounded = 0;  ///< of these: their distance is not the one measured, to the bit
 };
 
 /// The first why_NAME() that is not the critical sample of its verdict, as text. Verdicts that the

@@ -86,6 +86,7 @@ inline void write_why(const etlmon::Sample& sample) {
   write(length);
   write_bytes(sample.predicate, length);
   write(sample.step);
+  write(sample.robustness);
   write(sample.distance);
   write(sample.threshold);
   write(sample.row);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: MIT
 // Robustness that knows which sample it is that of: the values of a class made with --explain.
-// Takes: values of one step, the step, and the place of each predicate and bool in the spec. Gives:
-// a value type with which the temporal operators and machines work as they do with robustness.
-// Keeps true: the keys are those of robustness, so verdicts are the same bits; values are totally
-// ordered, so min and max give one of their operands, with its sample. Of equal keys, that of the
-// earlier sample is farther from 0, and at one step that of the first in the spec; true and false
-// themselves are farthest, and what is not seen yet is nearest.
+// Takes: values of one step, the step, and a code of each sample that says which predicate or bool
+// it is of and which row was nearest. Gives: a value type with which the temporal operators and
+// machines work as they do with robustness. Keeps true: the keys are those of robustness, so
+// verdicts are the same bits; values are totally ordered, so min and max give one of their
+// operands, with its sample. Of equal keys, that of the earlier sample is farther from 0, and at
+// one step that of the first in the spec; true and false themselves are farthest, and what is not
+// seen yet is nearest.
 #pragma once
 
 #include <stdint.h>
@@ -20,7 +21,7 @@ inline namespace ETLMON_BUILD {
 
 /// How early a sample is: its distance from the middle, above it where the key is not negative and
 /// below it where it is. So comparing keys, then ranks, puts equal keys of earlier samples farther
-/// from 0.
+/// from 0. Below it are the complements; what was negated is one less, which its lowest bit tells.
 using Rank = uint32_t;
 constexpr Rank kUnseen = 0x80000000u;  ///< the middle: of what stands for samples to come
 constexpr Rank kItself = 0x7fffffffu;  ///< the distance of true and false: no sample is as early
@@ -37,8 +38,13 @@ struct SourcedKey {
             static_cast<int64_t>(static_cast<uint64_t>(static_cast<uint32_t>(key)) << 32 | rank)) {}
   constexpr SourcedKey(Key key) noexcept
       : SourcedKey(key, key == kTop      ? kUnseen + kItself
-                        : key == kBottom ? kUnseen - kItself
+                        : key == kBottom ? kUnseen - kItself - 1
                                          : kUnseen) {}
+  static constexpr SourcedKey of(int64_t order) noexcept {
+    SourcedKey result(0);
+    result.order = order;
+    return result;
+  }
 
   constexpr Rank rank() const noexcept { return static_cast<Rank>(static_cast<uint64_t>(order)); }
   constexpr Key key() const noexcept {
@@ -62,11 +68,12 @@ static_assert(sizeof(Sourced) == 16 && alignof(Sourced) == 4, "twice a value");
 constexpr Sourced kTrueItself{kTrue};
 constexpr Sourced kFalseItself{kFalse};
 
+// Of numbers, which a compiler selects without a jump; not of structs.
 constexpr SourcedKey min_of(SourcedKey a, SourcedKey b) noexcept {
-  return b.order < a.order ? b : a;
+  return SourcedKey::of(b.order < a.order ? b.order : a.order);
 }
 constexpr SourcedKey max_of(SourcedKey a, SourcedKey b) noexcept {
-  return a.order < b.order ? b : a;
+  return SourcedKey::of(a.order < b.order ? b.order : a.order);
 }
 constexpr Sourced min_of(Sourced a, Sourced b) noexcept {
   return {min_of(a.low, b.low), min_of(a.high, b.high)};
@@ -76,11 +83,33 @@ constexpr Sourced max_of(Sourced a, Sourced b) noexcept {
 }
 /// Both the key and the rank turn around.
 constexpr SourcedKey negate(SourcedKey a) noexcept {
-  SourcedKey result(0);
-  result.order = (int64_t{1} << 32) - a.order;
-  return result;
+  return SourcedKey::of(int64_t{0xfffffffe} - a.order);
 }
 constexpr Sourced negate(Sourced a) noexcept { return {negate(a.high), negate(a.low)}; }
+
+/// A value that a monitor keeps from step to step; its ends are of two types, as a Register's are.
+struct SourcedRegister {
+#pragma pack(push, 4)
+  struct End {
+    uint64_t order;
+    End() noexcept = default;
+    constexpr End(Key key) noexcept : order(static_cast<uint64_t>(SourcedKey(key).order)) {}
+    constexpr operator SourcedKey() const noexcept {
+      return SourcedKey::of(static_cast<int64_t>(order));
+    }
+  };
+#pragma pack(pop)
+  SourcedKey low;
+  End high;
+
+  constexpr operator Sourced() const noexcept { return {SourcedKey::of(low.order), high}; }
+  ETLMON_INLINE SourcedRegister& operator=(Sourced value) noexcept {
+    low.order = value.low.order;
+    high.order = static_cast<uint64_t>(value.high.order);
+    return *this;
+  }
+};
+static_assert(sizeof(SourcedRegister) == sizeof(Sourced), "what the budget counts");
 
 template <>
 struct Lattice<SourcedKey> {
@@ -96,6 +125,11 @@ struct Lattice<Sourced> {
   static constexpr Sourced top() noexcept { return kTrueItself; }
 };
 
+/// A register that is settled by itself.
+constexpr BasicReading<Sourced> settled(SourcedRegister kept) noexcept {
+  return settled<Sourced>(kept);
+}
+
 constexpr SourcedKey low_of(Sourced v) noexcept { return v.low; }
 constexpr SourcedKey high_of(Sourced v) noexcept { return v.high; }
 constexpr Sourced pair_of(SourcedKey low, SourcedKey high) noexcept { return {low, high}; }
@@ -104,37 +138,39 @@ constexpr bool same_ends(Sourced v) noexcept { return v.low.order == v.high.orde
 template <template <class> class Operator, uint32_t N>
 class Window<Operator<Sourced>, N> : public PairWindow<Operator, Sourced, N> {};
 
-/// Of the samples of one step, in the order of the spec: `distance`, then one less each.
-ETLMON_INLINE SourcedKey sourced(Key key, uint32_t distance) noexcept {
-  return {key, key < 0 ? kUnseen - distance : kUnseen + distance};
+/// A value of the sample of this rank, as it stands above the middle.
+ETLMON_INLINE SourcedKey sourced(Key key, Rank rank) noexcept {
+  return {key, rank ^ static_cast<uint32_t>(key >> 31)};
 }
-ETLMON_INLINE Sourced sourced(Value value, uint32_t distance) noexcept {
-  return {sourced(value.low, distance), sourced(value.high, distance)};
+ETLMON_INLINE Sourced sourced(Value value, Rank rank) noexcept {
+  return {sourced(value.low, rank), sourced(value.high, rank)};
 }
 
-/// Where the samples of a step stand among all, `count` a step. Steps beyond the last that can be
-/// told apart count as that one: its samples say no step.
+/// Where samples stand among all: `count` codes a step, in the order of the spec. Steps beyond the
+/// last that can be told apart count as that one: its samples say no step.
 template <uint32_t count>
 struct Ranks {
-  static constexpr uint32_t kSamples = kItself - 1;
+  static constexpr uint32_t kSamples = kItself / 2 - 1;
   static constexpr uint32_t kLastStep = kSamples / count - 1;
 
-  /// The distance of the first sample of a step.
-  static constexpr uint32_t first(uint32_t step) noexcept {
-    return kSamples - (step < kLastStep ? step : kLastStep) * count;
-  }
-  static constexpr uint32_t distance(Rank rank) noexcept {
-    return rank < kUnseen ? kUnseen - rank : rank - kUnseen;
+  /// The rank of code 0 of a step; that of code n is 2 n less.
+  static constexpr Rank first(uint32_t step) noexcept {
+    return kUnseen + 2 * (kSamples - (step < kLastStep ? step : kLastStep) * count);
   }
   static constexpr bool is_sample(Rank rank) noexcept {
-    return rank != kUnseen && distance(rank) < kItself;
+    return earliness(rank) != 0 && earliness(rank) <= kSamples;
   }
-  /// The place of a sample in the spec, and its step.
-  static constexpr uint32_t place(Rank rank) noexcept { return number(rank) % count; }
+  static constexpr uint32_t code(Rank rank) noexcept { return number(rank) % count; }
   static constexpr uint32_t step(Rank rank) noexcept { return number(rank) / count; }
+  static constexpr bool is_negated(Rank rank) noexcept {
+    return (rank & 1) == (rank < kUnseen ? 0 : 1);
+  }
 
  private:
-  static constexpr uint32_t number(Rank rank) noexcept { return kSamples - distance(rank); }
+  static constexpr uint32_t earliness(Rank rank) noexcept {
+    return (rank < kUnseen ? ~rank - kUnseen : rank - kUnseen + 1) / 2;
+  }
+  static constexpr uint32_t number(Rank rank) noexcept { return kSamples - earliness(rank); }
 };
 
 /// The shift moves keys alone: the sample stays that of the formula.
