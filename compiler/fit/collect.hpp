@@ -13,7 +13,7 @@
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
 #include "fit/even_frames.hpp"
-#include "fit/moments.hpp"
+#include "fit/algebra/moments.hpp"
 #include "fit/request.hpp"
 
 namespace etlc::fit {

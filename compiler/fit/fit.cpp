@@ -3,10 +3,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <atomic>
+#include <exception>
 
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission.hpp"
+#include "episodes/parallel.hpp"
 
 namespace etlc::fit {
 
@@ -39,28 +42,29 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
         .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
 }
 
-/// Every fitted thing in order, put into the model. Nothing where one is refused.
-std::optional<std::vector<Solution>> solve_all(check::Model& model, const Needs& needs,
-                                               const Collection& collection, diag::Sink& sink) {
-    std::vector<Solution> solutions;
-    for (Index i = 0; i < model.fitted.size(); ++i) {
-        const Fitted& fitted = model.fitted[i];
-        auto outcome = solve(model, i, collection, needs.of[i], std::nullopt);
-        if (const auto* refusal = std::get_if<Refusal>(&outcome)) {
-            sink.report(refusal->code, fitted.span,
-                        fmt::format("'{}' cannot be fitted: {}", fitted.name, refusal->message));
-            return std::nullopt;
-        }
-        solutions.push_back(std::move(std::get<Solution>(outcome)));
-        warn_of_constants(model, fitted, solutions.back(), sink);
-        if (const auto target = check::fill(model, i, solutions.back().filling)) {
-            sink.report(Code::fit_out_of_range, fitted.span,
-                        fmt::format("'{}' takes a row of target '{}' beyond float32", fitted.name,
-                                    model.targets[*target].name));
-            return std::nullopt;
-        }
-    }
-    return solutions;
+/// With all folds, and then, where it is asked how well things separate, without each of them.
+std::vector<Filled> fill_all(const check::Model& model, Solver& solver, bool without_folds,
+                             unsigned jobs) {
+    const std::size_t folds = without_folds ? solver.collection().folds.size() : 0;
+    std::vector<Filled> result(folds + 1);
+    std::atomic<std::size_t> next = 0;
+    const std::exception_ptr failure = episodes::in_threads(jobs, result.size(), [&] {
+        for (std::size_t i = next++; i < result.size(); i = next++)
+            result[i] = fill(model, solver, i == 0 ? std::nullopt : std::optional(i - 1));
+    });
+    if (failure) std::rethrow_exception(failure);
+    return result;
+}
+
+/// False where something is refused.
+bool report(const Filled& all, diag::Sink& sink) {
+    for (std::size_t i = 0; i < all.solutions.size(); ++i)
+        warn_of_constants(all.model, all.model.fitted[i], all.solutions[i], sink);
+    if (!all.refusal) return true;
+    const Fitted& fitted = all.model.fitted[all.solutions.size()];
+    sink.report(all.refusal->code, fitted.span,
+                fmt::format("'{}' cannot be fitted: {}", fitted.name, all.refusal->message));
+    return false;
 }
 
 /// Labels of a predicate in `where` that has a truth came from arrays in its place.
@@ -122,24 +126,26 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
-    check::Model filled = model;
-    const auto solutions = solve_all(filled, needs, *collection, sink);
-    if (!solutions) return std::nullopt;
-    const auto separations = separate(model, needs, *collection, predicates, request, sink);
+    Solver solver(*collection, needs);
+    std::vector<Filled> folds = fill_all(model, solver, !predicates.empty(), request.jobs);
+    const Filled all = std::move(folds.front());
+    folds.erase(folds.begin());
+    if (!report(all, sink)) return std::nullopt;
+    const auto separations = separate(folds, solver, predicates, request, sink);
     if (!separations) return std::nullopt;
 
     Fit result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
-    for (std::size_t i = 0; i < solutions->size(); ++i)
-        result.file.entries[filled.fitted[i].name] =
-            entry_of(filled, filled.fitted[i], (*solutions)[i], *collection);
+    for (std::size_t i = 0; i < all.solutions.size(); ++i)
+        result.file.entries[all.model.fitted[i].name] =
+            entry_of(all.model, all.model.fitted[i], all.solutions[i], *collection);
     for (const episodes::Recorded& episode : collection->episodes) {
         result.file.episodes.push_back(episode.hash);
         result.file.recordings[episode.hash] = episode.content;
     }
     if (allowance.overlapping + allowance.leaked > 0) result.file.allowances.push_back(allowance);
-    result.report = report(filled, *collection, *solutions, *separations);
+    result.report = report(all.model, *collection, all.solutions, *separations);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));
     result.report += episodes::remark_on(allowance);

@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "fit/fit.hpp"
-#include "fit/linear.hpp"
+#include "fit/algebra/linear.hpp"
 
 namespace etlc::fit {
 

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <memory>
 #include <set>
 #include <unordered_map>
@@ -25,7 +23,7 @@ using episodes::RankedFrame;
 
 /// What one fold is measured with.
 struct Fold {
-    check::Model model;
+    const check::Model& model;
     plan::Plan plan;
     std::vector<std::optional<Vector>> means;  ///< per predicate: of the plain distance
 };
@@ -36,34 +34,6 @@ struct Ranked {
     std::vector<RankedFrame> after;
 };
 using Episode = std::vector<Ranked>;  ///< per predicate
-
-/// Fitted without the fold `left_out`; why not, where that cannot be.
-std::string fill(check::Model& model, const Needs& needs, const Collection& collection,
-                 std::size_t left_out) {
-    for (Index i = 0; i < model.fitted.size(); ++i) {
-        const auto outcome = solve(model, i, collection, needs.of[i], left_out);
-        if (const auto* refusal = std::get_if<Refusal>(&outcome))
-            return fmt::format("'{}': {}", model.fitted[i].name, refusal->message);
-        if (check::fill(model, i, std::get<Solution>(outcome).filling))
-            return fmt::format("'{}': a target is beyond float32", model.fitted[i].name);
-    }
-    return "";
-}
-
-/// All folds; why not, where the first of those that cannot be is not.
-std::string fill(const std::vector<std::unique_ptr<Fold>>& folds, const Needs& needs,
-                 const Collection& collection, unsigned jobs) {
-    std::vector<std::string> refused(folds.size());
-    std::atomic<std::size_t> next = 0;
-    const std::exception_ptr failure = episodes::in_threads(jobs, folds.size(), [&] {
-        for (std::size_t f = next++; f < folds.size(); f = next++)
-            refused[f] = fill(folds[f]->model, needs, collection, f);
-    });
-    if (failure) std::rethrow_exception(failure);
-    const auto first = std::find_if(refused.begin(), refused.end(),
-                                    [](const std::string& why) { return !why.empty(); });
-    return first == refused.end() ? "" : *first;
-}
 
 std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& need,
                               const Collection& collection, std::size_t left_out) {
@@ -194,25 +164,30 @@ std::optional<Need> plain_need(const check::Model& model, Index predicate) {
     return Need{Need::Kind::mean, *points.begin(), kNone, predicate};
 }
 
-std::optional<Separations> separate(const check::Model& model, const Needs& needs,
-                                    const Collection& collection,
+std::optional<Separations> separate(const std::vector<Filled>& filled, const Solver& solver,
                                     const std::vector<Index>& predicates, const Request& request,
                                     diag::Sink& sink) {
     Separations result;
     if (predicates.empty()) return result;
-    if (collection.folds.size() < 2) {
+    if (filled.size() < 2) {
         result.why_not = "there is one episode";
         return result;
     }
+    const check::Model& model = filled.front().model;
+    const Collection& collection = solver.collection();
     std::vector<std::unique_ptr<Fold>> folds;
-    for (std::size_t f = 0; f < collection.folds.size(); ++f)
-        folds.push_back(std::make_unique<Fold>(Fold{model, {}, {}}));
-    result.why_not = fill(folds, needs, collection, request.jobs);
-    if (!result.why_not.empty()) return result;
-    for (std::size_t f = 0; f < folds.size(); ++f) {
-        folds[f]->plan = plan::measuring(folds[f]->model, predicates);
+    for (const Filled& fold : filled) {
+        if (fold.refusal) {
+            result.why_not = fmt::format("'{}': {}", model.fitted[fold.solutions.size()].name,
+                                         fold.refusal->message);
+            return result;
+        }
+        std::vector<std::optional<Vector>> means;
         for (const Index predicate : predicates)
-            folds[f]->means.push_back(mean_of(needs, plain_need(model, predicate), collection, f));
+            means.push_back(mean_of(solver.needs(), plain_need(model, predicate), collection,
+                                    folds.size()));
+        folds.push_back(std::make_unique<Fold>(
+            Fold{fold.model, plan::measuring(fold.model, predicates), std::move(means)}));
     }
     std::unordered_map<std::string, std::size_t> index;
     std::vector<std::string> paths;

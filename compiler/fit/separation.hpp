@@ -44,8 +44,8 @@ struct Separations {
     std::vector<Separation> all;
     std::string why_not;
 };
-std::optional<Separations> separate(const check::Model& model, const Needs& needs,
-                                    const Collection& collection,
+/// `folds`: filled without each fold.
+std::optional<Separations> separate(const std::vector<Filled>& folds, const Solver& solver,
                                     const std::vector<Index>& predicates, const Request& request,
                                     diag::Sink& sink);
 

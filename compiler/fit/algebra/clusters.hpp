@@ -7,7 +7,7 @@
 #include <optional>
 #include <vector>
 
-#include "fit/affine.hpp"
+#include "fit/algebra/affine.hpp"
 
 namespace etlc::fit {
 

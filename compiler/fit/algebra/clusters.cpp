@@ -1,4 +1,4 @@
-#include "fit/clusters.hpp"
+#include "fit/algebra/clusters.hpp"
 
 #include <algorithm>
 #include <limits>
