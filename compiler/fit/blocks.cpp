@@ -52,7 +52,8 @@ std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) cons
     Matrix frames(frames_.rows(), std::count(selected.begin(), selected.end(), true));
     Eigen::Index to = 0;
     for (std::size_t f = 0; f < selected.size(); ++f)
-        if (selected[f]) frames.col(to++) = frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
+        if (selected[f])
+            frames.col(to++) = frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
     return std::make_shared<Scatter>(Scatter::of(frames));
 }
 

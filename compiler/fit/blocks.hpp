@@ -32,7 +32,7 @@ private:
 
     static constexpr Eigen::Index kFrames = 512;
 
-    Eigen::MatrixXf frames_;                        ///< as columns
+    Eigen::MatrixXf frames_;  ///< as columns
     Eigen::Index filled_ = 0;
     std::vector<bool> with_scatter_;
     std::vector<std::vector<std::int8_t>> classes_;  ///< per need, then per frame of the block

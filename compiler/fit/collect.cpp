@@ -65,9 +65,8 @@ struct PointNeeds {
 std::vector<PointNeeds> by_point(const std::vector<Need>& needs) {
     std::vector<PointNeeds> result;
     for (std::size_t i = 0; i < needs.size(); ++i) {
-        auto at = std::find_if(result.begin(), result.end(), [&](const PointNeeds& one) {
-            return one.point == needs[i].point;
-        });
+        auto at = std::find_if(result.begin(), result.end(),
+                               [&](const PointNeeds& one) { return one.point == needs[i].point; });
         if (at == result.end()) at = result.insert(at, {needs[i].point, {}, {}});
         at->all.push_back(i);
         if (needs[i].kind != Need::Kind::frames) at->with_moments.push_back(i);

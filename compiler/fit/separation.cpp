@@ -184,8 +184,8 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
         }
         std::vector<std::optional<Vector>> means;
         for (const Index predicate : predicates)
-            means.push_back(mean_of(solver.needs(), plain_need(model, predicate), collection,
-                                    folds.size()));
+            means.push_back(
+                mean_of(solver.needs(), plain_need(model, predicate), collection, folds.size()));
         folds.push_back(std::make_unique<Fold>(
             Fold{fold.model, plan::measuring(fold.model, predicates), std::move(means)}));
     }

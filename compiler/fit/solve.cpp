@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
 #include "fit/algebra/cholesky.hpp"
-#include "fit/algebra/clusters.hpp"
 #include "fit/algebra/linear.hpp"
 
 namespace etlc::fit {
@@ -125,10 +125,10 @@ private:
                 too_few_for(std::uint64_t{fitted_.rows} + 1, fmt::format("r = {}", fitted_.rows)))
             return *refusal;
         solution_.constant = moments().constants();
-        const Components found = principal_components(
-            maps_.empty() ? solver_.variances(part_, fitted_.rows)
-                          : greatest_variances(moments(), fitted_.rows),
-            fitted_.rows, whitened);
+        const Components found =
+            principal_components(maps_.empty() ? solver_.variances(part_, fitted_.rows)
+                                               : greatest_variances(moments(), fitted_.rows),
+                                 fitted_.rows, whitened);
         if (found.rank < fitted_.rows)
             return Refusal{
                 Code::degenerate_frames,
@@ -201,33 +201,38 @@ private:
     }
 
     Outcome clusters() {
-        std::vector<const Source*> sources;
-        for (const Collected* fold : folds_)
-            for (const Source& source : fold->frames) sources.push_back(&source);
-        std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
-            return a->episode != b->episode ? a->episode < b->episode
-                                            : a->frame.step < b->frame.step;
-        });
-        solution_.taken = sources.size();
-        const auto k = static_cast<Eigen::Index>(fitted_.rows);
-        if (sources.size() < fitted_.rows) return too_few_taken(sources.size(), "");
-        Matrix points(static_cast<Eigen::Index>(sources.front()->frame.values.size()),
-                      static_cast<Eigen::Index>(sources.size()));
-        for (std::size_t i = 0; i < sources.size(); ++i)
-            points.col(static_cast<Eigen::Index>(i)) =
-                Eigen::Map<const Eigen::VectorXf>(sources[i]->frame.values.data(), points.rows())
-                    .cast<double>();
-        for (const Affine& map : maps_) points = map(points);
-        const auto found = k_means(points, k);
-        if (!found) return too_few_taken(sources.size(), " different");
+        const TakenPoints& all = solver_.points(part_.need);
+        Members members;
+        for (std::size_t i = 0; i < all.sources.size(); ++i)
+            if (!part_.first ||
+                solver_.collection_.fold_of(all.sources[i]->episode) != *part_.first)
+                members.push_back(static_cast<Eigen::Index>(i));
+        solution_.taken = members.size();
+        if (members.size() < fitted_.rows) return too_few_taken(members.size(), "");
+        if (maps_.empty()) return clusters(all, all.points, members, members);
+        Members numbers(members.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        return clusters(all, Points(mapped(all.frames(members))), numbers, members);
+    }
+
+    /// `members`: of the points; `taken`: what they are of all that was taken.
+    Outcome clusters(const TakenPoints& all, const Points& points, const Members& members,
+                     const Members& taken) {
+        const auto centres = k_means(points, members, static_cast<Eigen::Index>(fitted_.rows));
+        if (!centres) return too_few_taken(members.size(), " different");
         if (fitted_.method == FittedMethod::kmeans)
-            return finished({floats(found->centres.transpose()), {}});
-        Matrix rows(points.rows(), k);
-        for (const Eigen::Index i : nearest_points(points, found->centres)) {
-            rows.col(static_cast<Eigen::Index>(solution_.medoids.size())) = points.col(i);
-            solution_.medoids.push_back(sources[static_cast<std::size_t>(i)]);
+            return finished({floats(centres->transpose()), {}});
+        Members medoids;
+        for (const std::size_t i : nearest_points(points, members, *centres)) {
+            medoids.push_back(taken[i]);
+            solution_.medoids.push_back(all.sources[static_cast<std::size_t>(medoids.back())]);
         }
-        return finished({floats(rows.transpose()), {}});
+        return finished({floats(mapped(all.frames(medoids)).transpose()), {}});
+    }
+
+    Matrix mapped(Matrix frames) const {
+        for (const Affine& map : maps_) frames = map(frames);
+        return frames;
     }
 
     Refusal too_few_taken(std::size_t taken, std::string_view different) const {
@@ -282,6 +287,28 @@ Needs needs_of(const check::Model& model) {
     return result;
 }
 
+TakenPoints::TakenPoints(const Collection& collection, std::size_t need) {
+    for (const std::vector<Collected>& fold : collection.folds)
+        for (const Source& source : fold[need].frames) sources.push_back(&source);
+    std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
+        return a->episode != b->episode ? a->episode < b->episode : a->frame.step < b->frame.step;
+    });
+    Members all(sources.size());
+    std::iota(all.begin(), all.end(), 0);
+    if (!all.empty()) points = Points(frames(all));
+}
+
+Matrix TakenPoints::frames(const Members& members) const {
+    Matrix result(static_cast<Eigen::Index>(sources.front()->frame.values.size()),
+                  static_cast<Eigen::Index>(members.size()));
+    for (std::size_t i = 0; i < members.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) =
+            Eigen::Map<const Eigen::VectorXf>(
+                sources[static_cast<std::size_t>(members[i])]->frame.values.data(), result.rows())
+                .cast<double>();
+    return result;
+}
+
 Moments Solver::moments(const Part& part) const {
     std::optional<Moments> result;
     for (std::size_t f = 0; f < collection_.folds.size(); ++f) {
@@ -311,6 +338,10 @@ Trial Solver::trial(const Part& part, std::size_t test) {
 const Variances& Solver::variances(const Part& part, Eigen::Index r) {
     r = std::max(r, kLeastVariances);
     return variances_.get({part, r}, [&] { return greatest_variances(moments(part), r); });
+}
+
+const TakenPoints& Solver::points(std::size_t need) {
+    return points_.get(need, [&] { return TakenPoints(collection_, need); });
 }
 
 std::variant<Solution, Refusal> Solver::solve(const check::Model& model, Index fitted,

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/points/project.hpp"
+#include "fit/algebra/clusters.hpp"
 #include "fit/algebra/linear.hpp"
 #include "fit/collect.hpp"
 #include "fit/memo.hpp"
@@ -42,6 +43,18 @@ struct Needs {
 };
 Needs needs_of(const check::Model& model);
 
+/// The frames that were taken for a need, in order, of all folds.
+struct TakenPoints {
+    TakenPoints() = default;
+    TakenPoints(const Collection& collection, std::size_t need);
+
+    /// As columns.
+    Matrix frames(const Members& members) const;
+
+    std::vector<const Source*> sources;
+    Points points;
+};
+
 /// Solves what a model has fitted. Any number of threads may use it at once: what several fits need
 /// of the same frames is computed once. All that it is given outlives it.
 class Solver {
@@ -72,11 +85,13 @@ private:
     /// Trained on all folds of the part but this one, which it is tested on.
     Trial trial(const Part& part, std::size_t test);
     const Variances& variances(const Part& part, Eigen::Index r);
+    const TakenPoints& points(std::size_t need);
 
     const Collection& collection_;
     const Needs& needs_;
     Memo<Part, std::vector<Trial>> trials_;  ///< per fold left out: two parts lack the same two
     Memo<std::pair<Part, Eigen::Index>, Variances> variances_;
+    Memo<std::size_t, TakenPoints> points_;  ///< by need
 };
 
 /// All that a model has fitted, in order.

@@ -24,8 +24,7 @@ bool has_both(const Moments& moments) {
 /// How many standard deviations within classes the class means of `moments` are apart along it.
 double separation(const Moments& moments, const Vector& direction) {
     const double apart = direction.dot(moments.mean(kHolds) - moments.mean(0));
-    const double variance =
-        moments.within_along(direction) / static_cast<double>(moments.frames());
+    const double variance = moments.within_along(direction) / static_cast<double>(moments.frames());
     return apart / std::sqrt(variance + std::numeric_limits<double>::min());
 }
 
@@ -95,8 +94,7 @@ std::vector<Trial> trials(const Moments& training, const std::vector<const Momen
         const auto direction = discriminant(training, within, kShrinkages[i]);
         if (!direction) continue;
         for (std::size_t t = 0; t < tests.size(); ++t)
-            if (has_both(*tests[t]))
-                result[t][i] = separation(*tests[t], direction->a.transpose());
+            if (has_both(*tests[t])) result[t][i] = separation(*tests[t], direction->a.transpose());
     }
     return result;
 }

@@ -62,8 +62,9 @@ std::vector<Trial> trials(const Moments& training, const std::vector<const Momen
 /// both classes.
 std::optional<double> best_shrinkage(const std::vector<Trial>& trials);
 
-/// (2.5 I - 0.5 S)(I + S)^-1 (x - mean), with S the covariance; nothing where 1 is lost beside it. Source: the optimum of a rectified
-/// flow without activations, as in logpZO, "Can We Detect Failures Without Failure Data?", 2025.
+/// (2.5 I - 0.5 S)(I + S)^-1 (x - mean), with S the covariance; nothing where 1 is lost beside it.
+/// Source: the optimum of a rectified flow without activations, as in logpZO, "Can We Detect
+/// Failures Without Failure Data?", 2025.
 std::optional<Affine> logpzo(const Moments& moments);
 
 }  // namespace etlc::fit

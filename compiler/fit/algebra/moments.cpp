@@ -81,8 +81,7 @@ Matrix Moments::within() const {
 }
 
 double Moments::within_along(const Vector& direction) const {
-    const double all =
-        direction.dot(scatter_->lower.selfadjointView<Eigen::Lower>() * direction);
+    const double all = direction.dot(scatter_->lower.selfadjointView<Eigen::Lower>() * direction);
     const double apart = direction.dot(mean(1) - mean(0));
     return std::max(0.0, all - between(frames(0), frames(1)) * apart * apart);
 }
