@@ -3,13 +3,10 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
-#include <exception>
 
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission.hpp"
-#include "episodes/parallel.hpp"
 
 namespace etlc::fit {
 
@@ -42,28 +39,16 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
         .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
 }
 
-/// With all folds, and then, where it is asked how well things separate, without each of them.
-std::vector<Filled> fill_all(const check::Model& model, Solver& solver, bool without_folds,
-                             unsigned jobs) {
-    const std::size_t folds = without_folds ? solver.collection().folds.size() : 0;
-    std::vector<Filled> result(folds + 1);
-    std::atomic<std::size_t> next = 0;
-    const std::exception_ptr failure = episodes::in_threads(jobs, result.size(), [&] {
-        for (std::size_t i = next++; i < result.size(); i = next++)
-            result[i] = fill(model, solver, i == 0 ? std::nullopt : std::optional(i - 1));
-    });
-    if (failure) std::rethrow_exception(failure);
-    return result;
-}
-
 /// False where something is refused.
 bool report(const Filled& all, diag::Sink& sink) {
-    for (std::size_t i = 0; i < all.solutions.size(); ++i)
+    const auto first = all.refusals.begin();
+    const std::size_t fitted = first == all.refusals.end() ? all.solutions.size() : first->first;
+    for (std::size_t i = 0; i < fitted; ++i)
         warn_of_constants(all.model, all.model.fitted[i], all.solutions[i], sink);
-    if (!all.refusal) return true;
-    const Fitted& fitted = all.model.fitted[all.solutions.size()];
-    sink.report(all.refusal->code, fitted.span,
-                fmt::format("'{}' cannot be fitted: {}", fitted.name, all.refusal->message));
+    if (fitted == all.solutions.size()) return true;
+    const Fitted& refused = all.model.fitted[fitted];
+    sink.report(first->second.code, refused.span,
+                fmt::format("'{}' cannot be fitted: {}", refused.name, first->second.message));
     return false;
 }
 
@@ -108,8 +93,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         return std::nullopt;
     }
     const std::vector<std::string>& paths = request.episodes;
-    // The sums of Eigen's products are in an order that depends on the sizes of caches.
-    Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+    fix_order_of_sums();
     const auto labelled = episodes::labelled_in(model, paths.front(), request.names);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), paths.front()));
@@ -127,11 +111,12 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     if (sink.has_errors()) return std::nullopt;
 
     Solver solver(*collection, needs);
-    std::vector<Filled> folds = fill_all(model, solver, !predicates.empty(), request.jobs);
-    const Filled all = std::move(folds.front());
-    folds.erase(folds.begin());
+    const FilledAll filled = fill_all(model, solver, true, !predicates.empty(), request.jobs);
+    const Filled& all = *filled.all;
     if (!report(all, sink)) return std::nullopt;
-    const auto separations = separate(folds, solver, predicates, request, sink);
+    std::vector<Measured> measured;
+    for (const Index predicate : predicates) measured.push_back({predicate, predicate});
+    const auto separations = separate(filled.without, solver, measured, request, sink);
     if (!separations) return std::nullopt;
 
     Fit result;

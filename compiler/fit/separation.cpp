@@ -38,8 +38,9 @@ using Episode = std::vector<Ranked>;  ///< per predicate
 std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& need,
                               const Collection& collection, std::size_t left_out) {
     if (!need) return std::nullopt;
-    const auto at = static_cast<std::size_t>(std::find(needs.all.begin(), needs.all.end(), *need) -
-                                             needs.all.begin());
+    const auto found = std::find(needs.all.begin(), needs.all.end(), *need);
+    if (found == needs.all.end()) return std::nullopt;
+    const auto at = static_cast<std::size_t>(found - needs.all.begin());
     Moments all;
     for (std::size_t f = 0; f < collection.folds.size(); ++f) {
         if (f == left_out) continue;
@@ -58,7 +59,7 @@ class Measurer {
 public:
     Measurer(const check::Model& model, const std::vector<std::unique_ptr<Fold>>& folds,
              const std::unordered_map<std::string, std::size_t>& index,
-             const Collection& collection, const std::vector<Index>& predicates,
+             const Collection& collection, const std::vector<Measured>& predicates,
              const data::NamesInFile& names)
         : folds_(folds),
           index_(index),
@@ -66,11 +67,14 @@ public:
           predicates_(predicates),
           no_leaks_(model, {}),
           names_(names) {
+        std::set<Index> labels;
+        for (const Measured& one : predicates) labels.insert(one.label);
         for (const auto& fold : folds) {
             followers_.push_back(std::make_unique<episodes::Follower>(fold->plan));
-            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan}, predicates, no_leaks_));
+            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan},
+                                               {labels.begin(), labels.end()}, no_leaks_));
         }
-        for (const Index predicate : predicates) plain_.push_back(plain_need(model, predicate));
+        for (const Measured& one : predicates) plain_.push_back(plain_need(model, one.predicate));
     }
 
     diag::Result<Episode> score(const std::string& path) {
@@ -92,12 +96,12 @@ private:
     void add(const Fold& fold, const episodes::Follower& follower,
              const episodes::Recording& recording, std::size_t episode, std::size_t i,
              Ranked& ranked) {
-        const Label label = recording.label(predicates_[i]);
+        const Label label = recording.label(predicates_[i].label);
         if (label == Label::unknown) return;
         const bool positive = label == Label::yes;
         const std::size_t step = recording.frames() - 1;
-        const float delta = follower.evaluator().distance(predicates_[i]);
-        const bool upper = fold.model.predicates[predicates_[i]].upper_bound();
+        const float delta = follower.evaluator().distance(predicates_[i].predicate);
+        const bool upper = fold.model.predicates[predicates_[i].predicate].upper_bound();
         if (!std::isnan(delta))
             ranked.after.push_back({upper ? delta : -delta, positive, episode, step});
         if (!plain_[i] || !fold.means[i] ||
@@ -112,7 +116,7 @@ private:
     const std::vector<std::unique_ptr<Fold>>& folds_;
     const std::unordered_map<std::string, std::size_t>& index_;
     const Collection& collection_;
-    const std::vector<Index>& predicates_;
+    const std::vector<Measured>& predicates_;
     episodes::Leaks no_leaks_;
     const data::NamesInFile& names_;
     std::vector<std::unique_ptr<episodes::Follower>> followers_;  ///< per fold
@@ -155,6 +159,25 @@ std::vector<Index> separating_predicates(const check::Model& model,
     return result;
 }
 
+std::optional<Index> refused_for(const Filled& filled, Index predicate) {
+    const check::Model& model = filled.model;
+    std::optional<Index> found;
+    const auto look = [&](Index fitted) {
+        if (filled.refusals.contains(fitted) && (!found || fitted < *found)) found = fitted;
+    };
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
+        const check::Distance& distance = model.distances[d];
+        const check::Target& target = model.targets[distance.target];
+        look(target.fitted);
+        if (target.source != kNone) look(model.targets[target.source].fitted);
+        look(distance.weights_fitted);
+        for (Index at = distance.point; model.points[at].is_projected();
+             at = model.points[at].inner)
+            look(model.projections[model.points[at].projection].fitted);
+    });
+    return found;
+}
+
 std::optional<Need> plain_need(const check::Model& model, Index predicate) {
     std::set<Index> points;
     check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
@@ -165,7 +188,7 @@ std::optional<Need> plain_need(const check::Model& model, Index predicate) {
 }
 
 std::optional<Separations> separate(const std::vector<Filled>& filled, const Solver& solver,
-                                    const std::vector<Index>& predicates, const Request& request,
+                                    const std::vector<Measured>& predicates, const Request& request,
                                     diag::Sink& sink) {
     Separations result;
     if (predicates.empty()) return result;
@@ -176,18 +199,21 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
     const check::Model& model = filled.front().model;
     const Collection& collection = solver.collection();
     std::vector<std::unique_ptr<Fold>> folds;
+    std::vector<Index> measures;
+    for (const Measured& one : predicates) measures.push_back(one.predicate);
     for (const Filled& fold : filled) {
-        if (fold.refusal) {
-            result.why_not = fmt::format("'{}': {}", model.fitted[fold.solutions.size()].name,
-                                         fold.refusal->message);
-            return result;
-        }
+        for (const Index predicate : measures)
+            if (const auto refused = refused_for(fold, predicate)) {
+                result.why_not = fmt::format("'{}': {}", model.fitted[*refused].name,
+                                             fold.refusals.at(*refused).message);
+                return result;
+            }
         std::vector<std::optional<Vector>> means;
-        for (const Index predicate : predicates)
+        for (const Index predicate : measures)
             means.push_back(
                 mean_of(solver.needs(), plain_need(model, predicate), collection, folds.size()));
         folds.push_back(std::make_unique<Fold>(
-            Fold{fold.model, plan::measuring(fold.model, predicates), std::move(means)}));
+            Fold{fold.model, plan::measuring(fold.model, measures), std::move(means)}));
     }
     std::unordered_map<std::string, std::size_t> index;
     std::vector<std::string> paths;
@@ -210,7 +236,7 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
             to_before.insert(to_before.end(), ranked.before.begin(), ranked.before.end());
             to_after.insert(to_after.end(), ranked.after.begin(), ranked.after.end());
         }
-        Separation separation{predicates[i],
+        Separation separation{predicates[i].predicate,
                               episodes::auroc(before, paths.size()),
                               episodes::auroc(after, paths.size()),
                               {}};
