@@ -11,7 +11,7 @@
 
 #include "episodes/auroc.hpp"
 #include "fit/collect.hpp"
-#include "fit/solve.hpp"
+#include "fit/fill.hpp"
 
 namespace etlc::fit {
 

@@ -4,7 +4,6 @@
 // fitted in between is the float32 one that the monitor computes with.
 #pragma once
 
-#include <map>
 #include <optional>
 #include <string>
 #include <variant>
@@ -94,22 +93,5 @@ private:
     Memo<std::pair<Part, Eigen::Index>, Variances> variances_;
     Memo<std::size_t, TakenPoints> points_;  ///< by need
 };
-
-/// All that a model has fitted, in order. What cannot be fitted, or rests on such a thing, is
-/// refused, and stays without values.
-struct Filled {
-    check::Model model;
-    std::vector<Solution> solutions;    ///< per fitted thing
-    std::map<Index, Refusal> refusals;  ///< by fitted thing
-};
-Filled fill(const check::Model& model, Solver& solver, std::optional<std::size_t> left_out);
-
-/// In threads: with all folds, where that is wanted, and without each, where that is.
-struct FilledAll {
-    std::optional<Filled> all;
-    std::vector<Filled> without;  ///< per fold
-};
-FilledAll fill_all(const check::Model& model, Solver& solver, bool all, bool without,
-                   unsigned jobs);
 
 }  // namespace etlc::fit
