@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
 #include <limits>
 
 #include "data/quote.hpp"
@@ -118,12 +117,11 @@ public:
         return result;
     }
 
-    check::Model spec() const {
+    /// Each candidate alone is a spec; all together may be larger than one can be.
+    std::optional<check::Model> spec() const {
         std::vector<std::string> lines = lines_;
         lines.insert(lines.end(), trials_.begin(), trials_.end());
-        auto result = check_text_(with_lines(model_.file.text(), lines));
-        assert(result);  // each candidate alone is a spec
-        return std::move(*result);
+        return check_text_(with_lines(model_.file.text(), lines));
     }
 
     /// In the order in which they were added.
@@ -258,8 +256,14 @@ std::optional<Suggested> suggest(const check::Model& model, const CheckText& che
     Suggested result;
     Trials trials(model, check_text);
     for (const Index predicate : *predicates) result.of.push_back(trials.add(predicate));
-    const check::Model spec = trials.spec();
-    if (!measure(spec, trials.measured(spec), request, result, sink)) return std::nullopt;
+    const auto spec = trials.spec();
+    if (!spec) {
+        sink.report(Code::nothing_to_suggest, model.monitors.front().span,
+                    "the candidates of all predicates together exceed the limits of a spec")
+            .note("name one predicate: --suggest PREDICATE");
+        return std::nullopt;
+    }
+    if (!measure(*spec, trials.measured(*spec), request, result, sink)) return std::nullopt;
     for (Suggestions& one : result.of) rank(one);
     return result;
 }
