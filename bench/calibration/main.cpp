@@ -1,7 +1,8 @@
-// What calibration costs beside reading: `etlc calibrate` over many episodes against libzip alone
-// on the same files. bench_calibrate FOLDER [--episodes N] [--frames N] [--dimension N] [--rounds
-// N]: makes the episodes where the folder does not have them, then runs both in turns. Prints
-// seconds, their ratio, the most memory that etlc took, and whether one thread gave the same bytes.
+// What calibration and fitting cost beside reading: `etlc calibrate` over many episodes, and
+// `etlc fit` over the first hundred, against libzip alone on the same files. bench_calibrate FOLDER
+// [--episodes N] [--frames N] [--dimension N] [--rounds N]: makes the episodes where the folder
+// does not have them, then runs both in turns. Prints seconds, their ratio, the most memory that
+// etlc took, and whether one thread gave the same bytes.
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <zip.h>
@@ -111,11 +112,34 @@ std::uint64_t read_all(const fs::path& folder) {
     return total;
 }
 
-void calibrate(const fs::path& folder, const std::string& options, const std::string& output) {
-    const std::string command = "cd '" + folder.string() +
-                                "' && '" ETLC_COMMAND "' calibrate near.etl --data episodes " +
-                                options + " -o " + output + " > report.txt";
+void etlc(const fs::path& folder, const std::string& arguments) {
+    const std::string command =
+        "cd '" + folder.string() + "' && '" ETLC_COMMAND "' " + arguments + " > report.txt";
     if (std::system(command.c_str()) != 0) throw std::runtime_error(command + " failed");
+}
+
+void calibrate(const fs::path& folder, const std::string& options, const std::string& output) {
+    etlc(folder, "calibrate near.etl --data episodes " + options + " -o " + output);
+}
+
+/// Sixteen components, and a discriminant.
+void write_fitted_spec(const fs::path& folder, const Size& size) {
+    std::ofstream(folder / "fitted.etl")
+        << "spec fitted;\ninput z : f32[" << size.dimension
+        << "];\n"
+           "projection P = fitted(pca, r = 16, of = z, where = true);\n"
+           "projection L = fitted(discriminant, r = 1, of = z, where = near);\n"
+           "target goal = fitted(mean, of = P(z), where = near);\n"
+           "target side = fitted(mean, of = L(z), where = near);\n"
+           "predicate near = l2(P(z), goal) + l2(L(z), side) <= calibrated(f1);\n"
+           "monitor m = F near;\n";
+}
+
+void fit(const fs::path& folder) {
+    std::string first;  // those of up to two digits
+    for (const char* pattern : {"?.npz", "??.npz"})
+        first += std::string(" 'episodes/") + pattern + "'";
+    etlc(folder, "fit fitted.etl --data" + first + " -o fitted.npz");
 }
 
 template <class Work>
@@ -141,7 +165,7 @@ int main(int argc, char** argv) {
     fs::path folder;
     Size size;
     int rounds = 5;
-    CLI::App app{"What calibration costs beside reading the same files through libzip."};
+    CLI::App app{"What calibration and fitting cost beside reading the same files through libzip."};
     app.add_option("folder", folder, "where the episodes are, or are made")->required();
     app.add_option("--episodes", size.episodes)->capture_default_str()->check(CLI::PositiveNumber);
     app.add_option("--frames", size.frames)->capture_default_str()->check(CLI::PositiveNumber);
@@ -154,12 +178,16 @@ int main(int argc, char** argv) {
     fs::create_directories(folder);
     if (!fs::exists(folder / "episodes")) make_episodes(folder, size);
     std::uint64_t bytes = read_all(folder / "episodes");  // and into the page cache
-    std::vector<double> reading, one, all, ratios;
+    write_fitted_spec(folder, size);
+    const double fitted = std::min(100.0 / size.episodes, 1.0);  // part of the episodes
+    std::vector<double> reading, one, all, ratios, fits, fit_ratios;
     for (int round = 0; round < rounds; ++round) {
         reading.push_back(seconds([&] { bytes = read_all(folder / "episodes"); }));
         one.push_back(seconds([&] { calibrate(folder, "--jobs 1", "one.json"); }));
         all.push_back(seconds([&] { calibrate(folder, "", "all.json"); }));
         ratios.push_back(all.back() / reading.back());
+        fits.push_back(seconds([&] { fit(folder); }));
+        fit_ratios.push_back(fits.back() / (fitted * reading.back()));
     }
     rusage children{};
     getrusage(RUSAGE_CHILDREN, &children);
@@ -167,6 +195,8 @@ int main(int argc, char** argv) {
         "%.2f GB; seconds: libzip %.2f, etlc calibrate %.2f (one thread %.2f); %.2f times libzip\n",
         static_cast<double>(bytes) * 1e-9, median(reading), median(all), median(one),
         median(ratios));
+    std::printf("etlc fit on %.0f of the episodes %.2f s; %.1f times libzip on these\n",
+                fitted * size.episodes, median(fits), median(fit_ratios));
     std::printf(
         "etlc took at most %ld MB; one thread and all gave %s bytes\n", children.ru_maxrss / 1024,
         content(folder / "one.json") == content(folder / "all.json") ? "the same" : "DIFFERENT");

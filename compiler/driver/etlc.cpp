@@ -246,7 +246,18 @@ int fit_command(int argc, char** argv) {
                    "where to write what is fitted (default: SPEC.fitted.npz beside the spec); "
                    "- is standard output")
         ->type_name("FILE");
+    CLI::Option* suggest =
+        app.add_option("--suggest", call.fit.predicates,
+                       "try distances, targets and projections for these predicates (default: all "
+                       "with labels) and print\nhow well each separates, with the lines to paste; "
+                       "nothing is written")
+            ->type_name("[PREDICATE...]")
+            ->expected(0, -1)
+            ->excludes("--output");
+    app.add_flag("--json", call.fit.json, "with --suggest: for programs")->needs(suggest);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    call.fit.suggest = suggest->count() > 0;
+    std::erase(call.fit.predicates, "");  // what CLI11 makes of none
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //
                          driver::fit(file, call.fit, sink);

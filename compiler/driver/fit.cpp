@@ -7,10 +7,38 @@
 #include "driver/progress.hpp"
 #include "driver/version.hpp"
 #include "fit/fit.hpp"
+#include "fit/suggest/suggest.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {
+
+namespace {
+
+/// Whatever a spec of this text declares; nothing where it is none.
+std::optional<check::Model> check_text(const source::File& file, const check::Options& options,
+                                       const std::string& text) {
+    diag::Sink sink;
+    const source::File other(file.path(), text);
+    ast::Spec spec = parse::parse(other, sink);
+    auto model = check::check(std::move(spec), other, options, sink);
+    return sink.has_errors() ? std::nullopt : std::move(model);
+}
+
+bool suggest(const source::File& file, const check::Model& model, const check::Options& options,
+             const FitRequest& request, const fit::Request& asked, diag::Sink& sink) {
+    const auto result = fit::suggest(
+        model, [&](const std::string& text) { return check_text(file, options, text); },
+        request.predicates, asked, sink);
+    if (!result || sink.refused()) return false;
+    OutputFiles files(sink);
+    return files.add(
+               std::string(kStandardOutput),
+               request.json ? fit::json(*result) : source::visible_lines(fit::report(*result))) &&
+           files.commit();
+}
+
+}  // namespace
 
 bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) {
     ast::Spec spec = parse::parse(file, sink);
@@ -30,6 +58,7 @@ bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) 
         request.output.empty() ? fitted::default_path(file.path()) : request.output;
     asked.episodes = data::find_episodes(request.data, request.groups, sink);
     if (sink.has_errors()) return false;
+    if (request.suggest) return suggest(file, *model, options, request, asked, sink);
     std::vector<std::string> inputs{file.path()};
     for (const std::string& episode : asked.episodes) inputs.push_back(data::trace_file(episode));
     inputs.insert(inputs.end(), model->dependencies.begin(), model->dependencies.end());

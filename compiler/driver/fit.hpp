@@ -20,6 +20,10 @@ struct FitRequest {
     fit::Request fit;               ///< its episodes, version and progress are set here
     std::string output;             ///< empty: beside the spec
     std::vector<check::Setting> settings;
+    /// Prints which distances would separate these predicates, or all, and writes no file.
+    bool suggest = false;
+    std::vector<std::string> predicates;
+    bool json = false;
 };
 
 /// False where the sink now says why not.

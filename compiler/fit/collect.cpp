@@ -9,6 +9,7 @@
 #include "check/guarantees/provenance.hpp"
 #include "episodes/ground_truth.hpp"
 #include "episodes/parallel.hpp"
+#include "fit/blocks.hpp"
 
 namespace etlc::fit {
 
@@ -17,75 +18,61 @@ namespace {
 using check::kNone;
 using episodes::Label;
 
-/// Frames of one class, added to the moments a block at a time.
-class Block {
-public:
-    Block(Eigen::Index dimension, std::size_t of_class)
-        : frames_(dimension, kFrames), of_class_(of_class) {}
-
-    void add(const std::vector<float>& values, Moments& moments) {
-        frames_.col(filled_++) =
-            Eigen::Map<const Eigen::VectorXf>(values.data(), frames_.rows()).cast<double>();
-        if (filled_ == kFrames) flush(moments);
-    }
-    void flush(Moments& moments) {
-        moments.add(of_class_, frames_.leftCols(filled_));
-        filled_ = 0;
-    }
-
-private:
-    static constexpr Eigen::Index kFrames = 256;
-
-    Matrix frames_;
-    std::size_t of_class_;
-    Eigen::Index filled_ = 0;
-};
-
-/// Collects a need in one episode.
+/// What a need counts and takes of the frames of an episode.
 class Collector {
 public:
-    Collector(const Need& need, Eigen::Index dimension, std::size_t most_frames)
-        : need_(need), taken_(most_frames, need.away) {
-        if (need.kind == Need::Kind::frames) return;
-        collected_.moments = Moments(dimension, need.kind != Need::Kind::mean);
-        blocks_.emplace_back(dimension, 0);
-        blocks_.emplace_back(dimension, 1);
-    }
+    Collector(const Need& need, std::size_t most_frames)
+        : need_(need), taken_(most_frames, need.away) {}
 
-    /// `point`: null where it is missing.
-    void add(std::uint64_t step, Label holds, const std::vector<float>* point) {
-        static const std::vector<float> kMissing;
-        Counts& counts = collected_.counts;
+    /// `point`: empty where it is missing. Gives: the class that the frame is in.
+    std::int8_t add(std::uint64_t step, Label holds, const std::vector<float>& point) {
         const bool yes = holds == Label::yes;
-        if (holds == Label::unknown)
-            ++counts.unknown;
-        else if (point == nullptr)
-            ++counts.missing;
-        else
-            ++(yes ? counts.holds : counts.others);
-        if (need_.kind == Need::Kind::frames) {
-            if (!yes) return taken_.add_other();
-            return taken_.add(step, point != nullptr ? *point : kMissing);
+        if (need_.kind == Need::Kind::frames) yes ? taken_.add(step, point) : taken_.add_other();
+        if (holds == Label::unknown) {
+            ++counts_.unknown;
+            return Blocks::kNone;
         }
-        if (point == nullptr || holds == Label::unknown) return;
-        if (!yes && need_.kind != Need::Kind::classes) return;
-        blocks_[yes ? 1 : 0].add(*point, collected_.moments);
+        if (point.empty()) {
+            ++counts_.missing;
+            return Blocks::kNone;
+        }
+        ++(yes ? counts_.holds : counts_.others);
+        if (yes) return kHolds;
+        return need_.kind == Need::Kind::classes ? 0 : Blocks::kNone;
     }
 
-    Collected take(std::size_t episode) {
-        for (Block& block : blocks_) block.flush(collected_.moments);
-        for (TakenFrame& frame : taken_.take())
-            collected_.frames.push_back({episode, std::move(frame)});
-        collected_.counts.episodes = collected_.counts.holds > 0 ? 1 : 0;
-        return std::move(collected_);
+    Collected take() {
+        Collected result;
+        for (TakenFrame& frame : taken_.take()) result.frames.push_back({0, std::move(frame)});
+        counts_.episodes = counts_.holds > 0 ? 1 : 0;
+        result.counts = counts_;
+        return result;
     }
 
 private:
     const Need& need_;
     EvenFrames taken_;
-    std::vector<Block> blocks_;  ///< per class
-    Collected collected_;
+    Counts counts_;
 };
+
+/// A point, and the needs that ask about it.
+struct PointNeeds {
+    Index point = 0;
+    std::vector<std::size_t> all;
+    std::vector<std::size_t> with_moments;  ///< of these
+};
+
+std::vector<PointNeeds> by_point(const std::vector<Need>& needs) {
+    std::vector<PointNeeds> result;
+    for (std::size_t i = 0; i < needs.size(); ++i) {
+        auto at = std::find_if(result.begin(), result.end(),
+                               [&](const PointNeeds& one) { return one.point == needs[i].point; });
+        if (at == result.end()) at = result.insert(at, {needs[i].point, {}, {}});
+        at->all.push_back(i);
+        if (needs[i].kind != Need::Kind::frames) at->with_moments.push_back(i);
+    }
+    return result;
+}
 
 /// The predicates in these needs whose labels are wanted: those with a truth, and those that would
 /// need an array.
@@ -127,6 +114,7 @@ public:
            std::size_t most_frames, const data::NamesInFile& names)
         : model_(model),
           needs_(needs),
+          points_(by_point(needs)),
           truth_(episodes::ground_truth(model, labelled)),
           where_(truth_.model, formulas_of(needs)),
           most_frames_(most_frames),
@@ -148,29 +136,51 @@ public:
         if (!recording) return recording.failure();
         where_.reset();
         std::vector<Collector> collectors;
-        for (const Need& need : needs_)
-            collectors.emplace_back(need, model_.points[need.point].dimension, most_frames_);
+        for (const Need& need : needs_) collectors.emplace_back(need, most_frames_);
+        std::vector<Blocks> blocks;
+        for (const PointNeeds& one : points_) blocks.push_back(blocks_of(one));
         for (;;) {
             const auto more = recording->next();
             if (!more) return more.failure();
             if (!*more) break;
             take_labels(*recording);
-            for (std::size_t i = 0; i < needs_.size(); ++i) {
-                const bool there =
-                    read_point(model_, needs_[i].point, recording->samples(), point_);
-                collectors[i].add(recording->frames() - 1, label(*recording, needs_[i]),
-                                  there ? &point_ : nullptr);
-            }
+            for (std::size_t p = 0; p < points_.size(); ++p)
+                take_point(*recording, points_[p], collectors, blocks[p]);
         }
         Episode result;
         static_cast<episodes::Recorded&>(result) = recording->recorded();
-        for (Collector& collector : collectors) result.collected.push_back(collector.take(0));
+        for (Collector& collector : collectors) result.collected.push_back(collector.take());
+        for (std::size_t p = 0; p < points_.size(); ++p) {
+            std::vector<Moments> moments = blocks[p].take();
+            for (std::size_t i = 0; i < moments.size(); ++i)
+                result.collected[points_[p].with_moments[i]].moments = std::move(moments[i]);
+        }
         for (const Index predicate : wanted_.predicates)
             if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
         return result;
     }
 
 private:
+    Blocks blocks_of(const PointNeeds& one) const {
+        std::vector<bool> with_scatter;
+        for (const std::size_t i : one.with_moments)
+            with_scatter.push_back(needs_[i].kind != Need::Kind::mean);
+        return {model_.points[one.point].dimension, std::move(with_scatter)};
+    }
+
+    /// Of one frame.
+    void take_point(const episodes::Recording& recording, const PointNeeds& one,
+                    std::vector<Collector>& collectors, Blocks& blocks) {
+        if (!read_point(model_, one.point, recording.samples(), point_)) point_.clear();
+        classes_.clear();
+        for (const std::size_t i : one.all) {
+            const std::int8_t in_class =
+                collectors[i].add(recording.frames() - 1, label(recording, needs_[i]), point_);
+            if (needs_[i].kind != Need::Kind::frames) classes_.push_back(in_class);
+        }
+        if (!point_.empty() && !classes_.empty()) blocks.add(point_, classes_);
+    }
+
     void take_labels(const episodes::Recording& recording) {
         frame_.resize(truth_.model.inputs.size());
         for (const Index input : where_.inputs()) {
@@ -194,6 +204,7 @@ private:
 
     const check::Model& model_;
     const std::vector<Need>& needs_;
+    std::vector<PointNeeds> points_;
     episodes::GroundTruth truth_;
     episodes::TruthEvaluator where_;
     episodes::Wanted wanted_;
@@ -201,17 +212,25 @@ private:
     const data::NamesInFile& names_;
     episodes::Frame frame_;
     std::vector<float> point_;
+    std::vector<std::int8_t> classes_;
 };
 
-/// Those behind a need of the second are put behind those of the first.
-void merge(Collected& all, Collected&& more, std::size_t episode, bool with_frames) {
-    if (all.moments.dimension() == 0)
-        all.moments = std::move(more.moments);
-    else
-        all.moments.merge(more.moments);
-    all.counts.add(more.counts);
-    for (Source& source : more.frames)
-        if (with_frames) all.frames.push_back({episode, std::move(source.frame)});
+/// Of one more episode, per need.
+void merge(std::vector<Collected>& fold, std::vector<Collected>&& episode, std::size_t number,
+           bool with_frames) {
+    std::vector<Moments*> all;
+    std::vector<const Moments*> more;
+    for (std::size_t n = 0; n < fold.size(); ++n) {
+        fold[n].counts.add(episode[n].counts);
+        for (Source& source : episode[n].frames)
+            if (with_frames) fold[n].frames.push_back({number, std::move(source.frame)});
+        if (episode[n].moments.dimension() == 0) continue;
+        if (fold[n].moments.dimension() == 0)
+            fold[n].moments = Moments(episode[n].moments.dimension());
+        all.push_back(&fold[n].moments);
+        more.push_back(&episode[n].moments);
+    }
+    Moments::merge(all, more);
 }
 
 }  // namespace
@@ -264,9 +283,8 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
             return std::make_unique<Reader>(model, needs, labelled, shares.most, request.names);
         },
         [&](std::size_t i, Episode&& episode) {
-            std::vector<Collected>& fold = all.folds[all.fold_of(i)];
-            for (std::size_t n = 0; n < needs.size(); ++n)
-                merge(fold[n], std::move(episode.collected[n]), i, i % shares.every == 0);
+            merge(all.folds[all.fold_of(i)], std::move(episode.collected), i,
+                  i % shares.every == 0);
             from_arrays.insert(episode.from_arrays.begin(), episode.from_arrays.end());
             for (const Index predicate : labelled)
                 if (std::find(episode.from_arrays.begin(), episode.from_arrays.end(), predicate) ==

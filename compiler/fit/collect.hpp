@@ -12,8 +12,8 @@
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
+#include "fit/algebra/moments.hpp"
 #include "fit/even_frames.hpp"
-#include "fit/moments.hpp"
 #include "fit/request.hpp"
 
 namespace etlc::fit {

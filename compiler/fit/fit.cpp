@@ -39,28 +39,17 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
         .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
 }
 
-/// Every fitted thing in order, put into the model. Nothing where one is refused.
-std::optional<std::vector<Solution>> solve_all(check::Model& model, const Needs& needs,
-                                               const Collection& collection, diag::Sink& sink) {
-    std::vector<Solution> solutions;
-    for (Index i = 0; i < model.fitted.size(); ++i) {
-        const Fitted& fitted = model.fitted[i];
-        auto outcome = solve(model, i, collection, needs.of[i], std::nullopt);
-        if (const auto* refusal = std::get_if<Refusal>(&outcome)) {
-            sink.report(refusal->code, fitted.span,
-                        fmt::format("'{}' cannot be fitted: {}", fitted.name, refusal->message));
-            return std::nullopt;
-        }
-        solutions.push_back(std::move(std::get<Solution>(outcome)));
-        warn_of_constants(model, fitted, solutions.back(), sink);
-        if (const auto target = check::fill(model, i, solutions.back().filling)) {
-            sink.report(Code::fit_out_of_range, fitted.span,
-                        fmt::format("'{}' takes a row of target '{}' beyond float32", fitted.name,
-                                    model.targets[*target].name));
-            return std::nullopt;
-        }
-    }
-    return solutions;
+/// False where something is refused.
+bool report(const Filled& all, diag::Sink& sink) {
+    const auto first = all.refusals.begin();
+    const std::size_t fitted = first == all.refusals.end() ? all.solutions.size() : first->first;
+    for (std::size_t i = 0; i < fitted; ++i)
+        warn_of_constants(all.model, all.model.fitted[i], all.solutions[i], sink);
+    if (fitted == all.solutions.size()) return true;
+    const Fitted& refused = all.model.fitted[fitted];
+    sink.report(first->second.code, refused.span,
+                fmt::format("'{}' cannot be fitted: {}", refused.name, first->second.message));
+    return false;
 }
 
 /// Labels of a predicate in `where` that has a truth came from arrays in its place.
@@ -104,8 +93,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         return std::nullopt;
     }
     const std::vector<std::string>& paths = request.episodes;
-    // The sums of Eigen's products are in an order that depends on the sizes of caches.
-    Eigen::setCpuCacheSizes(32 << 10, 512 << 10, 4 << 20);
+    fix_order_of_sums();
     const auto labelled = episodes::labelled_in(model, paths.front(), request.names);
     if (!labelled) {
         sink.report(data::in_trace(labelled.failure(), paths.front()));
@@ -122,24 +110,27 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
-    check::Model filled = model;
-    const auto solutions = solve_all(filled, needs, *collection, sink);
-    if (!solutions) return std::nullopt;
-    const auto separations = separate(model, needs, *collection, predicates, request, sink);
+    Solver solver(*collection, needs);
+    const FilledAll filled = fill_all(model, solver, true, !predicates.empty(), request.jobs);
+    const Filled& all = *filled.all;
+    if (!report(all, sink)) return std::nullopt;
+    std::vector<Measured> measured;
+    for (const Index predicate : predicates) measured.push_back({predicate, predicate});
+    const auto separations = separate(filled.without, solver, measured, request, sink);
     if (!separations) return std::nullopt;
 
     Fit result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
-    for (std::size_t i = 0; i < solutions->size(); ++i)
-        result.file.entries[filled.fitted[i].name] =
-            entry_of(filled, filled.fitted[i], (*solutions)[i], *collection);
+    for (std::size_t i = 0; i < all.solutions.size(); ++i)
+        result.file.entries[all.model.fitted[i].name] =
+            entry_of(all.model, all.model.fitted[i], all.solutions[i], *collection);
     for (const episodes::Recorded& episode : collection->episodes) {
         result.file.episodes.push_back(episode.hash);
         result.file.recordings[episode.hash] = episode.content;
     }
     if (allowance.overlapping + allowance.leaked > 0) result.file.allowances.push_back(allowance);
-    result.report = report(filled, *collection, *solutions, *separations);
+    result.report = report(all.model, *collection, all.solutions, *separations);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));
     result.report += episodes::remark_on(allowance);

@@ -3,8 +3,8 @@
 
 #include <algorithm>
 
+#include "fit/algebra/linear.hpp"
 #include "fit/fit.hpp"
-#include "fit/linear.hpp"
 
 namespace etlc::fit {
 

@@ -3,9 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
-#include <exception>
 #include <memory>
 #include <set>
 #include <unordered_map>
@@ -25,7 +23,7 @@ using episodes::RankedFrame;
 
 /// What one fold is measured with.
 struct Fold {
-    check::Model model;
+    const check::Model& model;
     plan::Plan plan;
     std::vector<std::optional<Vector>> means;  ///< per predicate: of the plain distance
 };
@@ -37,39 +35,12 @@ struct Ranked {
 };
 using Episode = std::vector<Ranked>;  ///< per predicate
 
-/// Fitted without the fold `left_out`; why not, where that cannot be.
-std::string fill(check::Model& model, const Needs& needs, const Collection& collection,
-                 std::size_t left_out) {
-    for (Index i = 0; i < model.fitted.size(); ++i) {
-        const auto outcome = solve(model, i, collection, needs.of[i], left_out);
-        if (const auto* refusal = std::get_if<Refusal>(&outcome))
-            return fmt::format("'{}': {}", model.fitted[i].name, refusal->message);
-        if (check::fill(model, i, std::get<Solution>(outcome).filling))
-            return fmt::format("'{}': a target is beyond float32", model.fitted[i].name);
-    }
-    return "";
-}
-
-/// All folds; why not, where the first of those that cannot be is not.
-std::string fill(const std::vector<std::unique_ptr<Fold>>& folds, const Needs& needs,
-                 const Collection& collection, unsigned jobs) {
-    std::vector<std::string> refused(folds.size());
-    std::atomic<std::size_t> next = 0;
-    const std::exception_ptr failure = episodes::in_threads(jobs, folds.size(), [&] {
-        for (std::size_t f = next++; f < folds.size(); f = next++)
-            refused[f] = fill(folds[f]->model, needs, collection, f);
-    });
-    if (failure) std::rethrow_exception(failure);
-    const auto first = std::find_if(refused.begin(), refused.end(),
-                                    [](const std::string& why) { return !why.empty(); });
-    return first == refused.end() ? "" : *first;
-}
-
 std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& need,
                               const Collection& collection, std::size_t left_out) {
     if (!need) return std::nullopt;
-    const auto at = static_cast<std::size_t>(std::find(needs.all.begin(), needs.all.end(), *need) -
-                                             needs.all.begin());
+    const auto found = std::find(needs.all.begin(), needs.all.end(), *need);
+    if (found == needs.all.end()) return std::nullopt;
+    const auto at = static_cast<std::size_t>(found - needs.all.begin());
     Moments all;
     for (std::size_t f = 0; f < collection.folds.size(); ++f) {
         if (f == left_out) continue;
@@ -88,7 +59,7 @@ class Measurer {
 public:
     Measurer(const check::Model& model, const std::vector<std::unique_ptr<Fold>>& folds,
              const std::unordered_map<std::string, std::size_t>& index,
-             const Collection& collection, const std::vector<Index>& predicates,
+             const Collection& collection, const std::vector<Measured>& predicates,
              const data::NamesInFile& names)
         : folds_(folds),
           index_(index),
@@ -96,11 +67,14 @@ public:
           predicates_(predicates),
           no_leaks_(model, {}),
           names_(names) {
+        std::set<Index> labels;
+        for (const Measured& one : predicates) labels.insert(one.label);
         for (const auto& fold : folds) {
             followers_.push_back(std::make_unique<episodes::Follower>(fold->plan));
-            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan}, predicates, no_leaks_));
+            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan},
+                                               {labels.begin(), labels.end()}, no_leaks_));
         }
-        for (const Index predicate : predicates) plain_.push_back(plain_need(model, predicate));
+        for (const Measured& one : predicates) plain_.push_back(plain_need(model, one.predicate));
     }
 
     diag::Result<Episode> score(const std::string& path) {
@@ -122,12 +96,12 @@ private:
     void add(const Fold& fold, const episodes::Follower& follower,
              const episodes::Recording& recording, std::size_t episode, std::size_t i,
              Ranked& ranked) {
-        const Label label = recording.label(predicates_[i]);
+        const Label label = recording.label(predicates_[i].label);
         if (label == Label::unknown) return;
         const bool positive = label == Label::yes;
         const std::size_t step = recording.frames() - 1;
-        const float delta = follower.evaluator().distance(predicates_[i]);
-        const bool upper = fold.model.predicates[predicates_[i]].upper_bound();
+        const float delta = follower.evaluator().distance(predicates_[i].predicate);
+        const bool upper = fold.model.predicates[predicates_[i].predicate].upper_bound();
         if (!std::isnan(delta))
             ranked.after.push_back({upper ? delta : -delta, positive, episode, step});
         if (!plain_[i] || !fold.means[i] ||
@@ -142,7 +116,7 @@ private:
     const std::vector<std::unique_ptr<Fold>>& folds_;
     const std::unordered_map<std::string, std::size_t>& index_;
     const Collection& collection_;
-    const std::vector<Index>& predicates_;
+    const std::vector<Measured>& predicates_;
     episodes::Leaks no_leaks_;
     const data::NamesInFile& names_;
     std::vector<std::unique_ptr<episodes::Follower>> followers_;  ///< per fold
@@ -185,6 +159,25 @@ std::vector<Index> separating_predicates(const check::Model& model,
     return result;
 }
 
+std::optional<Index> refused_for(const Filled& filled, Index predicate) {
+    const check::Model& model = filled.model;
+    std::optional<Index> found;
+    const auto look = [&](Index fitted) {
+        if (filled.refusals.contains(fitted) && (!found || fitted < *found)) found = fitted;
+    };
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
+        const check::Distance& distance = model.distances[d];
+        const check::Target& target = model.targets[distance.target];
+        look(target.fitted);
+        if (target.source != kNone) look(model.targets[target.source].fitted);
+        look(distance.weights_fitted);
+        for (Index at = distance.point; model.points[at].is_projected();
+             at = model.points[at].inner)
+            look(model.projections[model.points[at].projection].fitted);
+    });
+    return found;
+}
+
 std::optional<Need> plain_need(const check::Model& model, Index predicate) {
     std::set<Index> points;
     check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
@@ -194,25 +187,33 @@ std::optional<Need> plain_need(const check::Model& model, Index predicate) {
     return Need{Need::Kind::mean, *points.begin(), kNone, predicate};
 }
 
-std::optional<Separations> separate(const check::Model& model, const Needs& needs,
-                                    const Collection& collection,
-                                    const std::vector<Index>& predicates, const Request& request,
+std::optional<Separations> separate(const std::vector<Filled>& filled, const Solver& solver,
+                                    const std::vector<Measured>& predicates, const Request& request,
                                     diag::Sink& sink) {
     Separations result;
     if (predicates.empty()) return result;
-    if (collection.folds.size() < 2) {
+    if (filled.size() < 2) {
         result.why_not = "there is one episode";
         return result;
     }
+    const check::Model& model = filled.front().model;
+    const Collection& collection = solver.collection();
     std::vector<std::unique_ptr<Fold>> folds;
-    for (std::size_t f = 0; f < collection.folds.size(); ++f)
-        folds.push_back(std::make_unique<Fold>(Fold{model, {}, {}}));
-    result.why_not = fill(folds, needs, collection, request.jobs);
-    if (!result.why_not.empty()) return result;
-    for (std::size_t f = 0; f < folds.size(); ++f) {
-        folds[f]->plan = plan::measuring(folds[f]->model, predicates);
-        for (const Index predicate : predicates)
-            folds[f]->means.push_back(mean_of(needs, plain_need(model, predicate), collection, f));
+    std::vector<Index> measures;
+    for (const Measured& one : predicates) measures.push_back(one.predicate);
+    for (const Filled& fold : filled) {
+        for (const Index predicate : measures)
+            if (const auto refused = refused_for(fold, predicate)) {
+                result.why_not = fmt::format("'{}': {}", model.fitted[*refused].name,
+                                             fold.refusals.at(*refused).message);
+                return result;
+            }
+        std::vector<std::optional<Vector>> means;
+        for (const Index predicate : measures)
+            means.push_back(
+                mean_of(solver.needs(), plain_need(model, predicate), collection, folds.size()));
+        folds.push_back(std::make_unique<Fold>(
+            Fold{fold.model, plan::measuring(fold.model, measures), std::move(means)}));
     }
     std::unordered_map<std::string, std::size_t> index;
     std::vector<std::string> paths;
@@ -235,7 +236,7 @@ std::optional<Separations> separate(const check::Model& model, const Needs& need
             to_before.insert(to_before.end(), ranked.before.begin(), ranked.before.end());
             to_after.insert(to_after.end(), ranked.after.begin(), ranked.after.end());
         }
-        Separation separation{predicates[i],
+        Separation separation{predicates[i].predicate,
                               episodes::auroc(before, paths.size()),
                               episodes::auroc(after, paths.size()),
                               {}};

@@ -11,7 +11,7 @@
 
 #include "episodes/auroc.hpp"
 #include "fit/collect.hpp"
-#include "fit/solve.hpp"
+#include "fit/fill.hpp"
 
 namespace etlc::fit {
 
@@ -24,7 +24,7 @@ struct WorstFrame {
 };
 
 struct Separation {
-    Index predicate = 0;
+    Index predicate = 0;  ///< that is measured
     /// Of l2 to the mean of the frames at which it holds, in the space of the input; nothing where
     /// it measures from several inputs, or where there are no such frames.
     std::optional<episodes::Auroc> before;
@@ -39,14 +39,23 @@ std::vector<Index> separating_predicates(const check::Model& model,
 /// The mean that the plain distance is measured from; nothing where there is none.
 std::optional<Need> plain_need(const check::Model& model, Index predicate);
 
+/// The first fitted thing that its distances rest on and that is refused.
+std::optional<Index> refused_for(const Filled& filled, Index predicate);
+
 /// `why_not`: set where some fold cannot be fitted. Nothing where the sink now says why.
 struct Separations {
     std::vector<Separation> all;
     std::string why_not;
 };
-std::optional<Separations> separate(const check::Model& model, const Needs& needs,
-                                    const Collection& collection,
-                                    const std::vector<Index>& predicates, const Request& request,
+/// A predicate whose distance is measured, and the one whose labels it is to tell apart.
+struct Measured {
+    Index predicate = 0;
+    Index label = 0;
+};
+
+/// `folds`: filled without each fold.
+std::optional<Separations> separate(const std::vector<Filled>& folds, const Solver& solver,
+                                    const std::vector<Measured>& predicates, const Request& request,
                                     diag::Sink& sink);
 
 }  // namespace etlc::fit

@@ -2,22 +2,22 @@
 
 #include <fmt/format.h>
 
-#include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 
-#include "fit/clusters.hpp"
-#include "fit/linear.hpp"
+#include "fit/algebra/cholesky.hpp"
+#include "fit/algebra/linear.hpp"
 
 namespace etlc::fit {
-
-namespace {
 
 using check::Fitted;
 using check::FittedMethod;
 using diag::Code;
 using diag::counted;
 using Outcome = std::variant<Solution, Refusal>;
+
+namespace {
 
 /// The maps of a point, from the innermost.
 std::vector<Affine> maps_of(const check::Model& model, Index point) {
@@ -52,15 +52,20 @@ check::Filling filling(const Affine& map) {
     return {floats(map.a), floats(map.offset.transpose())};
 }
 
+}  // namespace
+
+/// One fitted thing.
 class Solving {
 public:
-    Solving(const check::Model& model, Index fitted, const Collection& collection, std::size_t need,
+    Solving(Solver& solver, const check::Model& model, Index fitted,
             std::optional<std::size_t> left_out)
-        : fitted_(model.fitted[fitted]),
-          collection_(collection),
+        : solver_(solver),
+          part_{solver.needs_.of[fitted], left_out, {}},
+          fitted_(model.fitted[fitted]),
           maps_(maps_of(model, fitted_.point)) {
+        const Collection& collection = solver.collection_;
         for (std::size_t f = 0; f < collection.folds.size(); ++f)
-            if (left_out != f) folds_.push_back(&collection.folds[f][need]);
+            if (left_out != f) folds_.push_back(&collection.folds[f][part_.need]);
         for (const Collected* fold : folds_) solution_.counts.add(fold->counts);
     }
 
@@ -91,8 +96,7 @@ private:
 
     /// Of all folds together.
     Moments moments() const {
-        Moments result = folds_.front()->moments;
-        for (std::size_t f = 1; f < folds_.size(); ++f) result.merge(folds_[f]->moments);
+        Moments result = solver_.moments(part_);
         for (const Affine& map : maps_) result = result.mapped(map);
         return result;
     }
@@ -116,18 +120,15 @@ private:
                         solution_.counts.holds == 1 ? "is" : "are", solution_.counts.holds)};
     }
 
-    void count_constants(const Moments& of_all) {
-        solution_.constant =
-            static_cast<std::uint64_t>((of_all.scatter().diagonal().array() == 0).count());
-    }
-
     Outcome components(bool whitened) {
         if (auto refusal =
                 too_few_for(std::uint64_t{fitted_.rows} + 1, fmt::format("r = {}", fitted_.rows)))
             return *refusal;
-        const Moments all = moments();
-        count_constants(all);
-        const Components found = principal_components(all, fitted_.rows, whitened);
+        solution_.constant = moments().constants();
+        const Components found =
+            principal_components(maps_.empty() ? solver_.variances(part_, fitted_.rows)
+                                               : greatest_variances(moments(), fitted_.rows),
+                                 fitted_.rows, whitened);
         if (found.rank < fitted_.rows)
             return Refusal{
                 Code::degenerate_frames,
@@ -140,8 +141,11 @@ private:
     Outcome of_covariance() {
         if (auto refusal = too_few_for(2, "a covariance")) return *refusal;
         const Moments all = moments();
-        count_constants(all);
-        return finished(filling(logpzo(all)));
+        solution_.constant = all.constants();
+        const auto map = logpzo(all);
+        if (map) return finished(filling(*map));
+        return Refusal{Code::degenerate_frames,
+                       "some directions vary so much more than others that I + S has no inverse"};
     }
 
     Outcome of_two_classes() {
@@ -150,11 +154,7 @@ private:
                            fmt::format("'where' holds at all {} with a point; a discriminant "
                                        "needs others as well",
                                        counted(solution_.counts.holds, "frame"))};
-        std::vector<Moments> folds;
-        for (const Collected* fold : folds_) folds.push_back(moments_of(*fold));
-        std::vector<const Moments*> parts;
-        for (const Moments& fold : folds) parts.push_back(&fold);
-        solution_.shrinkage = best_shrinkage(parts);
+        solution_.shrinkage = best_shrinkage(trials());
         if (!solution_.shrinkage)
             return Refusal{
                 Code::too_few_frames,
@@ -162,10 +162,9 @@ private:
                             "takes frames of both classes in two episodes at least, and a "
                             "variance within the classes; 'where' holds in {} of {}",
                             solution_.counts.episodes,
-                            counted(collection_.episodes.size(), "episode"))};
-        Moments all = folds.front();
-        for (std::size_t f = 1; f < folds.size(); ++f) all.merge(folds[f]);
-        count_constants(all);
+                            counted(solver_.collection_.episodes.size(), "episode"))};
+        const Moments all = moments();
+        solution_.constant = all.constants();
         if (fitted_.slot == Fitted::Slot::metric) {
             const auto inverse = metric(all, *solution_.shrinkage);
             if (inverse && is_definite(*inverse)) return finished({floats(*inverse), {}});
@@ -177,39 +176,63 @@ private:
                        "classes have the same mean"};
     }
 
+    /// Each fold tested with what is fitted on the others.
+    std::vector<Trial> trials() const {
+        std::vector<Trial> result;
+        if (maps_.empty()) {
+            for (std::size_t f = 0; f < solver_.collection_.folds.size(); ++f)
+                if (part_.first != f) result.push_back(solver_.trial(part_, f));
+            return result;
+        }
+        std::vector<Moments> folds;
+        for (const Collected* fold : folds_) folds.push_back(moments_of(*fold));
+        for (const Moments& test : folds) {
+            Moments training(test.dimension());
+            for (const Moments& fold : folds)
+                if (&fold != &test) training.merge(fold);
+            result.push_back(fit::trials(training, {&test}).front());
+        }
+        return result;
+    }
+
     /// As it is once it is rounded.
     static bool is_definite(const Matrix& metric) {
-        return metric.cast<float>().cast<double>().llt().info() == Eigen::Success;
+        return Cholesky::of(metric.cast<float>().cast<double>()).has_value();
     }
 
     Outcome clusters() {
-        std::vector<const Source*> sources;
-        for (const Collected* fold : folds_)
-            for (const Source& source : fold->frames) sources.push_back(&source);
-        std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
-            return a->episode != b->episode ? a->episode < b->episode
-                                            : a->frame.step < b->frame.step;
-        });
-        solution_.taken = sources.size();
-        const auto k = static_cast<Eigen::Index>(fitted_.rows);
-        if (sources.size() < fitted_.rows) return too_few_taken(sources.size(), "");
-        Matrix points(static_cast<Eigen::Index>(sources.front()->frame.values.size()),
-                      static_cast<Eigen::Index>(sources.size()));
-        for (std::size_t i = 0; i < sources.size(); ++i)
-            points.col(static_cast<Eigen::Index>(i)) =
-                Eigen::Map<const Eigen::VectorXf>(sources[i]->frame.values.data(), points.rows())
-                    .cast<double>();
-        for (const Affine& map : maps_) points = map(points);
-        const auto found = k_means(points, k);
-        if (!found) return too_few_taken(sources.size(), " different");
+        const TakenPoints& all = solver_.points(part_.need);
+        Members members;
+        for (std::size_t i = 0; i < all.sources.size(); ++i)
+            if (!part_.first ||
+                solver_.collection_.fold_of(all.sources[i]->episode) != *part_.first)
+                members.push_back(static_cast<Eigen::Index>(i));
+        solution_.taken = members.size();
+        if (members.size() < fitted_.rows) return too_few_taken(members.size(), "");
+        if (maps_.empty()) return clusters(all, all.points, members, members);
+        Members numbers(members.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        return clusters(all, Points(mapped(all.frames(members))), numbers, members);
+    }
+
+    /// `members`: of the points; `taken`: what they are of all that was taken.
+    Outcome clusters(const TakenPoints& all, const Points& points, const Members& members,
+                     const Members& taken) {
+        const auto centres = k_means(points, members, static_cast<Eigen::Index>(fitted_.rows));
+        if (!centres) return too_few_taken(members.size(), " different");
         if (fitted_.method == FittedMethod::kmeans)
-            return finished({floats(found->centres.transpose()), {}});
-        Matrix rows(points.rows(), k);
-        for (const Eigen::Index i : nearest_points(points, found->centres)) {
-            rows.col(static_cast<Eigen::Index>(solution_.medoids.size())) = points.col(i);
-            solution_.medoids.push_back(sources[static_cast<std::size_t>(i)]);
+            return finished({floats(centres->transpose()), {}});
+        Members medoids;
+        for (const std::size_t i : nearest_points(points, members, *centres)) {
+            medoids.push_back(taken[i]);
+            solution_.medoids.push_back(all.sources[static_cast<std::size_t>(medoids.back())]);
         }
-        return finished({floats(rows.transpose()), {}});
+        return finished({floats(mapped(all.frames(medoids)).transpose()), {}});
+    }
+
+    Matrix mapped(Matrix frames) const {
+        for (const Affine& map : maps_) frames = map(frames);
+        return frames;
     }
 
     Refusal too_few_taken(std::size_t taken, std::string_view different) const {
@@ -222,12 +245,15 @@ private:
                                               counted(fitted_.away, "step")))};
     }
 
+    Solver& solver_;
+    Solver::Part part_;
     const Fitted& fitted_;
-    const Collection& collection_;
     std::vector<Affine> maps_;
     std::vector<const Collected*> folds_;
     Solution solution_;
 };
+
+namespace {
 
 Need::Kind kind_of(FittedMethod method) {
     switch (method) {
@@ -261,10 +287,66 @@ Needs needs_of(const check::Model& model) {
     return result;
 }
 
-std::variant<Solution, Refusal> solve(const check::Model& model, Index fitted,
-                                      const Collection& collection, std::size_t need,
-                                      std::optional<std::size_t> left_out) {
-    return Solving(model, fitted, collection, need, left_out).run();
+TakenPoints::TakenPoints(const Collection& collection, std::size_t need) {
+    for (const std::vector<Collected>& fold : collection.folds)
+        for (const Source& source : fold[need].frames) sources.push_back(&source);
+    std::sort(sources.begin(), sources.end(), [](const Source* a, const Source* b) {
+        return a->episode != b->episode ? a->episode < b->episode : a->frame.step < b->frame.step;
+    });
+    Members all(sources.size());
+    std::iota(all.begin(), all.end(), 0);
+    if (!all.empty()) points = Points(frames(all));
+}
+
+Matrix TakenPoints::frames(const Members& members) const {
+    Matrix result(static_cast<Eigen::Index>(sources.front()->frame.values.size()),
+                  static_cast<Eigen::Index>(members.size()));
+    for (std::size_t i = 0; i < members.size(); ++i)
+        result.col(static_cast<Eigen::Index>(i)) =
+            Eigen::Map<const Eigen::VectorXf>(
+                sources[static_cast<std::size_t>(members[i])]->frame.values.data(), result.rows())
+                .cast<double>();
+    return result;
+}
+
+Moments Solver::moments(const Part& part) const {
+    std::optional<Moments> result;
+    for (std::size_t f = 0; f < collection_.folds.size(); ++f) {
+        if (part.first == f || part.second == f) continue;
+        const Moments& fold = collection_.folds[f][part.need].moments;
+        if (result)
+            result->merge(fold);
+        else
+            result = fold;
+    }
+    return *result;
+}
+
+Trial Solver::trial(const Part& part, std::size_t test) {
+    Part without{part.need, test, part.first};
+    if (without.second && *without.second < test) std::swap(without.first, without.second);
+    const std::vector<Trial>& both = trials_.get(without, [&] {
+        std::vector<const Moments*> tests;
+        for (const std::optional<std::size_t> fold : {without.first, without.second})
+            if (fold) tests.push_back(&collection_.folds[*fold][part.need].moments);
+        if (tests.size() == collection_.folds.size()) return std::vector<Trial>(tests.size());
+        return trials(moments(without), tests);
+    });
+    return both[without.first == test ? 0 : 1];
+}
+
+const Variances& Solver::variances(const Part& part, Eigen::Index r) {
+    r = std::max(r, kLeastVariances);
+    return variances_.get({part, r}, [&] { return greatest_variances(moments(part), r); });
+}
+
+const TakenPoints& Solver::points(std::size_t need) {
+    return points_.get(need, [&] { return TakenPoints(collection_, need); });
+}
+
+std::variant<Solution, Refusal> Solver::solve(const check::Model& model, Index fitted,
+                                              std::optional<std::size_t> left_out) {
+    return Solving(*this, model, fitted, left_out).run();
 }
 
 }  // namespace etlc::fit

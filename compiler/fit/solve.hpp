@@ -10,7 +10,10 @@
 #include <vector>
 
 #include "check/points/project.hpp"
+#include "fit/algebra/clusters.hpp"
+#include "fit/algebra/linear.hpp"
 #include "fit/collect.hpp"
+#include "fit/memo.hpp"
 
 namespace etlc::fit {
 
@@ -40,9 +43,55 @@ struct Needs {
 };
 Needs needs_of(const check::Model& model);
 
-/// `left_out`: a fold that is not fitted on.
-std::variant<Solution, Refusal> solve(const check::Model& model, Index fitted,
-                                      const Collection& collection, std::size_t need,
-                                      std::optional<std::size_t> left_out);
+/// The frames that were taken for a need, in order, of all folds.
+struct TakenPoints {
+    TakenPoints() = default;
+    TakenPoints(const Collection& collection, std::size_t need);
+
+    /// As columns.
+    Matrix frames(const Members& members) const;
+
+    std::vector<const Source*> sources;
+    Points points;
+};
+
+/// Solves what a model has fitted. Any number of threads may use it at once: what several fits need
+/// of the same frames is computed once. All that it is given outlives it.
+class Solver {
+public:
+    Solver(const Collection& collection, const Needs& needs)
+        : collection_(collection), needs_(needs) {}
+
+    /// `left_out`: a fold that is not fitted on.
+    std::variant<Solution, Refusal> solve(const check::Model& model, Index fitted,
+                                          std::optional<std::size_t> left_out);
+
+    const Collection& collection() const { return collection_; }
+    const Needs& needs() const { return needs_; }
+
+private:
+    friend class Solving;
+
+    /// Of a need, with up to two folds left out.
+    struct Part {
+        std::size_t need = 0;
+        std::optional<std::size_t> first, second;
+
+        auto operator<=>(const Part&) const = default;
+    };
+
+    /// Of all other folds together.
+    Moments moments(const Part& part) const;
+    /// Trained on all folds of the part but this one, which it is tested on.
+    Trial trial(const Part& part, std::size_t test);
+    const Variances& variances(const Part& part, Eigen::Index r);
+    const TakenPoints& points(std::size_t need);
+
+    const Collection& collection_;
+    const Needs& needs_;
+    Memo<Part, std::vector<Trial>> trials_;  ///< per fold left out: two parts lack the same two
+    Memo<std::pair<Part, Eigen::Index>, Variances> variances_;
+    Memo<std::size_t, TakenPoints> points_;  ///< by need
+};
 
 }  // namespace etlc::fit

@@ -258,6 +258,19 @@ std::uint64_t measured_elements(const check::Model& model, Index predicate) {
     return sum;
 }
 
+std::uint64_t elements_of(const check::Model& model, Index predicate) {
+    std::set<Index> points;
+    check::for_each_distance(model.predicates[predicate].expression, [&](Index d) {
+        for (Index at = model.distances[d].point; model.points[at].is_projected();
+             at = model.points[at].inner)
+            points.insert(at);
+    });
+    std::uint64_t sum = measured_elements(model, predicate);
+    for (const Index point : points)
+        sum += projection_cost(model, model.points[point]).distance_operations;
+    return sum;
+}
+
 Cost operator+(Cost a, const Cost& b) {
     a.state_bytes += b.state_bytes;
     a.stack_bytes += b.stack_bytes;

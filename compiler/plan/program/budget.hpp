@@ -17,6 +17,8 @@ Cost cost_of(const Stream& stream, check::Values values);
 Cost cost_of(const Reading& reading, check::Values values);
 /// Target elements that a predicate measures.
 std::uint64_t measured_elements(const check::Model& model, Index predicate);
+/// The same with those of the projections that stand before it.
+std::uint64_t elements_of(const check::Model& model, Index predicate);
 /// Of a state machine of this size, as a table.
 Cost cost_of_table(std::size_t states, std::size_t transitions, check::Values values);
 /// Fills in plan.cost and plan.monitor_costs.

@@ -1,0 +1,28 @@
+// L L^T = S, for a covariance S.
+// Takes: a symmetric matrix. Gives: L, and what follows from it. Keeps true: the same bits on every
+// machine.
+#pragma once
+
+#include <optional>
+
+#include "fit/algebra/affine.hpp"
+
+namespace etlc::fit {
+
+class Cholesky {
+public:
+    /// Nothing where it is not positive definite in double.
+    static std::optional<Cholesky> of(Matrix symmetric);
+
+    /// x with S x = right.
+    Vector solve(const Vector& right) const;
+    /// S^-1, symmetric.
+    Matrix inverse() const;
+
+private:
+    explicit Cholesky(Matrix lower) : lower_(std::move(lower)) {}
+
+    Matrix lower_;  ///< its lower triangle
+};
+
+}  // namespace etlc::fit

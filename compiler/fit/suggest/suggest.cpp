@@ -1,0 +1,271 @@
+#include "fit/suggest/suggest.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "data/quote.hpp"
+#include "diag/diag.hpp"
+#include "episodes/admission.hpp"
+#include "fit/separation.hpp"
+#include "fit/suggest/candidates.hpp"
+#include "plan/program/budget.hpp"
+
+namespace etlc::fit {
+
+namespace {
+
+using check::Predicate;
+using diag::Code;
+
+std::optional<Index> predicate_named(const check::Model& model, const std::string& name) {
+    for (Index i = 0; i < model.predicates.size(); ++i)
+        if (model.predicates[i].name == name) return i;
+    return std::nullopt;
+}
+
+bool refuse(const check::Model& model, const std::string& name, const std::string& why,
+            diag::Sink& sink) {
+    const auto predicate = predicate_named(model, name);
+    sink.report(Code::nothing_to_suggest,
+                predicate ? model.predicates[*predicate].span : model.monitors.front().span,
+                fmt::format("no suggestion for '{}': {}", name, why));
+    return false;
+}
+
+/// Those to suggest for, in the order of the model.
+std::optional<std::vector<Index>> asked_for(const check::Model& model,
+                                            const std::vector<std::string>& names,
+                                            const std::vector<Index>& labelled, diag::Sink& sink) {
+    std::vector<Index> result;
+    bool all = true;
+    for (const std::string& name : names) {
+        const auto predicate = predicate_named(model, name);
+        if (!predicate) {
+            std::vector<std::string> known;
+            for (const Predicate& one : model.predicates)
+                if (!one.name.empty()) known.push_back(one.name);
+            const auto meant = diag::nearest_name(name, known);
+            all = refuse(model, name,
+                         "there is no such predicate" +
+                             (meant ? fmt::format("; did you mean '{}'?", *meant) : ""),
+                         sink);
+        } else if (std::find(labelled.begin(), labelled.end(), *predicate) == labelled.end()) {
+            all = refuse(model, name, "it has neither a truth nor labels in the episodes", sink);
+        } else if (!plain_need(model, *predicate)) {
+            all = refuse(model, name, "it measures from no point, or from several", sink);
+        } else {
+            result.push_back(*predicate);
+        }
+    }
+    if (!all) return std::nullopt;
+    for (const Index predicate : labelled)
+        if (names.empty() && plain_need(model, predicate)) result.push_back(predicate);
+    if (result.empty()) {
+        sink.report(Code::nothing_to_suggest, model.monitors.front().span,
+                    "no predicate of this spec has labels and measures from one point");
+        return std::nullopt;
+    }
+    return result;
+}
+
+/// With the bound of the predicate where that is calibrated; a number is of another scale.
+std::string predicate_line(const Predicate& predicate, const std::string& expression) {
+    const bool calibrated = predicate.threshold.origin != check::ThresholdOrigin::literal;
+    return fmt::format("predicate {} = {} <= {}{};", predicate.name, expression,
+                       calibrated ? predicate.threshold.text : "calibrated(f1)",
+                       predicate.missing ? fmt::format(" missing {}", *predicate.missing) : "");
+}
+
+std::string with_lines(std::string_view spec, const std::vector<std::string>& lines) {
+    return fmt::format("{}\n{}\n", spec, fmt::join(lines, "\n"));
+}
+
+/// One spec that has all candidates beside what it has already.
+class Trials {
+public:
+    Trials(const check::Model& model, const CheckText& check_text)
+        : model_(model),
+          check_text_(check_text),
+          words_(words_of(model.file.text())),
+          taken_(words_) {}
+
+    /// The predicate as it is, and every candidate that the language allows.
+    Suggestions add(Index predicate) {
+        const Predicate& own = model_.predicates[predicate];
+        Suggestions result{own.name, {}, 0};
+        result.ranked.push_back({own.text.substr(0, own.text.rfind(' ', own.text.size() - 2)),
+                                 {},
+                                 plan::elements_of(model_, predicate),
+                                 {},
+                                 {},
+                                 false});
+        measured_.push_back({own.name, own.name});
+        const check::Point& point = model_.points[plain_need(model_, predicate)->point];
+        Declarations shared(own.name, taken_);
+        for (const Candidate& candidate : candidates(point.dimension)) {
+            auto suggestion = suggestion_of(candidate, point.text, own);
+            if (!suggestion) continue;
+            const std::string trial = shared.unused(own.name + "_trial");
+            const std::string distance = expression(candidate, point.text, own.name, shared);
+            trials_.push_back(fmt::format("predicate {} = {} <= 0;", trial, distance));
+            measured_.push_back({trial, own.name});
+            result.ranked.push_back(std::move(*suggestion));
+        }
+        lines_.insert(lines_.end(), shared.lines().begin(), shared.lines().end());
+        return result;
+    }
+
+    /// Each candidate alone is a spec; all together may be larger than one can be.
+    std::optional<check::Model> spec() const {
+        std::vector<std::string> lines = lines_;
+        lines.insert(lines.end(), trials_.begin(), trials_.end());
+        return check_text_(with_lines(model_.file.text(), lines));
+    }
+
+    /// In the order in which they were added.
+    std::vector<Measured> measured(const check::Model& spec) const {
+        std::vector<Measured> result;
+        for (const auto& [trial, label] : measured_)
+            result.push_back({*predicate_named(spec, trial), *predicate_named(spec, label)});
+        return result;
+    }
+
+private:
+    /// Nothing where it is no spec, as cosine is not of scalars that are missing.
+    std::optional<Suggestion> suggestion_of(const Candidate& candidate, const std::string& point,
+                                            const Predicate& predicate) const {
+        std::set<std::string> taken = words_;
+        Declarations declarations(predicate.name, taken);
+        Suggestion result;
+        result.distance = described(candidate, point);
+        const std::string distance = expression(candidate, point, predicate.name, declarations);
+        result.lines = declarations.lines();
+        const std::string trial = declarations.unused(predicate.name + "_trial");
+        std::vector<std::string> lines = result.lines;
+        lines.push_back(fmt::format("predicate {} = {} <= 0;", trial, distance));
+        const auto spec = check_text_(with_lines(model_.file.text(), lines));
+        if (!spec) return std::nullopt;
+        result.elements = plan::elements_of(*spec, *predicate_named(*spec, trial));
+        result.lines.push_back(predicate_line(predicate, distance));
+        return result;
+    }
+
+    const check::Model& model_;
+    const CheckText& check_text_;
+    const std::set<std::string> words_;  ///< of the spec
+    std::set<std::string> taken_;        ///< with what was declared since
+    std::vector<std::string> lines_;
+    std::vector<std::string> trials_;
+    std::vector<std::pair<std::string, std::string>> measured_;  ///< predicate, and whose labels
+};
+
+/// Why one of the folds cannot be fitted for it; empty where all can.
+std::string why_not(const std::vector<Filled>& folds, Index predicate) {
+    for (const Filled& fold : folds)
+        if (const auto refused = refused_for(fold, predicate))
+            return fmt::format("'{}': {}", fold.model.fitted[*refused].declaration,
+                               fold.refusals.at(*refused).message);
+    return "";
+}
+
+double low_end(const episodes::Auroc& auroc) {
+    return auroc.interval ? auroc.interval->low : auroc.value;
+}
+
+double high_end(const episodes::Auroc& auroc) {
+    return auroc.interval ? auroc.interval->high : auroc.value;
+}
+
+void rank(Suggestions& all) {
+    std::stable_sort(all.ranked.begin(), all.ranked.end(),
+                     [](const Suggestion& a, const Suggestion& b) {
+                         if (a.auroc.has_value() != b.auroc.has_value()) return a.auroc.has_value();
+                         if (a.auroc && a.auroc->value != b.auroc->value)
+                             return a.auroc->value > b.auroc->value;
+                         return a.elements < b.elements;
+                     });
+    std::uint64_t cheapest = std::numeric_limits<std::uint64_t>::max();
+    for (Suggestion& one : all.ranked) {
+        one.ties = one.auroc && high_end(*one.auroc) >= low_end(*all.ranked.front().auroc);
+        if (one.ties) cheapest = std::min(cheapest, one.elements);
+    }
+    for (std::size_t i = all.ranked.size(); i-- > 0;)
+        if (all.ranked[i].ties && all.ranked[i].elements <= cheapest + cheapest / 10)
+            all.recommended = i;
+}
+
+/// Nothing where the sink now says why.
+std::optional<Separations> measure(const check::Model& spec, const std::vector<Measured>& measured,
+                                   const Request& request, Suggested& suggested, diag::Sink& sink) {
+    fix_order_of_sums();
+    const Needs needs = needs_of(spec);
+    const auto collection = collect(spec, needs.all, request.episodes, request, sink);
+    if (!collection) return std::nullopt;
+    episodes::admit(spec, episodes::recorded(collection->episodes), {}, {}, request.allow_overlap,
+                    sink);
+    if (sink.has_errors()) return std::nullopt;
+    suggested.episodes = collection->episodes.size();
+    for (const episodes::Recorded& episode : collection->episodes)
+        suggested.frames += episode.frames;
+    suggested.folds = collection->folds.size();
+    if (suggested.folds < 2) {
+        sink.report(Code::too_few_frames, spec.monitors.front().span,
+                    "suggestions are compared on episodes that nothing was fitted on: that takes "
+                    "at least 2; there is 1");
+        return std::nullopt;
+    }
+    Solver solver(*collection, needs);
+    const std::vector<Filled> folds = fill_all(spec, solver, false, true, request.jobs).without;
+    std::vector<Measured> sound;
+    std::vector<std::string> reasons;
+    for (const Measured& one : measured) {
+        reasons.push_back(why_not(folds, one.predicate));
+        if (reasons.back().empty()) sound.push_back(one);
+    }
+    auto found = separate(folds, solver, sound, request, sink);
+    if (!found) return std::nullopt;
+    auto next = found->all.begin();
+    for (std::size_t i = 0, of = 0, at = 0; i < measured.size(); ++i, ++at) {
+        if (at == suggested.of[of].ranked.size()) {
+            ++of;
+            at = 0;
+        }
+        Suggestion& suggestion = suggested.of[of].ranked[at];
+        suggestion.why_not = reasons[i];
+        if (!reasons[i].empty()) continue;
+        suggestion.auroc = next++->after;
+        if (!suggestion.auroc) suggestion.why_not = "no fold has frames of both classes";
+    }
+    return found;
+}
+
+}  // namespace
+
+std::optional<Suggested> suggest(const check::Model& model, const CheckText& check_text,
+                                 const std::vector<std::string>& names, const Request& request,
+                                 diag::Sink& sink) {
+    const auto labelled = episodes::labelled_in(model, request.episodes.front(), request.names);
+    if (!labelled) {
+        sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
+        return std::nullopt;
+    }
+    const auto predicates = asked_for(model, names, *labelled, sink);
+    if (!predicates) return std::nullopt;
+    Suggested result;
+    Trials trials(model, check_text);
+    for (const Index predicate : *predicates) result.of.push_back(trials.add(predicate));
+    const auto spec = trials.spec();
+    if (!spec) {
+        sink.report(Code::nothing_to_suggest, model.monitors.front().span,
+                    "the candidates of all predicates together exceed the limits of a spec")
+            .note("name one predicate: --suggest PREDICATE");
+        return std::nullopt;
+    }
+    if (!measure(*spec, trials.measured(*spec), request, result, sink)) return std::nullopt;
+    for (Suggestions& one : result.of) rank(one);
+    return result;
+}
+
+}  // namespace etlc::fit

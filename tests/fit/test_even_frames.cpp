@@ -1,0 +1,63 @@
+// Frames taken from an episode: evenly, at most so many, and away from where a truth changes.
+#include <gtest/gtest.h>
+
+#include "episodes/auroc.hpp"
+#include "fit/even_frames.hpp"
+
+namespace etlc::fit {
+namespace {
+
+/// The steps taken of an episode, a letter a step: + it holds, . it does not, ? the point is
+/// missing.
+std::vector<std::uint64_t> taken(const std::string& episode, std::size_t most, std::uint64_t away) {
+    EvenFrames frames(most, away);
+    for (std::size_t step = 0; step < episode.size(); ++step) {
+        if (episode[step] == '.')
+            frames.add_other();
+        else
+            frames.add(step, episode[step] == '+' ? std::vector<float>{1} : std::vector<float>{});
+    }
+    std::vector<std::uint64_t> result;
+    for (const TakenFrame& frame : frames.take()) result.push_back(frame.step);
+    return result;
+}
+
+using Steps = std::vector<std::uint64_t>;
+
+TEST(EvenFrames, AreAllWhereTheyAreFew) {
+    EXPECT_EQ(taken("+.++?+", 10, 0), (Steps{0, 2, 3, 5}));
+}
+
+TEST(EvenFrames, LieAwayFromAChange) {
+    EXPECT_EQ(taken("..+++++..", 10, 2), (Steps{4}));
+    EXPECT_EQ(taken("+++++..", 10, 2), (Steps{0, 1, 2})) << "before the first, nobody knows";
+    EXPECT_EQ(taken("..+++", 10, 1), (Steps{3, 4})) << "nor behind the last";
+}
+
+TEST(EvenFrames, AreEvenlySpaced) {
+    EXPECT_EQ(taken(std::string(8, '+'), 4, 0), (Steps{0, 2, 4, 6}));
+    const Steps steps = taken(std::string(1000, '+'), 7, 0);
+    ASSERT_EQ(steps.size(), 7U);
+    for (std::size_t i = 1; i < steps.size(); ++i) {
+        EXPECT_GE(steps[i] - steps[i - 1], 100U);
+        EXPECT_LE(steps[i] - steps[i - 1], 200U);
+    }
+}
+
+TEST(Auroc, CountsPairsOfAGroupAndTiesHalf) {
+    using Frames = std::vector<episodes::RankedFrame>;
+    // The least score is the likeliest positive; the second group is of another scale.
+    std::vector<Frames> groups{Frames{{1, true, 0, 0}, {2, false, 0, 1}, {2, true, 0, 2}},
+                               Frames{{70, false, 1, 0}, {80, true, 1, 1}}};
+    const auto found = episodes::auroc(groups, 2);
+    ASSERT_TRUE(found);
+    EXPECT_EQ(found->value, (1 + 0.5 + 0) / 3);
+    EXPECT_FALSE(found->interval) << "two episodes do not give one";
+    EXPECT_EQ(groups[0][0].ordered, 1);
+    EXPECT_EQ(groups[1][0].ordered, 0);
+    std::vector<Frames> alike{Frames{{1, true, 0, 0}, {2, true, 0, 1}}};
+    EXPECT_FALSE(episodes::auroc(alike, 1));
+}
+
+}  // namespace
+}  // namespace etlc::fit
