@@ -33,7 +33,7 @@ bool is_name(const std::string& text) {
 class Reader : private thresholds::Fields {
 public:
     explicit Reader(const data::Archive& archive)
-        : Fields(Code::invalid_fitted), archive_(archive) {}
+        : Fields(Code::invalid_fitted, Code::unknown_fitted_format), archive_(archive) {}
 
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
@@ -58,14 +58,6 @@ public:
     }
 
 private:
-    void check_format(const Json& root) {
-        const Json* format = member(root, "", "format", Json::Kind::number, "1");
-        if (format != nullptr && format->text != "1")
-            failure_ = Failure{Code::unknown_fitted_format,
-                               fmt::format("'format' is {}, expected 1, the one this version reads",
-                                           in_quotes(format->text))};
-    }
-
     Entry entry(const Json& json, const std::string& name) {
         Entry result;
         result.name = name;

@@ -49,6 +49,14 @@ const Json* Fields::member(const Json& object, const std::string& path, const st
     return nullptr;
 }
 
+void Fields::check_format(const Json& root) {
+    const Json* format = member(root, "", "format", Json::Kind::number, "1");
+    if (format != nullptr && format->text != "1")
+        failure_ = Failure{unknown_format_,
+                           fmt::format("'format' is {}, expected 1, the one this version reads",
+                                       in_quotes(format->text))};
+}
+
 void Fields::check_keys(const Json& object, const std::string& path,
                         const std::vector<std::string>& known) {
     for (const std::string& key : object.keys) {

@@ -25,8 +25,12 @@ struct Allowance {
 
 class Fields {
 protected:
-    /// `invalid`: the code of what is not as expected.
-    explicit Fields(diag::Code invalid) : invalid_(invalid) {}
+    /// The codes of what is not as expected, and of a file of another format.
+    Fields(diag::Code invalid, diag::Code unknown_format)
+        : invalid_(invalid), unknown_format_(unknown_format) {}
+
+    /// "format" is 1, the one there is.
+    void check_format(const Json& root);
 
     /// The value of a key that has to be there and of this kind; null, after a failure, where it is
     /// not. `path`: of the object, in messages.
@@ -51,6 +55,7 @@ private:
     data::InputContent content(const Json& json, const std::string& path);
 
     diag::Code invalid_;
+    diag::Code unknown_format_;
 };
 
 /// The other way: JSON text of what the functions of the same names read, `indent` blanks deep.

@@ -21,7 +21,7 @@ using diag::Failure;
 /// Tree to File.
 class Reader : private Fields {
 public:
-    Reader() : Fields(Code::invalid_thresholds) {}
+    Reader() : Fields(Code::invalid_thresholds, Code::unknown_thresholds_format) {}
 
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
@@ -46,14 +46,6 @@ public:
     }
 
 private:
-    void check_format(const Json& root) {
-        const Json* format = member(root, "", "format", Json::Kind::number, "1");
-        if (format != nullptr && format->text != "1")
-            failure_ = Failure{Code::unknown_thresholds_format,
-                               fmt::format("'format' is {}, expected 1, the one this version reads",
-                                           in_quotes(format->text))};
-    }
-
     /// `what` is the key of the canonical text: "predicate" or "formula".
     void entries(const Json& root, const std::string& key, const std::string& what,
                  std::map<std::string, Entry>& result) {

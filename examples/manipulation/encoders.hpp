@@ -1,9 +1,12 @@
-// What turns camera images into embeddings, without training.
+// What turns camera images into embeddings.
 // Takes: an image. Gives: float32 embeddings. Keeps true: the same image gives the same embedding;
-// nothing is fitted to the tasks.
+// nothing is fitted to a task: pixels and random convolutions are not trained at all, the trained
+// ones (train.cpp) saw images without a label.
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
+#include <string>
 #include <vector>
 
 #include "simulator.hpp"
@@ -13,17 +16,48 @@ namespace manipulation {
 /// The mean colour of each of 16 x 16 squares: 768 numbers in [0, 1].
 Eigen::VectorXf encode_pixels(const Image& image);
 
-/// Two layers of convolutions with random filters and ReLU, then means over 4 x 4 squares: 512
-/// numbers. Random filters keep what is where, as trained ones do (Jarrett, Kavukcuoglu, Ranzato,
-/// LeCun: "What is the best multi-stage architecture for object recognition?", 2009).
+/// Filters of width x width pixels at every stride-th pixel, then ReLU; outside the image is 0.
+struct Convolution {
+    Eigen::Index width = 0;
+    Eigen::Index stride = 1;
+    Eigen::MatrixXf filters;  ///< a column each; rows go by y, x, channel
+    Eigen::RowVectorXf bias;  ///< a number for each filter
+};
+
+/// Two layers of convolutions with random filters, then means over 4 x 4 squares: 512 numbers.
+/// Random filters keep what is where, as trained ones do (Jarrett, Kavukcuoglu, Ranzato, LeCun:
+/// "What is the best multi-stage architecture for object recognition?", 2009).
 class RandomConvolutions {
 public:
     explicit RandomConvolutions(std::uint64_t seed);
     Eigen::VectorXf encode(const Image& image) const;
 
 private:
-    Eigen::MatrixXf first_;   ///< 7 x 7 x 3 by 16
-    Eigen::MatrixXf second_;  ///< 5 x 5 x 16 by 32
+    std::array<Convolution, 2> layers_;
+};
+
+/// What train.cpp makes: the layers of an encoder, the first half of an autoencoder.
+struct LayerShape {
+    int width;
+    int stride;
+    int filters;
+};
+inline constexpr std::array<LayerShape, 4> kTrainedLayers{
+    {{5, 2, 16}, {3, 2, 32}, {3, 2, 32}, {3, 2, 32}}};
+inline constexpr int kTrainedSide = kSide / 16;  ///< of the last layer
+inline constexpr int kTrainedCode = 128;         ///< numbers of an embedding
+
+/// Four layers of trained convolutions, then a linear map to 128 numbers.
+class TrainedConvolutions {
+public:
+    /// A file of float32: filters and bias of each layer, then the map's matrix, column by column,
+    /// and its bias. Throws std::runtime_error where it cannot be read or has another size.
+    explicit TrainedConvolutions(const std::string& path);
+    Eigen::VectorXf encode(const Image& image) const;
+
+private:
+    std::array<Convolution, kTrainedLayers.size()> layers_;
+    Convolution last_;  ///< of the whole last map; without ReLU
 };
 
 }  // namespace manipulation

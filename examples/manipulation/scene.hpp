@@ -4,14 +4,15 @@
 #pragma once
 
 #include <array>
+#include <map>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace manipulation {
 
 enum class Task { sorting, stacking, pick_place };
-inline constexpr std::array<std::string_view, 3> kTasks{"sorting", "stacking", "pick_place"};
+inline const std::map<std::string, Task> kTasks{
+    {"sorting", Task::sorting}, {"stacking", Task::stacking}, {"pick_place", Task::pick_place}};
 
 using Place = std::array<double, 2>;  ///< x, y on the table
 using Color = std::array<double, 3>;  ///< red, green, blue; 0 to 1

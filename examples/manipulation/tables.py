@@ -23,7 +23,7 @@ PARTS = {"fit": 120, "calibration": 60, "tests": 60, "shifted": 60}  # and their
 BASELINES = ["pca_kmeans", "logpzo"]
 METHODS = {"f1": "calibrated(f1)", "conformal": "calibrated(conformal, alpha = 0.1)"}
 PLACES = {"tests": "in distribution", "shifted": "shifted"}
-STUDENT = {2: 12.706, 3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for so many seeds
+STUDENT = {3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for so many seeds
 
 
 def run(*command):
@@ -77,12 +77,15 @@ def figures(folder, task, encoder, spec, method, part, pick):
 
 
 def cell(values):
-    """The mean over the seeds, and Student's 95 % interval of it, cut at 0 and 1."""
+    """The mean over the seeds, and Student's 95 % interval of it, cut at 0 and 1.
+
+    Of one or two seeds, for which that says nothing, each figure.
+    """
     if not values:
         return "-"
     mean = statistics.fmean(values)
-    if len(values) < 2:
-        return f"{mean:.3f}"
+    if len(values) not in STUDENT:
+        return f"{mean:.3f} ({', '.join(f'{v:.3f}' for v in values)})"
     half = STUDENT[len(values)] * statistics.stdev(values) / len(values) ** 0.5
     return f"{mean:.3f} [{max(0, mean - half):.3f}, {min(1, mean + half):.3f}]"
 
