@@ -18,9 +18,9 @@ bool is_in(const Position& block, Place zone) {
 }
 
 /// The specs say the same of the recorded state.
-bool is_done(const Simulator& simulator, Task task) {
+bool is_done(const Simulator& simulator, Task task, bool was_held) {
     const Position red = simulator.block(0);
-    if (task == Task::pick_place) return is_in(red, kGoal) && red[2] < 0.6 * kBlock;
+    if (task == Task::pick_place) return was_held && is_in(red, kGoal) && red[2] < 0.6 * kBlock;
     const Position blue = simulator.block(1);
     if (task == Task::sorting) return is_in(red, kRedZone) && is_in(blue, kBlueZone);
     return is_in(red, kRegion) && std::abs(red[0] - blue[0]) <= kBlock / 2 &&
@@ -40,16 +40,19 @@ Episode simulate(Simulator& simulator, Task task, bool shifted, Random& random) 
             state[name + "_" + "xyz"[i]].push_back(static_cast<float>(at[i]));
     };
     Episode episode;
+    bool was_held = false;
     while (!gripper.is_done() && episode.images.size() < kMostSteps) {
         simulator.step(gripper.next());
         episode.images.push_back(simulator.image());
+        was_held = was_held || simulator.is_held(0);
         note("tip", simulator.tip());
         for (std::size_t b = 0; b < names.size(); ++b) {
             note(names[b], simulator.block(b));
             state[names[b] + "_held"].push_back(simulator.is_held(b) ? 1 : 0);
         }
     }
-    state["success"].assign(episode.images.size(), is_done(simulator, task) ? 1.0F : 0.0F);
+    state["success"].assign(episode.images.size(),
+                            is_done(simulator, task, was_held) ? 1.0F : 0.0F);
     for (const auto& [name, values] : state) episode.state[name] = column(values);
     return episode;
 }

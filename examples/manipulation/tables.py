@@ -1,0 +1,169 @@
+#!/usr/bin/env python3
+"""tables.py ETLC RECORD FOLDER [SEEDS]: the tables of tables.md, as Markdown.
+
+Records episodes of three tasks in FOLDER, SEEDS times each (5), fits and calibrates the specs
+beside this file by two encoders, and evaluates them on other episodes and on shifted ones.
+What FOLDER has already is not made again; where a spec changed, remove what it made.
+"""
+import concurrent.futures
+import itertools
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+import sys
+import time
+
+HERE = pathlib.Path(__file__).parent
+TASKS = ["sorting", "stacking", "pick_place"]
+ENCODERS = {"pixels": 768, "conv": 512}  # and their dimensions
+SEEDS = [1, 2, 3, 4, 5]
+PARTS = {"fit": 120, "calibration": 60, "tests": 60, "shifted": 60}  # and their episodes
+BASELINES = ["pca_kmeans", "logpzo"]
+METHODS = {"f1": "calibrated(f1)", "conformal": "calibrated(conformal, alpha = 0.1)"}
+PLACES = {"tests": "in distribution", "shifted": "shifted"}
+STUDENT = {3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for so many seeds
+
+
+def run(*command):
+    """Runs a command, whose messages matter only if it fails."""
+    done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
+
+
+def record(recorder, folder, task, seed):
+    for number, (part, episodes) in enumerate(PARTS.items()):
+        into = folder / task / str(seed) / part
+        if (into / "recorded").exists():
+            continue
+        shifted = ["--shifted"] if part == "shifted" else []
+        run(recorder, task, 10 * seed + number, episodes, into, *shifted)
+        (into / "recorded").touch()
+
+
+def judge(etlc, folder, task, seed, encoder):
+    """Leaves FOLDER/TASK/SEED/ENCODER/SPEC.METHOD.PART.json."""
+    episodes = folder / task / str(seed)
+    into = episodes / encoder
+    into.mkdir(parents=True, exist_ok=True)
+    common = ["--set", f"D={ENCODERS[encoder]}", "--jobs", 1]
+    for spec in [task, *BASELINES]:
+        fitted = into / f"{spec}.fitted.npz"
+        text = (HERE / f"{spec}.etl").read_text()
+        if not fitted.exists():
+            run(etlc, "fit", HERE / f"{spec}.etl", "--data", episodes / "fit" / encoder, *common,
+                "-o", fitted)
+        for method, threshold in METHODS.items():
+            variant = into / f"{spec}.{method}.etl"
+            thresholds = into / f"{spec}.{method}.thresholds.json"
+            variant.write_text(text.replace(METHODS["f1"], threshold))
+            if not thresholds.exists():
+                run(etlc, "calibrate", variant, "--data", episodes / "calibration" / encoder,
+                    "--fitted", fitted, *common)
+            for part in PLACES:
+                result = into / f"{spec}.{method}.{part}.json"
+                if not result.exists():
+                    run(etlc, "evaluate", variant, "--data", episodes / part / encoder,
+                        "--fitted", fitted, *common, "--json", result)
+
+
+def figures(folder, task, encoder, spec, method, part, pick):
+    """A figure of every seed. pick takes it from the result of 'etlc evaluate'."""
+    paths = [folder / task / str(s) / encoder / f"{spec}.{method}.{part}.json" for s in SEEDS]
+    picked = [pick(json.loads(p.read_text())) for p in paths]
+    return [p for p in picked if p is not None]
+
+
+def cell(values):
+    """The mean over the seeds, and Student's 95 % interval of it, cut at 0 and 1.
+
+    Of one or two seeds, for which that says nothing, each figure.
+    """
+    if not values:
+        return "-"
+    mean = statistics.fmean(values)
+    if len(values) not in STUDENT:
+        return f"{mean:.3f} ({', '.join(f'{v:.3f}' for v in values)})"
+    half = STUDENT[len(values)] * statistics.stdev(values) / len(values) ** 0.5
+    return f"{mean:.3f} [{max(0, mean - half):.3f}, {min(1, mean + half):.3f}]"
+
+
+def table(title, columns, rows):
+    print(f"\n**{title}**\n\n| {' | '.join(columns)} |\n|{' --- |' * len(columns)}")
+    for row in rows:
+        print(f"| {' | '.join(row)} |")
+
+
+def frames_table(folder, part):
+    names = ["f1", "precision", "recall", "agreement", "auroc", "coverage"]
+    rows = []
+    for task, encoder, method in itertools.product(TASKS, ENCODERS, METHODS):
+        first = folder / task / str(SEEDS[0]) / encoder / f"{task}.{method}.{part}.json"
+        for predicate in json.loads(first.read_text())["predicates"]:
+            rows.append([task, encoder, predicate, method] + [
+                cell(figures(folder, task, encoder, task, method, part,
+                             lambda r: r["predicates"][predicate][name])) for name in names])
+    table(f"Predicates by frames, {PLACES[part]}",
+          ["task", "encoder", "predicate", "threshold", "F1", "precision", "recall", "agreement",
+           "AUROC", "episodes without a miss"], rows)
+
+
+def episodes_table(folder, part):
+    rows = []
+    for task, encoder in itertools.product(TASKS, ENCODERS):
+        def f1(spec, method, baseline=None):
+            def pick(result):
+                scores = result["monitors"]["done"]["episodes"]
+                return (scores[baseline] if baseline else scores)["f1"]
+            return cell(figures(folder, task, encoder, spec, method, part, pick))
+        rows.append([task, encoder] +
+                    [f1(s, m) for s in [task, *BASELINES] for m in METHODS] +
+                    [f1(task, "f1", "duration"), f1(task, "f1", "always_true")])
+    table(f"Episode F1 of `done`, {PLACES[part]}",
+          ["task", "encoder", "ETL, f1", "ETL, conformal", "PCA-kmeans, f1",
+           "PCA-kmeans, conformal", "logpZO, f1", "logpZO, conformal", "duration", "always true"],
+          rows)
+
+
+def order_table(folder, part):
+    orders = {"sorting": ["red_first", "blue_first"], "stacking": ["red_first", "blue_first"],
+              "pick_place": ["done", "place_first"]}
+    rows = []
+    for task, encoder in itertools.product(TASKS, ENCODERS):
+        for monitor in orders[task]:
+            rows.append([task, encoder, f"`{monitor}`"] + [
+                cell(figures(folder, task, encoder, task, method, part,
+                             lambda r: r["monitors"][monitor]["episodes"][name]))
+                for method in METHODS for name in ["agreement", "f1"]])
+    table(f"Order by episodes, {PLACES[part]}",
+          ["task", "encoder", "monitor", "agreement, f1", "F1, f1", "agreement, conformal",
+           "F1, conformal"], rows)
+
+
+def main():
+    etlc, recorder, folder = (pathlib.Path(a).absolute() for a in sys.argv[1:4])
+    if len(sys.argv) == 5:
+        del SEEDS[int(sys.argv[4]):]
+    began = time.monotonic()
+
+    def work(seed, task):
+        record(recorder, folder, task, seed)
+        for encoder in ENCODERS:
+            judge(etlc, folder, task, seed, encoder)
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        for job in [pool.submit(work, s, t) for s, t in itertools.product(SEEDS, TASKS)]:
+            job.result()
+    for part in PLACES:
+        episodes_table(folder, part)
+        order_table(folder, part)
+        frames_table(folder, part)
+    print(f"made in {(time.monotonic() - began) / 60:.0f} minutes", file=sys.stderr)
+
+
+if __name__ == "__main__":
+    if len(sys.argv) not in (4, 5):
+        sys.exit(__doc__)
+    main()
