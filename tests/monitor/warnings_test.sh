@@ -48,3 +48,16 @@ tests/spec/ok/inputs.etl i8
 tests/monitor/cases/pending.etl f32
 tests/monitor/cases/shared.etl f32
 END
+
+# A matrix smaller than the 16 elements that kernels read at once, where NaN is assumed away.
+spec='a projection of two scalars' values=-ffast-math targets=f32
+cat >"$box/small.etl" <<'ETL'
+spec small;
+input x, y : f32;
+projection turned = [[1, 2], [0.5, -1], [3, 1]];
+target corners = [[1, 2, 3], [0, 0, 1]] of turned([x, y]);
+predicate near = min l2(turned([x, y]), corners) <= 1;
+monitor reach = F near;
+ETL
+"$etlc" "$box/small.etl" --namespace used -o "$box/monitor.hpp"
+silent "$gxx" -ffast-math "${gcc_warnings[@]}"
