@@ -20,8 +20,8 @@ OLD_LINE = SPEC.splitlines()[3]
 
 
 def make_episodes(folder, random):
-    """What tells the classes apart is small beside what differs in every frame: how far a frame is
-    from one class says little, how much further than from the other says much."""
+    """What tells the classes apart is small beside what differs in every frame, and beside noise:
+    how far a frame is from one class says less than how much further it is from the other."""
     apart = random.normal(size=24) * 0.5
     drift = random.normal(size=(4, 24)) * 2
     for number in range(15):
