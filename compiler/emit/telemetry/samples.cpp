@@ -98,6 +98,7 @@ void print_why_of(Printer& out, const Context& context) {
     print_doc(out, "Of monitor m.");
     out.open("etlmon::Sample why(uint32_t m) const noexcept {");
     out.line("using Kind = etlmon::Place::Kind;");
+    out.line("// name, comparison, threshold, first of its codes_, rows that they tell apart");
     out.open("static constexpr etlmon::Place places[] = {");
     for (std::size_t i = 0; i < places.size(); ++i)
         out.line("{{{}, Kind::{}, {}, {}, {}}}{}", source::json_string(shown(context, places[i])),
