@@ -139,8 +139,8 @@ void write(const Autoencoder& net, const std::string& path) {
 }
 
 void run(const Order& order) {
-    // Each batch takes and frees the same large blocks: a third of the time where the system gets
-    // them back each time.
+    // Each batch takes and frees the same large blocks. Giving them back to the system each time
+    // took a third of the processor's time.
     mallopt(M_MMAP_MAX, 0);
     mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
     torch::manual_seed(order.seed);
