@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
 """coverage_test.py ETLC: 200 times over, fit on some episodes and calibrate on others. A new
-episode is then covered with probability 1 - alpha at least; it is not where the threshold is taken,
-in spite of `etlc calibrate`, from the episodes that were fitted on."""
+episode is then covered with probability k / (n + 1) for the rank k among n scores, which is at
+least 1 - alpha; it is not where the threshold is taken, in spite of `etlc calibrate`, from the
+episodes that were fitted on."""
 import json
 import math
 import pathlib
@@ -14,7 +15,7 @@ import numpy as np
 ALPHA = 0.2
 DRAWS = 200
 FITTED = 6  # episodes a draw
-CALIBRATED = 9
+CALIBRATED = 12  # rank 11 of 13: well above 1 - alpha, so that chance hides nothing
 FRESH = 20
 SPEC = """
 spec coverage;
@@ -42,6 +43,10 @@ def score(z, x, fitted):
     return np.abs(along - fitted["mean"][0, 0])[x <= 0].max()
 
 
+def rank(episodes):
+    return math.ceil((1 - ALPHA) * (episodes + 1))
+
+
 def draw(etlc, folder, random):
     """The parts of new episodes that are covered by the two thresholds."""
     parts = {"demos": FITTED, "others": CALIBRATED}
@@ -57,9 +62,8 @@ def draw(etlc, folder, random):
     thresholds = json.loads((folder / "coverage.thresholds.json").read_text())
     honest = thresholds["predicates"]["holds"]["epsilon"]
     seen = sorted(score(z, x, fitted) for z, x in episodes["demos"])
-    rank = math.ceil((1 - ALPHA) * (FITTED + 1))
     fresh = np.array([score(*episode(random), fitted) for _ in range(FRESH)])
-    return (fresh <= honest).mean(), (fresh <= seen[rank - 1]).mean()
+    return (fresh <= honest).mean(), (fresh <= seen[rank(FITTED) - 1]).mean()
 
 
 def main(etlc):
@@ -73,7 +77,9 @@ def main(etlc):
     honest, seen = covered.mean(0)
     error = covered.std(0)[0] / math.sqrt(DRAWS)
     print(f"covered: {honest:.3f}; on the episodes that were fitted on: {seen:.3f}")
-    assert honest >= 1 - ALPHA - 2 * error, "disjoint episodes cover at least 1 - alpha"
+    exact = rank(CALIBRATED) / (CALIBRATED + 1)
+    assert honest >= 1 - ALPHA, "disjoint episodes cover at least 1 - alpha"
+    assert abs(honest - exact) <= 3 * error, "and as much as their rank says"
     assert seen < 1 - ALPHA - 0.1, "the same episodes do not"
 
 
