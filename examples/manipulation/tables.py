@@ -11,6 +11,7 @@ import itertools
 import json
 import os
 import pathlib
+import re
 import statistics
 import subprocess
 import sys
@@ -28,10 +29,11 @@ STUDENT = {3: 4.303, 4: 3.182, 5: 2.776}  # 97.5 % quantiles for so many seeds
 
 
 def run(*command):
-    """Runs a command, whose messages matter only if it fails."""
+    """Runs a command and gives what it prints. Its messages matter only if it fails."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True)
     if done.returncode != 0:
         sys.exit(f"{' '.join(map(str, command))}\n{done.stderr}")
+    return done.stdout
 
 
 def train(trainer, folder):
@@ -54,7 +56,7 @@ def record(recorder, folder, task, seed):
 
 
 def judge(etlc, folder, task, seed, encoder):
-    """Leaves FOLDER/TASK/SEED/ENCODER/SPEC.METHOD.PART.json."""
+    """Leaves FOLDER/TASK/SEED/ENCODER/SPEC.METHOD.PART.json, and what fit says in SPEC.fit.txt."""
     episodes = folder / task / str(seed)
     into = episodes / encoder
     into.mkdir(parents=True, exist_ok=True)
@@ -62,9 +64,10 @@ def judge(etlc, folder, task, seed, encoder):
     for spec in [task, *BASELINES]:
         fitted = into / f"{spec}.fitted.npz"
         text = (HERE / f"{spec}.etl").read_text()
-        if not fitted.exists():
-            run(etlc, "fit", HERE / f"{spec}.etl", "--data", episodes / "fit" / encoder, *common,
-                "-o", fitted)
+        report = into / f"{spec}.fit.txt"
+        if not report.exists():
+            report.write_text(run(etlc, "fit", HERE / f"{spec}.etl", "--data",
+                                  episodes / "fit" / encoder, *common, "-o", fitted))
         for method, threshold in METHODS.items():
             variant = into / f"{spec}.{method}.etl"
             thresholds = into / f"{spec}.{method}.thresholds.json"
@@ -120,6 +123,24 @@ def frames_table(folder, part):
            "AUROC", "episodes without a miss"], rows)
 
 
+def separations(report):
+    """Of each predicate: the AUROC of the plain distance and of the fitted one."""
+    line = re.compile(r"^  (\w+) +([\d.]+) \[.*\] +([\d.]+) \[.*\]$", re.MULTILINE)
+    return {name: (float(plain), float(fitted)) for name, plain, fitted in line.findall(report)}
+
+
+def separation_table(folder):
+    rows = []
+    for task, encoder in itertools.product(TASKS, ENCODERS):
+        seeds = [separations((folder / task / str(s) / encoder / f"{task}.fit.txt").read_text())
+                 for s in SEEDS]
+        for predicate in seeds[0]:
+            rows.append([task, encoder, predicate] +
+                        [cell([seed[predicate][i] for seed in seeds]) for i in (0, 1)])
+    table("AUROC by frame on folds of the episodes that were fitted on",
+          ["task", "encoder", "predicate", "plain distance", "as the spec has it"], rows)
+
+
 def episodes_table(folder, part):
     rows = []
     for task, encoder in itertools.product(TASKS, ENCODERS):
@@ -168,6 +189,7 @@ def main():
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
         for job in [pool.submit(work, s, t) for s, t in itertools.product(SEEDS, TASKS)]:
             job.result()
+    separation_table(folder)
     for part in PLACES:
         episodes_table(folder, part)
         order_table(folder, part)
