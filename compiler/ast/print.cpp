@@ -50,9 +50,14 @@ std::string text_of(const Load& load) {
 }
 
 std::string text_of(const Frames& frames) {
+    const std::string key = frames.key.empty() ? "" : fmt::format("\"{}\", ", frames.key);
     const std::string stride = frames.stride ? ", stride = " + frames.stride->text : "";
-    return fmt::format("frames(\"{}\", \"{}\", {}{})", frames.path, frames.key,
+    return fmt::format("frames(\"{}\", {}{}{})", frames.path, key,
                        text_of(VectorLiteral{frames.frames, {}}), stride);
+}
+
+std::string text_of(const Images& images) {
+    return fmt::format("images(\"{}\")", images.path);
 }
 
 std::string text_of(const Calibrated& calibrated);
@@ -324,10 +329,22 @@ std::string text_of_missing(std::optional<bool> missing) {
     return missing ? fmt::format(" missing {}", *missing) : "";
 }
 
+std::string text_of_encoder(const std::optional<Name>& encoder) {
+    return encoder ? " by " + encoder->text : "";
+}
+
+std::string text_of(const Encoder& encoder) {
+    std::string result = fmt::format("encoder {} = {}", encoder.name.text, text_of(encoder.model));
+    for (const Encoder::Setting& setting : encoder.settings)
+        result +=
+            fmt::format(", {} {}", setting.key.text, text_of(VectorLiteral{setting.values, {}}));
+    return result;
+}
+
 std::string text_of(const Input& input) {
     std::string result = fmt::format(
-        "input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
-        text_of(input.type));
+        "input {} : {}{}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
+        text_of(input.type), text_of_encoder(input.encoder));
     if (input.range)
         result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
     if (input.hold) result += fmt::format(" hold {}", input.hold->text);
@@ -344,8 +361,8 @@ std::string text_of(const Projection& projection) {
 std::string text_of(const Target& target) {
     const auto source = [](const Target::Source& one) { return text_of(one); };
     const std::string space = target.space ? fmt::format(" of {}", text_of(*target.space)) : "";
-    return fmt::format("target {} = {}{}", target.name.text, joined(target.sources, ", ", source),
-                       space);
+    return fmt::format("target {} = {}{}{}", target.name.text, joined(target.sources, ", ", source),
+                       text_of_encoder(target.encoder), space);
 }
 
 std::string text_of(const Predicate& predicate) {
@@ -395,6 +412,14 @@ std::string print(const Expr& expression) {
     std::string text;
     ExprPrinter(text).print(expression, kSum);
     return text;
+}
+
+std::string print(const Frames& frames) {
+    return text_of(frames);
+}
+
+std::string print(const Images& images) {
+    return text_of(images);
 }
 
 }  // namespace etlc::ast
