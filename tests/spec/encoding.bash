@@ -34,6 +34,12 @@ END
 dimension='\002\000\000\000'
 row='\000\000\200\077\000\000\000\100' # 1, 2
 
+# embeds_each ARGUMENT...: `etlc embed` with an encoder that gives such a row for every frame.
+embeds_each() {
+    "$ETLC" embed t.etl "$@" --encoder-cmd "n=\$((\$(wc -c) / 11)); printf '$dimension'
+        while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done"
+}
+
 # embeds BYTES ARGUMENT...: `etlc embed` with an encoder that reads all frames and writes these.
 embeds() {
     "$ETLC" embed t.etl --encoder-cmd "cat > frames; printf '$1'" "${@:2}"

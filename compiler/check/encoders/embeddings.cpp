@@ -47,7 +47,7 @@ std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
 }
 
 std::string difference(std::string_view what, const std::string& then, const std::string& now) {
-    return fmt::format("{} was: {}; it is: {}", what, then, now);
+    return fmt::format("{} then: {}; now: {}", what, then, now);
 }
 
 /// What is not as it was. A model that is not here is not missed: where a monitor is built there

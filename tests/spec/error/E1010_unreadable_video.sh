@@ -3,8 +3,8 @@
 echo > ep.mp4
 decodes 65 "promises 100 frames and holds 57: it is cut or damaged"
 sed -i 's/^video).*/video) ;;/; s/^images)/images) trap "exit 0" EXIT;/' embedder
-embeds "$dimension$row$row$row" --data ep.mp4 -o out
+embeds_each --data ep.mp4 -o out
 sed -i 's/^video).*/video) kill -SEGV $$ ;;/' embedder
-embeds "$dimension$row$row$row" --data ep.mp4 -o out
-embeds "$dimension$row$row$row" --data no.mp4 'no*.mp4' out -o out
+embeds_each --data ep.mp4 -o out
+embeds_each --data no.mp4 'no*.mp4' out -o out
 ls . out
