@@ -161,9 +161,9 @@ Failure Encoder::stopped() {
     const std::string words = child_->last_words();
     if (!is_command_ && child_->exit_status() == data::frames::kRefused)
         return {Code::encoder_refused, words};
-    return {Code::encoder_failed, fmt::format("'{}' {}, after {}{}", name_, ending,
-                        diag::counted(taken_, "embedding"),
-                                              words.empty() ? "" : "; its last words: " + words)};
+    return {Code::encoder_failed,
+            fmt::format("'{}' {}, after {}{}", name_, ending, diag::counted(taken_, "embedding"),
+                        words.empty() ? "" : "; its last words: " + words)};
 }
 
 }  // namespace etlc::embed

@@ -172,9 +172,14 @@ public:
                                  size_text(width_, height_) + " to " +
                                  size_text(picture.width, picture.height) +
                                  " or its pixels, expected one size");
-        std::uint8_t* const planes[] = {rgb_.data()};
-        const int strides[] = {3 * width_};
+        // Rows that end on a boundary of 64 bytes: the scaler's loops leave out the ends of others.
+        std::uint8_t* const planes[] = {rows_.data()};
+        const int strides[] = {stride_};
         sws_scale(scaler_.get(), picture.data, picture.linesize, 0, height_, planes, strides);
+        const auto length = 3 * std::size_t(width_);
+        for (std::size_t row = 0; row < std::size_t(height_); ++row)
+            std::copy_n(rows_.data() + row * std::size_t(stride_), length,
+                        rgb_.data() + row * length);
         return rgb_;
     }
 
@@ -192,6 +197,8 @@ private:
             refuse(kRefused,
                    "has frames of " + size_text(width_, height_) + ", more than are read");
         rgb_.resize(std::size_t(width_) * std::size_t(height_) * 3);
+        stride_ = FFALIGN(3 * width_, 64) + 64;
+        rows_.resize(std::size_t(stride_) * std::size_t(height_ + 1));
         scaler_.reset(sws_alloc_context());
         const AVPixFmtDescriptor* const pixels =
             av_pix_fmt_desc_get(static_cast<AVPixelFormat>(format_));
@@ -232,6 +239,8 @@ private:
     int width_ = 0;
     int height_ = 0;
     int format_ = -1;
+    int stride_ = 0;
+    std::vector<std::uint8_t> rows_;
     std::vector<std::uint8_t> rgb_;
 };
 
