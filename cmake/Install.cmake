@@ -6,6 +6,9 @@ set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
 # Where etlc looks for it, from bin/.
 install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)
+if(TARGET etlc_embed_worker)
+  install(TARGETS etlc_embed_worker RUNTIME DESTINATION libexec/etlc)
+endif()
 install(TARGETS etlmon EXPORT etlmonTargets)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"

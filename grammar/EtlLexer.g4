@@ -77,6 +77,14 @@ STRIDE     : 'stride' ;
 OF         : 'of' ;
 WHERE      : 'where' ;
 
+// ---- contextual: what makes embeddings of images
+
+ENCODER   : 'encoder' ;
+BY        : 'by' ;
+IMAGES    : 'images' ;
+IMAGE     : 'image' ;
+DEVIATION : 'deviation' ;
+
 // ---- contextual: how durations are rounded
 
 DURATIONS : 'durations' ;

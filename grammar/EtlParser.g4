@@ -18,10 +18,12 @@ declaration
     | RATE amount HERTZ rounding? SEMICOLON                               # RateDeclaration
     | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
     | CONST name ASSIGN MINUS? NUMBER timeUnit? SEMICOLON                 # ConstDeclaration
-    | INPUT name (COMMA name)* COLON type range? hold? missing? SEMICOLON # InputDeclaration
+    | ENCODER name ASSIGN load (COMMA setting)* SEMICOLON                  # EncoderDeclaration
+    | INPUT name (COMMA name)* COLON type encodedBy? range? hold? missing? SEMICOLON
+                                                                          # InputDeclaration
     | PROJECTION name ASSIGN (fitted | numbers (OFFSET numbers)?) SEMICOLON
                                                                           # ProjectionDeclaration
-    | TARGET name ASSIGN (fitted | source (COMMA source)* (OF point)?) SEMICOLON
+    | TARGET name ASSIGN (fitted | source (COMMA source)* (encodedBy | OF point)?) SEMICOLON
                                                                           # TargetDeclaration
     | PREDICATE name ASSIGN sum comparisonOperator threshold missing? SEMICOLON
                                                                           # PredicateDeclaration
@@ -154,6 +156,16 @@ argument
     : name ASSIGN number
     ;
 
+// ---- encoders
+
+setting
+    : op=(IMAGE | MEAN | DEVIATION) LBRACKET number (COMMA number)* RBRACKET
+    ;
+
+encodedBy
+    : BY name
+    ;
+
 // ---- inputs
 
 type
@@ -190,12 +202,17 @@ numbers
     ;
 
 source
-    : load | literal | frames
+    : load | literal | frames | images
     ;
 
+// Without a key, of a video.
 frames
-    : FRAMES LPAREN path=STRING COMMA key=STRING COMMA LBRACKET amount (COMMA amount)* RBRACKET
+    : FRAMES LPAREN path=STRING COMMA (key=STRING COMMA)? LBRACKET amount (COMMA amount)* RBRACKET
       stride? RPAREN
+    ;
+
+images
+    : IMAGES LPAREN path=STRING RPAREN
     ;
 
 stride
@@ -247,6 +264,7 @@ name
     | RESTARTABLE | REPEATING
     | RISE | FALL | HELD
     | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
+    | ENCODER | BY | IMAGES | IMAGE | DEVIATION
     | DURATIONS | UP | DOWN | NEAREST
     | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
     | DISTANCE | MAHALANOBIS

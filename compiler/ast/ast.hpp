@@ -54,15 +54,23 @@ struct VectorLiteral {
     Span span;
 };
 
-/// frames("file.npz", "z", [120, 180]), or frames("file.npz", "z", [10, 50], stride = 5)
+/// frames("file.npz", "z", [120, 180]), or frames("file.npz", "z", [10, 50], stride = 5); of a
+/// video frames("file.mp4", [120, 180])
 struct Frames {
     std::string path;
-    std::string key;
+    std::string key;             ///< empty: of a video
     std::vector<Number> frames;  ///< with a stride: the first and the last
     std::optional<Number> stride;
     Span path_span;
     Span key_span;
     Span frames_span;
+    Span span;
+};
+
+/// images("bay/*.png")
+struct Images {
+    std::string path;  ///< of an image, a folder or a pattern
+    Span path_span;
     Span span;
 };
 
@@ -233,9 +241,23 @@ struct Range {
     Span span;
 };
 
+/// encoder NAME = load("model.onnx"), image [224, 224], mean [...], deviation [...]
+struct Encoder {
+    struct Setting {
+        Name key;
+        std::vector<Number> values;
+        Span span;
+    };
+    Name name;
+    Load model;
+    std::vector<Setting> settings;
+    Span span;
+};
+
 struct Input {
     std::vector<Name> names;
     Type type;
+    std::optional<Name> encoder;  ///< `by NAME`
     std::optional<Range> range;
     std::optional<Number> hold;
     std::optional<bool> missing;  ///< what a sample that is not there counts as
@@ -254,10 +276,11 @@ struct Projection {
 
 struct Target {
     /// A VectorLiteral is an error that check/ explains.
-    using Source = std::variant<Load, MatrixLiteral, VectorLiteral, Frames, Fitted>;
+    using Source = std::variant<Load, MatrixLiteral, VectorLiteral, Frames, Images, Fitted>;
 
     Name name;
     std::vector<Source> sources;  ///< one that is fitted stands alone
+    std::optional<Name> encoder;  ///< `by NAME`: of the images and videos among the sources
     std::optional<Point> space;   ///< `of P(z)`
     Span span;
 };
@@ -303,8 +326,8 @@ struct Monitor {
     Span span;
 };
 
-using Declaration =
-    std::variant<Rate, Constant, Input, Projection, Target, Predicate, Truth, Let, Monitor>;
+using Declaration = std::variant<Rate, Constant, Encoder, Input, Projection, Target, Predicate,
+                                 Truth, Let, Monitor>;
 
 struct Spec {
     Name name;  ///< empty text: missing or unreadable, already reported
@@ -320,5 +343,7 @@ struct Spec {
 std::string print(const Spec& spec);
 std::string print(const Formula& formula);
 std::string print(const Expr& expression);
+std::string print(const Frames& frames);
+std::string print(const Images& images);
 
 }  // namespace etlc::ast

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "ast/ast.hpp"
+#include "ast/operators.hpp"
 
 namespace etlc::ast {
 
@@ -50,9 +51,14 @@ std::string text_of(const Load& load) {
 }
 
 std::string text_of(const Frames& frames) {
+    const std::string key = frames.key.empty() ? "" : fmt::format("\"{}\", ", frames.key);
     const std::string stride = frames.stride ? ", stride = " + frames.stride->text : "";
-    return fmt::format("frames(\"{}\", \"{}\", {}{})", frames.path, frames.key,
+    return fmt::format("frames(\"{}\", {}{}{})", frames.path, key,
                        text_of(VectorLiteral{frames.frames, {}}), stride);
+}
+
+std::string text_of(const Images& images) {
+    return fmt::format("images(\"{}\")", images.path);
 }
 
 std::string text_of(const Calibrated& calibrated);
@@ -175,52 +181,6 @@ private:
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-/// How tight a formula binds, from the loosest.
-enum FormulaLevel : std::uint8_t {
-    kIff,
-    kImplies,
-    kOr,
-    kAnd,
-    kBinary,
-    kPrefix,
-    kComparison,
-    kAtom
-};
-
-struct Operator {
-    FormulaLevel level;
-    std::string_view symbol;
-};
-
-Operator operator_of(Formula::Kind kind) {
-    using Kind = Formula::Kind;
-    switch (kind) {
-        case Kind::constant_true: return {kAtom, "true"};
-        case Kind::constant_false: return {kAtom, "false"};
-        case Kind::name: return {kAtom, ""};
-        case Kind::comparison: return {kComparison, ""};
-        case Kind::equivalence: return {kIff, "<->"};
-        case Kind::implication: return {kImplies, "->"};
-        case Kind::disjunction: return {kOr, "||"};
-        case Kind::conjunction: return {kAnd, "&&"};
-        case Kind::until: return {kBinary, "U"};
-        case Kind::weak_until: return {kBinary, "W"};
-        case Kind::release: return {kBinary, "R"};
-        case Kind::since: return {kBinary, "S"};
-        case Kind::negation: return {kPrefix, "!"};
-        case Kind::next: return {kPrefix, "X"};
-        case Kind::eventually: return {kPrefix, "F"};
-        case Kind::always: return {kPrefix, "G"};
-        case Kind::previous: return {kPrefix, "Y"};
-        case Kind::once: return {kPrefix, "O"};
-        case Kind::historically: return {kPrefix, "H"};
-        case Kind::rise: return {kPrefix, "rise"};
-        case Kind::fall: return {kPrefix, "fall"};
-        case Kind::held: return {kPrefix, "held"};
-    }
-    return {kAtom, ""};
-}
-
 std::string text_of(const Bound& bound) {
     const bool apart = !bound.number.constant.empty() && !bound.unit.empty();
     return fmt::format("{}{}{}", bound.number.text, apart ? " " : "", bound.unit);
@@ -324,10 +284,22 @@ std::string text_of_missing(std::optional<bool> missing) {
     return missing ? fmt::format(" missing {}", *missing) : "";
 }
 
+std::string text_of_encoder(const std::optional<Name>& encoder) {
+    return encoder ? " by " + encoder->text : "";
+}
+
+std::string text_of(const Encoder& encoder) {
+    std::string result = fmt::format("encoder {} = {}", encoder.name.text, text_of(encoder.model));
+    for (const Encoder::Setting& setting : encoder.settings)
+        result +=
+            fmt::format(", {} {}", setting.key.text, text_of(VectorLiteral{setting.values, {}}));
+    return result;
+}
+
 std::string text_of(const Input& input) {
     std::string result = fmt::format(
-        "input {} : {}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
-        text_of(input.type));
+        "input {} : {}{}", joined(input.names, ", ", [](const Name& n) { return n.text; }),
+        text_of(input.type), text_of_encoder(input.encoder));
     if (input.range)
         result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
     if (input.hold) result += fmt::format(" hold {}", input.hold->text);
@@ -344,8 +316,8 @@ std::string text_of(const Projection& projection) {
 std::string text_of(const Target& target) {
     const auto source = [](const Target::Source& one) { return text_of(one); };
     const std::string space = target.space ? fmt::format(" of {}", text_of(*target.space)) : "";
-    return fmt::format("target {} = {}{}", target.name.text, joined(target.sources, ", ", source),
-                       space);
+    return fmt::format("target {} = {}{}{}", target.name.text, joined(target.sources, ", ", source),
+                       text_of_encoder(target.encoder), space);
 }
 
 std::string text_of(const Predicate& predicate) {
@@ -395,6 +367,14 @@ std::string print(const Expr& expression) {
     std::string text;
     ExprPrinter(text).print(expression, kSum);
     return text;
+}
+
+std::string print(const Frames& frames) {
+    return text_of(frames);
+}
+
+std::string print(const Images& images) {
+    return text_of(images);
 }
 
 }  // namespace etlc::ast

@@ -13,7 +13,9 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     set_constants(context, spec);
     declare_names(context);
     check_rate(context);
+    check_encoders(context);
     check_inputs(context);
+    check_embeddings(context);
     check_projections(context);
     check_targets(context);
     check_predicates(context);
@@ -29,6 +31,23 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
 
     if (sink.has_errors() || context.lacks_data) return std::nullopt;
     context.model.dependencies.assign(context.dependencies.begin(), context.dependencies.end());
+    return std::move(context.model);
+}
+
+std::optional<Model> check_encoded(ast::Spec spec, const source::File& file, const Options& options,
+                                   diag::Sink& sink) {
+    Context context{spec, file, options, sink};
+    context.incomplete = sink.has_errors();
+    context.model.file = file;
+
+    set_constants(context, spec);
+    declare_names(context);
+    check_rate(context);
+    check_encoders(context);
+    check_inputs(context);
+    collect_encoded(context);
+
+    if (sink.has_errors()) return std::nullopt;
     return std::move(context.model);
 }
 

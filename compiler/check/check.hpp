@@ -54,4 +54,9 @@ std::string default_thresholds_path(const std::string& spec_path);
 std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
                            diag::Sink& sink);
 
+/// What `etlc embed` needs: of the model the encoders, the inputs, what the targets encode, and the
+/// rate. Nothing where there was an error in these.
+std::optional<Model> check_encoded(ast::Spec spec, const source::File& file, const Options& options,
+                                   diag::Sink& sink);
+
 }  // namespace etlc::check

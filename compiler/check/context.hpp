@@ -1,8 +1,8 @@
 // What the steps of check share while they build the model.
 // Takes: the tree. Gives: the model under construction, the names, and the one way to report.
-// Keeps true: model.inputs, .projections, .targets, .lets and .monitors and the named predicates
-// begin with one element a declaration, in file order; an element that had an error is marked
-// broken in `scope`.
+// Keeps true: model.encoders, .inputs, .projections, .targets, .lets and .monitors and the named
+// predicates begin with one element a declaration, in file order; an element that had an error is
+// marked broken in `scope`.
 #pragma once
 
 #include <map>
@@ -21,6 +21,7 @@
 #include "check/names/scope.hpp"
 #include "check/predicates/matrices.hpp"
 #include "diag/diag.hpp"
+#include "embedded/embedded.hpp"
 #include "fitted/fitted.hpp"
 
 namespace etlc::check {
@@ -59,6 +60,8 @@ struct Context {
     /// Nothing where it was not needed, or could not be read.
     std::optional<fitted::File> fitted_file{};
     bool fitted_is_read = false;
+    /// Of the spec's encoders; nothing where there are none, or it could not be read.
+    std::optional<embedded::File> embedded_file{};
 
     std::unordered_set<std::string> unknown_names{};
     std::unordered_set<std::string> used_constants{};
@@ -84,6 +87,8 @@ template <class Visit>
 void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
     if (const auto* constant = std::get_if<ast::Constant>(&declaration))
         visit(NameKind::constant, constant->name);
+    if (const auto* encoder = std::get_if<ast::Encoder>(&declaration))
+        visit(NameKind::encoder, encoder->name);
     if (const auto* input = std::get_if<ast::Input>(&declaration))
         for (const ast::Name& name : input->names) visit(NameKind::input, name);
     if (const auto* projection = std::get_if<ast::Projection>(&declaration))

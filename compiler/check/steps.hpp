@@ -10,7 +10,10 @@ namespace etlc::check {
 void set_constants(Context& context, ast::Spec& spec);
 void declare_names(Context& context);
 void check_rate(Context& context);
+void check_encoders(Context& context);
 void check_inputs(Context& context);
+void collect_encoded(Context& context);
+void check_embeddings(Context& context);
 void check_projections(Context& context);
 void check_targets(Context& context);
 void check_predicates(Context& context);

@@ -14,11 +14,13 @@
 #include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
+#include "driver/embed.hpp"
 #include "driver/evaluate.hpp"
 #include "driver/explain/options.hpp"
 #include "driver/fit.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/options/compile_options.hpp"
+#include "driver/options/embed_options.hpp"
 #include "driver/options/evaluate_options.hpp"
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
@@ -50,6 +52,7 @@ struct Call {
     bool check_only = false;
     driver::Request request;
     driver::RunRequest run;
+    driver::EmbedRequest embed;
     driver::FitRequest fit;
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
@@ -169,6 +172,7 @@ int compile_command(int argc, char** argv) {
     CLI::App app(
         "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
         "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
+        "etlc embed SPEC.etl --data FILE... -o FOLDER,\n"
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
         "etlc crossvalidate SPEC.etl... --data FILE...,\n"
         "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl",
@@ -227,6 +231,22 @@ int run_command(int argc, char** argv) {
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
+    });
+}
+
+int embed_command(int argc, char** argv) {
+    Call call;
+    CLI::App app(
+        "Encodes the images and videos that a spec names, into SPEC.embedded.npz beside it, and "
+        "recordings into\nepisodes that the other commands take.",
+        "etlc embed");
+    add_spec_options(app, call);
+    driver::add_embed_options(app, call.embed);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const std::string mistake = driver::mistake_in_embed_call(call.embed); !mistake.empty())
+        return complain(app, mistake);
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
+        driver::embed(file, call.embed, sink);
     });
 }
 
@@ -374,6 +394,7 @@ int execute(int argc, char** argv) {
     if (command == "crossvalidate") return evaluate_command(argc - 1, argv + 1, true);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
     if (command == "incident") return incident_command(argc - 1, argv + 1);
+    if (command == "embed") return embed_command(argc - 1, argv + 1);
     if (command == "fit") return fit_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);

@@ -247,12 +247,13 @@ void print_made_from(Printer& out, const std::string& prefix, const Context& con
     const auto hash = [](std::uint64_t value) {
         return value == 0 ? std::string("none") : fmt::format("{:016x}", value);
     };
-    print_table(out, prefix,
-                {{"made from", "XXH64"},
-                 {context.spec_file, hash(made_from.spec)},
-                 {"target sets and weights", hash(made_from.data)},
-                 {"thresholds", hash(made_from.thresholds)}},
-                2);
+    std::vector<Row> rows = {{"made from", "XXH64"},
+                             {context.spec_file, hash(made_from.spec)},
+                             {"target sets and weights", hash(made_from.data)},
+                             {"thresholds", hash(made_from.thresholds)}};
+    for (const check::Encoder& encoder : context.model.encoders)
+        rows.push_back({"encoder " + encoder.name, encoder.fingerprint});
+    print_table(out, prefix, rows, 2);
     out.line(blank(prefix));
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 
 #include "data/quote.hpp"
+#include "embedded/embedded.hpp"
 
 namespace etlc::episodes {
 
@@ -62,6 +63,28 @@ Failure no_label(const check::Model& model, Index predicate, const Failure& abse
             absent.line, absent.column};
 }
 
+/// That an input's embeddings are by another encoder than the spec's, where the episode says so.
+std::optional<Failure> other_encoder(const Wanted& wanted, const std::string& path,
+                                     const data::NamesInFile& names) {
+    const check::Model& model = *wanted.model;
+    if (model.encoders.empty()) return std::nullopt;
+    const auto marks = embedded::read_marks(path);
+    if (!marks) return marks.failure();
+    for (const Index index : wanted.inputs) {
+        const check::Input& input = model.inputs[index];
+        if (input.encoder == kNone) continue;
+        const check::Encoder& encoder = model.encoders[input.encoder];
+        const auto renamed = names.find(input.name);
+        const auto mark = marks->find(renamed == names.end() ? input.name : renamed->second);
+        if (mark == marks->end() || mark->second == encoder.fingerprint) continue;
+        return Failure{Code::other_encoder,
+                       fmt::format("'{}' is by the encoder {}; expected {}, which is '{}' of the "
+                                   "spec",
+                                   input.name, mark->second, encoder.fingerprint, encoder.name)};
+    }
+    return std::nullopt;
+}
+
 }  // namespace
 
 std::vector<Index> identity_inputs(const check::Model& model) {
@@ -105,6 +128,7 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 
 diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
                                         const data::NamesInFile& names) {
+    if (auto failure = other_encoder(wanted, path, names)) return *failure;
     auto recording = open(wanted, [&](const std::vector<Channel>& channels) {
         return data::open_trace(path, data::renamed(channels, names));
     });

@@ -17,12 +17,6 @@
 
 namespace etlc::fitted {
 
-/// Files whose arrays take more are refused, and so are descriptions that take more or hold more
-/// JSON values.
-inline constexpr std::uint64_t kMaxArrayBytes = 256ULL << 20U;
-inline constexpr std::uint64_t kMaxDescriptionBytes = thresholds::kMaxFileBytes;
-inline constexpr std::uint64_t kMaxValues = thresholds::kMaxValues;
-
 /// A frame of an episode.
 struct Frame {
     std::string episode;  ///< content hash, 16 hex digits

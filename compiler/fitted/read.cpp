@@ -1,15 +1,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
-#include "data/arrays/npy.hpp"
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
 #include "fitted/fitted.hpp"
-#include "thresholds/fields.hpp"
+#include "thresholds/described.hpp"
 
 namespace etlc::fitted {
 namespace {
@@ -18,6 +16,9 @@ using data::in_quotes;
 using diag::Code;
 using diag::Failure;
 using thresholds::Json;
+
+const thresholds::Description kDescription{"fitted.json", "etlc fit", Code::malformed_fitted,
+                                           Code::unknown_fitted_format, Code::invalid_fitted};
 
 bool is_name(const std::string& text) {
     constexpr std::size_t kLongest = 1000;
@@ -30,10 +31,9 @@ bool is_name(const std::string& text) {
 }
 
 /// The description and the arrays that it names to File.
-class Reader : private thresholds::Fields {
+class Reader : private thresholds::DescribedArrays {
 public:
-    explicit Reader(const data::Archive& archive)
-        : Fields(Code::invalid_fitted, Code::unknown_fitted_format), archive_(archive) {}
+    explicit Reader(const data::Archive& archive) : DescribedArrays(archive, kDescription) {}
 
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
@@ -85,60 +85,23 @@ private:
     }
 
     void read_matrix(Entry& entry, const std::string& key) {
-        const auto array = floats(key, 2, "rows x dimension");
+        auto array = floats(key, 2, "rows x dimension");
         if (failure_) return;
         entry.rows = static_cast<std::uint32_t>(array.shape[0]);
         entry.columns = static_cast<std::uint32_t>(array.shape[1]);
-        entry.matrix.assign(array.values.begin(), array.values.end());
+        entry.matrix = std::move(array.values);
     }
 
     void read_offset(Entry& entry, const std::string& key) {
-        const auto array = floats(key, 1, "dimension");
+        auto array = floats(key, 1, "dimension");
         if (failure_) return;
-        entry.offset.assign(array.values.begin(), array.values.end());
+        entry.offset = std::move(array.values);
         if (entry.offset.size() == entry.columns) return;
         failure_ = Failure{Code::invalid_fitted,
                            fmt::format("array {} has {}, expected {}, as many as the columns of "
                                        "its matrix",
                                        in_quotes(key), diag::counted(entry.offset.size(), "number"),
                                        entry.columns)};
-    }
-
-    /// Finite float32 values, none of its dimensions 0.
-    data::Array floats(const std::string& key, std::size_t rank, std::string_view meaning) {
-        if (failure_) return {};
-        auto array = read(key);
-        if (!array) {
-            failure_ = array.failure();
-            return {};
-        }
-        const auto wrong = [&](const std::string& what) {
-            failure_ =
-                Failure{Code::invalid_fitted, fmt::format("array {} {}", in_quotes(key), what)};
-        };
-        if (array->element != data::Element::f32)
-            wrong(fmt::format("has elements of {}, expected float32", name(array->element)));
-        else if (array->shape.size() != rank || array->values.empty())
-            wrong(fmt::format("has shape {}, expected {}", array->shape_text(), meaning));
-        for (std::size_t i = 0; i < array->values.size() && !failure_; ++i)
-            if (!std::isfinite(array->values[i]))
-                wrong(fmt::format("holds {} at element {}, expected finite numbers",
-                                  array->values[i], i));
-        return std::move(*array);
-    }
-
-    diag::Result<data::Array> read(const std::string& key) {
-        const auto source = archive_.member(key);
-        if (!source) return source.failure();
-        bytes_ += (*source)->size();
-        if ((*source)->size() > kMaxArrayBytes || bytes_ > kMaxArrayBytes)
-            return Failure{Code::array_too_large,
-                           fmt::format("the arrays up to {} take more than {} bytes, the most "
-                                       "that are read",
-                                       in_quotes(key), kMaxArrayBytes)};
-        auto array = data::read_npy_from(**source);
-        if (!array) return data::in_array(array.failure(), key);
-        return array;
     }
 
     void read_medoids(Entry& entry, const Json& json, const std::string& path) {
@@ -162,21 +125,12 @@ private:
                 {hash(*episode, place + ".episode"), count(frame, place, "step")});
         }
     }
-
-    const data::Archive& archive_;
-    std::uint64_t bytes_ = 0;  ///< of the arrays so far
 };
 
 diag::Result<File> read_from(const data::ArchivePlace& place, const std::string& path) {
     const auto archive = data::Archive::open(place);
     if (!archive) return archive.failure();
-    const auto description = archive->file("fitted.json", kMaxDescriptionBytes);
-    if (!description && description.failure().code == Code::no_such_array)
-        return Failure{Code::malformed_fitted,
-                       "has no member 'fitted.json', expected a file that 'etlc fit' wrote"};
-    if (!description) return description.failure();
-    const auto root = thresholds::parse_json(*description, kMaxValues, Code::malformed_fitted,
-                                             Code::invalid_fitted);
+    const auto root = thresholds::read_description(*archive, kDescription);
     if (!root) return root.failure();
     return Reader(*archive).read(*root, path);
 }
@@ -191,10 +145,7 @@ std::string content_hash(const Entry& entry) {
 }
 
 std::string default_path(const std::string& spec_path) {
-    constexpr std::string_view kEnding = ".etl";
-    std::string stem = spec_path;
-    if (stem.ends_with(kEnding)) stem.resize(stem.size() - kEnding.size());
-    return stem + ".fitted.npz";
+    return thresholds::path_beside(spec_path, ".fitted.npz");
 }
 
 diag::Result<File> read(const std::string& path) {

@@ -38,6 +38,9 @@ private:
     static ast::Rounding rounding(Grammar::RoundingContext* context);  ///< null: none is written
     ast::Rate period(Grammar::PeriodDeclarationContext& context, source::Span span) const;
     ast::Constant constant(Grammar::ConstDeclarationContext& context, source::Span span) const;
+    ast::Encoder encoder(Grammar::EncoderDeclarationContext& context, source::Span span) const;
+    /// Null: none is written.
+    std::optional<ast::Name> encoded_by(Grammar::EncodedByContext* context) const;
     ast::Input input(Grammar::InputDeclarationContext& context, source::Span span) const;
     ast::Type type(Grammar::TypeContext& context) const;
     ast::Range range(Grammar::RangeContext& context) const;

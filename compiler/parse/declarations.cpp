@@ -33,6 +33,8 @@ std::variant<ast::Name, ast::Declaration> Builder::declaration(
         return period(*d, span);
     if (auto* const d = dynamic_cast<Grammar::ConstDeclarationContext*>(&context))
         return constant(*d, span);
+    if (auto* const d = dynamic_cast<Grammar::EncoderDeclarationContext*>(&context))
+        return encoder(*d, span);
     if (auto* const d = dynamic_cast<Grammar::InputDeclarationContext*>(&context))
         return input(*d, span);
     if (auto* const d = dynamic_cast<Grammar::ProjectionDeclarationContext*>(&context))
@@ -75,10 +77,32 @@ ast::Constant Builder::constant(Grammar::ConstDeclarationContext& context,
     return result;
 }
 
+ast::Encoder Builder::encoder(Grammar::EncoderDeclarationContext& context,
+                              source::Span span) const {
+    ast::Encoder result;
+    result.name = name(*context.name());
+    result.model = load(*context.load());
+    result.span = span;
+    for (Grammar::SettingContext* const setting : context.setting()) {
+        ast::Encoder::Setting& added = result.settings.emplace_back();
+        added.key = {text(*setting->op), span_of(*setting->op)};
+        for (Grammar::NumberContext* const value : setting->number())
+            added.values.push_back(number(*value));
+        added.span = span_of(*setting);
+    }
+    return result;
+}
+
+std::optional<ast::Name> Builder::encoded_by(Grammar::EncodedByContext* context) const {
+    if (context == nullptr) return std::nullopt;
+    return name(*context->name());
+}
+
 ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Span span) const {
     ast::Input result;
     for (const Grammar::NameContext* const n : context.name()) result.names.push_back(name(*n));
     result.type = type(*context.type());
+    result.encoder = encoded_by(context.encodedBy());
     if (auto* const limits = context.range()) result.range = range(*limits);
     if (auto* const hold = context.hold()) result.hold = number(*hold->amount());
     result.missing = missing(context.missing());
@@ -131,6 +155,7 @@ ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::
     if (auto* const fit = context.fitted()) result.sources.emplace_back(fitted(*fit));
     for (Grammar::SourceContext* const one : context.source())
         result.sources.push_back(target_source(*one));
+    result.encoder = encoded_by(context.encodedBy());
     if (auto* const space = context.point()) result.space = point(*space);
     return result;
 }
@@ -138,6 +163,8 @@ ast::Target Builder::target(Grammar::TargetDeclarationContext& context, source::
 ast::Target::Source Builder::target_source(Grammar::SourceContext& context) const {
     if (auto* const loaded = context.load()) return load(*loaded);
     if (auto* const taken = context.frames()) return frames(*taken);
+    if (auto* const shown = context.images())
+        return ast::Images{content(*shown->path), span_of(*shown->path), span_of(*shown)};
     return std::visit([](auto&& v) -> ast::Target::Source { return std::move(v); },
                       literal(*context.literal()));
 }
@@ -229,8 +256,10 @@ ast::Frames Builder::frames(Grammar::FramesContext& context) const {
     result.span = span_of(context);
     result.path = content(*context.path);
     result.path_span = span_of(*context.path);
-    result.key = content(*context.key);
-    result.key_span = span_of(*context.key);
+    if (context.key != nullptr) {
+        result.key = content(*context.key);
+        result.key_span = span_of(*context.key);
+    }
     result.frames_span = source::join(span_of(*context.LBRACKET()->getSymbol()),
                                       span_of(*context.RBRACKET()->getSymbol()));
     for (Grammar::AmountContext* const frame : context.amount())

@@ -147,6 +147,11 @@ std::string spelling(std::size_t type) {
         case EtlParser::FITTED: return "fitted";
         case EtlParser::FRAMES: return "frames";
         case EtlParser::STRIDE: return "stride";
+        case EtlParser::BY: return "by";
+        case EtlParser::IMAGES: return "images";
+        case EtlParser::IMAGE: return "image";
+        case EtlParser::MEAN: return "mean";
+        case EtlParser::DEVIATION: return "deviation";
         case EtlParser::OF: return "of";
         case EtlParser::WHERE: return "where";
         default: return {};
@@ -160,6 +165,7 @@ bool another_item_could_follow(const Stuck& stuck) {
         case EtlParser::RuleCalibrated:
         case EtlParser::RulePoint:
         case EtlParser::RuleLiteral:
+        case EtlParser::RuleSetting:
         case EtlParser::RuleRow:
         case EtlParser::RuleLoad:
             return has(stuck, EtlParser::RPAREN) || has(stuck, EtlParser::RBRACKET);
@@ -230,7 +236,7 @@ std::vector<std::string> expected_spellings(const Stuck& stuck) {
                                  "since", "calibrated"})
             words.emplace_back(word);
     if (stuck.rule == EtlParser::RuleDeclaration && stuck.declaration == EtlParser::INPUT)
-        for (const char* word : {"in", "hold", "scale", "missing"}) words.emplace_back(word);
+        for (const char* word : {"by", "in", "hold", "scale", "missing"}) words.emplace_back(word);
     return words;
 }
 

@@ -75,8 +75,9 @@ private:
 
     Diagnostic no_declaration() const {
         static const std::vector<std::string> kWords{
-            "spec",  "rate", "period",  "input",   "projection",  "target",    "predicate",
-            "truth", "let",  "monitor", "sliding", "restartable", "repeating", "const"};
+            "spec",  "rate",       "period",  "const",       "encoder",
+            "input", "projection", "target",  "predicate",   "truth",
+            "let",   "monitor",    "sliding", "restartable", "repeating"};
         const bool word = found_is_word();
         Diagnostic result =
             at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
@@ -84,10 +85,9 @@ private:
         if (word) add_nearest(result, found_, kWords);
         if (result.notes.empty())
             result.note(
-                "a declaration begins with spec, rate, period, const, input, projection, target, "
-                "predicate, truth, let, or with monitor, before which sliding, restartable or "
-                "repeating may "
-                "stand");
+                "a declaration begins with spec, rate, period, const, encoder, input, projection, "
+                "target, predicate, truth, let, or with monitor, before which sliding, restartable "
+                "or repeating may stand");
         return result;
     }
 

@@ -22,8 +22,10 @@ const std::map<std::string, Names> kArrows = {
     {"data", {"diag"}},
     {"thresholds", {"data"}},
     {"fitted", {"thresholds"}},
+    {"embedded", {"thresholds"}},
     {"parse", {"ast", "diag"}},
-    {"check", {"ast", "data", "thresholds", "fitted"}},
+    {"check", {"ast", "data", "thresholds", "fitted", "embedded"}},
+    {"embed", {"check"}},
     {"reference", {"check"}},
     {"ir", {"check"}},
     {"opt", {"ir"}},
@@ -35,7 +37,7 @@ const std::map<std::string, Names> kArrows = {
     {"fit", {"episodes", "pipeline", "fitted"}},
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
-    {"driver", {"parse", "emit", "explain", "fit", "calibrate", "evaluate"}},
+    {"driver", {"parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.

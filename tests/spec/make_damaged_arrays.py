@@ -98,3 +98,23 @@ for name, description in (
     ("E0674_invalid_fitted", FITTED % (1, '"three"')),
 ):
     write(name + ".fitted.npz", zipped([("fitted.json", description), ("g.npy", npy())]))
+
+EMBEDDED = """{
+  "format": %s,
+  "spec": "t",
+  "encoders": {
+    "net": {
+      "declaration": "load(\\"net.onnx\\"), mean [0, 0, 0], deviation [1, 1, 1]",
+      "model": "0123456789abcdef",
+      "settings": "mean [0, 0, 0], deviation [1, 1, 1]",
+      "kind": "network",
+      "dimension": 2,
+      "fingerprint": "0000000000000000"
+    }
+  },
+  "entries": {},
+  "etlc": "0.2.0"
+}
+"""
+for name, version in (("E1006_unknown_embedded_format", 2), ("E1007_invalid_embedded", 1)):
+    write(name + ".embedded.npz", zipped([("embedded.json", EMBEDDED % version)]))

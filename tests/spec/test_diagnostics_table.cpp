@@ -24,7 +24,8 @@ std::string_view group_title(std::string_view code) {
         {"E06", "Thresholds"},
         {"E07", "Limits"},
         {"E08", "Traces and episodes"},
-        {"E09", "Output and memory"}};
+        {"E09", "Output and memory"},
+        {"E10", "Images, video and encoders"}};
     const auto found = titles.find(code.substr(0, 3));
     return found == titles.end() ? std::string_view("Others") : found->second;
 }

@@ -46,10 +46,15 @@ std::string word(const Calibrated& calibrated) {
 }
 
 std::string word(const Frames& frames) {
-    std::vector<std::string> items{"\"" + frames.path + "\"", "\"" + frames.key + "\""};
+    std::vector<std::string> items{"\"" + frames.path + "\""};
+    if (!frames.key.empty()) items.push_back("\"" + frames.key + "\"");
     for (const Number& n : frames.frames) items.push_back(n.text);
     if (frames.stride) items.push_back(list("stride", {frames.stride->text}));
     return list("frames", items);
+}
+
+std::string word(const Images& images) {
+    return list("images", {"\"" + images.path + "\""});
 }
 
 std::string word(const Point& point) {
@@ -165,6 +170,16 @@ std::string word(const Constant& d) {
     return list("const", {d.name.text, d.value.text, d.unit});
 }
 
+std::string word(const Encoder& d) {
+    std::vector<std::string> items{d.name.text, word(d.model)};
+    for (const Encoder::Setting& setting : d.settings) {
+        std::vector<std::string> numbers;
+        for (const Number& n : setting.values) numbers.push_back(n.text);
+        items.push_back(list(setting.key.text, numbers));
+    }
+    return list("encoder", items);
+}
+
 std::string word(const Input& d) {
     const char* const types[] = {"f32", "f16", "i8", "bool"};
     std::vector<std::string> items;
@@ -172,6 +187,7 @@ std::string word(const Input& d) {
     items.push_back(std::string(":") + types[static_cast<int>(d.type.kind)]);
     if (d.type.dimension) items.push_back(list("dimension", {d.type.dimension->text}));
     if (d.type.scale) items.push_back(list("scale", {d.type.scale->text}));
+    if (d.encoder) items.push_back(list("by", {d.encoder->text}));
     if (d.range) items.push_back(list("range", {d.range->low.text, d.range->high.text}));
     if (d.hold) items.push_back(list("hold", {d.hold->text}));
     return list("input", items);
@@ -188,6 +204,7 @@ std::string word(const Target& d) {
     std::vector<std::string> items{d.name.text};
     for (const Target::Source& source : d.sources)
         items.push_back(std::visit([](const auto& v) { return word(v); }, source));
+    if (d.encoder) items.push_back(list("by", {d.encoder->text}));
     if (d.space) items.push_back(list("of", {word(*d.space)}));
     return list("target", items);
 }

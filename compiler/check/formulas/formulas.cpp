@@ -141,6 +141,7 @@ private:
             case NameKind::let: return entity.broken ? kNone : c_.model.lets[found->index].formula;
             case NameKind::input: return entity.broken ? kNone : input(found->index, written);
             case NameKind::constant:
+            case NameKind::encoder:
             case NameKind::projection:
             case NameKind::target:
             case NameKind::monitor:

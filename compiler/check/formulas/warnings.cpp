@@ -16,8 +16,9 @@ namespace {
 using diag::Code;
 
 void warn_of_unused(Context& c) {
-    for (const NameKind kind : {NameKind::constant, NameKind::input, NameKind::projection,
-                                NameKind::target, NameKind::predicate, NameKind::let}) {
+    for (const NameKind kind :
+         {NameKind::constant, NameKind::encoder, NameKind::input, NameKind::projection,
+          NameKind::target, NameKind::predicate, NameKind::let}) {
         for (const Entity& entity : c.scope.all(kind)) {
             if (entity.used || c.used_constants.contains(entity.name)) continue;
             c.report(Code::unused_declaration, entity.span,

@@ -23,6 +23,12 @@ void add_input(const Input& input, Hashes& hashes) {
                                             {input.scale, input.range.low, input.range.high});
 }
 
+/// What makes the input of images.
+void add_encoder(const Model& model, Index input, Hashes& hashes) {
+    if (const Index encoder = model.inputs[input].encoder; encoder != kNone)
+        hashes[model.encoders[encoder].name] = model.encoders[encoder].fingerprint;
+}
+
 /// Those that the point goes through.
 void add_projections(const Model& model, Index point, Hashes& hashes) {
     for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
@@ -40,8 +46,10 @@ void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
         add_projections(model, distance.point, hashes);
         if (!distance.weights.empty()) hashes[distance.text] = weights_hash(distance);
     });
-    for (const Index input : model.predicates[predicate].inputs)
+    for (const Index input : model.predicates[predicate].inputs) {
         add_input(model.inputs[input], hashes);
+        add_encoder(model, input, hashes);
+    }
 }
 
 std::vector<bool> reachable(const Model& model, Index root) {
@@ -152,6 +160,7 @@ FittedProvenance provenance(const Model& model, const Fitted& fitted) {
     FittedProvenance result;
     Hashes maps;
     add_projections(model, fitted.point, maps);
+    for (const Index input : model.points[fitted.point].inputs) add_encoder(model, input, maps);
     result.of = model.points[fitted.point].text;
     for (const auto& [name, hash] : maps) result.of += fmt::format(", {} = {}", name, hash);
     if (fitted.where == kNone) {

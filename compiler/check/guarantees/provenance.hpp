@@ -20,7 +20,7 @@ struct Provenance {
     /// Content hashes: of every target that the predicate measures against, by its name; of the
     /// weights of a mahalanobis distance, by the distance's text; of what an input's declaration
     /// makes of its samples (float16 or int8, its scale, range and hold), by the input's name,
-    /// where it takes them as they are not.
+    /// where it takes them as they are not; and fingerprints of encoders that make inputs.
     std::map<std::string, std::string> targets;
     /// The same of what the truth formula measures and reads.
     std::map<std::string, std::string> truth_targets;

@@ -142,6 +142,9 @@ private:
     }
 
     std::string_view what_is_hashed(const std::string& name) const {
+        if (std::any_of(model_.encoders.begin(), model_.encoders.end(),
+                        [&](const Encoder& declared) { return declared.name == name; }))
+            return "model or settings";
         const bool target =
             std::any_of(model_.targets.begin(), model_.targets.end(),
                         [&](const Target& declared) { return declared.name == name; });

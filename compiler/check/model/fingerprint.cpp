@@ -13,10 +13,12 @@ std::uint64_t hash_of(const std::string& lines) {
     return lines.empty() ? 0 : data::xxh64(lines);
 }
 
-/// A line a projection and a line a target set, as declared, and a line a distance with weights:
-/// its name, and the hash of the numbers.
+/// A line an encoder, a projection and a line a target set, as declared, and a line a distance with
+/// weights: its name, and the hash of the numbers.
 std::string data_lines(const Model& model) {
     std::string lines;
+    for (const Encoder& encoder : model.encoders)
+        lines += fmt::format("{} {}\n", encoder.name, encoder.fingerprint);
     for (const Projection& projection : model.projections)
         lines += fmt::format("{} {}\n", projection.name, projection.hash);
     for (const Target& target : model.targets)

@@ -29,6 +29,29 @@ struct Range {
     bool contains(float x) const { return low <= x && x <= high; }
 };
 
+/// What makes an embedding of an image: a model, and what is done to the image before.
+struct Encoder {
+    std::string name;
+    std::string model;             ///< the file, as the spec names it
+    std::vector<float> image;      ///< rows and columns that images are resized to; or empty
+    std::vector<float> mean;       ///< of red, green, blue; or empty
+    std::vector<float> deviation;  ///< the same
+    std::string declaration;       ///< canonical text
+    std::uint32_t dimension = 0;   ///< of the inputs by it; 0: there is none
+    std::string fingerprint;       ///< embedded::fingerprint; empty: `etlc embed` has not been run
+    Span span;
+};
+
+/// Images, or frames of a video, that a target is made of.
+struct Encoded {
+    std::string text;  ///< canonical, "images(\"bay/*.png\") by dino"
+    Index encoder = 0;
+    std::string path;  ///< of a file, a folder or a pattern, as the spec names it
+    bool is_video = false;
+    std::vector<std::uint64_t> frames;  ///< of a video, in the order of the rows
+    Span span;
+};
+
 struct Input {
     std::string name;
     InputType type = InputType::scalar;
@@ -39,6 +62,7 @@ struct Input {
     /// At most so many missing samples in a row are replaced by the last present one.
     std::uint32_t hold = 0;
     std::optional<bool> missing;  ///< bool: what it counts as where it is missing
+    Index encoder = kNone;        ///< of Model::encoders: what makes it of images
     Span span;
 
     bool is_embedding() const { return type != InputType::scalar && type != InputType::boolean; }

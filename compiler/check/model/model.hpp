@@ -336,6 +336,8 @@ struct Model {
     /// Durations that are not whole numbers of steps, as written, and what they were rounded to.
     std::map<std::string, std::uint32_t> rounded;
     std::string rounding;  ///< "up", "down" or "to the nearest"; empty: none is
+    std::vector<Encoder> encoders;
+    std::vector<Encoded> encoded;  ///< equal ones stand once
     std::vector<Input> inputs;
     std::vector<Projection> projections;
     std::vector<Point> points;  ///< equal ones stand once

@@ -188,6 +188,12 @@ private:
         }
     }
 
+    void replace(ast::Images& /*images*/) {}
+
+    void replace(ast::Encoder& encoder) {
+        for (ast::Encoder::Setting& setting : encoder.settings) replace(setting.values);
+    }
+
     void replace(ast::Rate& rate) {
         if (!rate.is_period) return replace(rate.number);
         replace(rate.number, rate.unit);

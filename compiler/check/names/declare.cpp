@@ -47,8 +47,8 @@ void declare_names(Context& c) {
     c.model.name = c.spec.name.text;
     check_spelling(c, c.spec.name, "spec", true);
     for (const NameKind kind :
-         {NameKind::constant, NameKind::input, NameKind::projection, NameKind::target,
-          NameKind::predicate, NameKind::let, NameKind::monitor})
+         {NameKind::constant, NameKind::encoder, NameKind::input, NameKind::projection,
+          NameKind::target, NameKind::predicate, NameKind::let, NameKind::monitor})
         for (const Entity& entity : c.scope.all(kind))
             if (!entity.duplicate) check_spelling(c, {entity.name, entity.span}, word(kind), false);
     if (c.scope.all(NameKind::monitor).empty() && !c.incomplete)

@@ -13,6 +13,7 @@ struct Words {
 
 constexpr std::array<Words, kNameKinds> kWords{{
     {"const", "a constant"},
+    {"encoder", "an encoder"},
     {"input", "an input"},
     {"projection", "a projection"},
     {"target", "a target"},

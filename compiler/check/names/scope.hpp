@@ -1,8 +1,7 @@
-// The names of a spec: one namespace for constants, inputs, projections, targets, predicates,
-// lets and monitors.
-// Takes: declarations, in file order. Gives: what a name means, and what was never used.
-// Keeps true: every declaration has an entity, also one that repeats a name; a name means its first
-// declaration.
+// The names of a spec: one namespace for constants, encoders, inputs, projections, targets,
+// predicates, lets and monitors. Takes: declarations, in file order. Gives: what a name means, and
+// what was never used. Keeps true: every declaration has an entity, also one that repeats a name; a
+// name means its first declaration.
 #pragma once
 
 #include <array>
@@ -21,6 +20,7 @@ namespace etlc::check {
 /// used.
 enum class NameKind : std::uint8_t {
     constant,
+    encoder,
     input,
     projection,
     target,
@@ -29,7 +29,7 @@ enum class NameKind : std::uint8_t {
     monitor,
     unreadable,
 };
-inline constexpr std::size_t kNameKinds = 8;
+inline constexpr std::size_t kNameKinds = 9;
 
 std::string_view word(NameKind kind);               ///< "input"
 std::string_view word_with_article(NameKind kind);  ///< "an input"

@@ -30,33 +30,6 @@ std::optional<std::uint64_t> whole(Context& c, const ast::Number& number, std::u
     return std::nullopt;
 }
 
-/// The frames listed, or from the first to the last by the stride, in the order of the spec.
-std::optional<std::vector<std::uint64_t>> frames_of(Context& c, const ast::Frames& written) {
-    std::vector<std::uint64_t> listed;
-    for (const ast::Number& number : written.frames) {
-        const auto frame = whole(c, number, 0);
-        if (!frame) return std::nullopt;
-        listed.push_back(*frame);
-    }
-    if (!written.stride) return listed;
-    const auto stride = whole(c, *written.stride, 1);
-    if (!stride) return std::nullopt;
-    if (listed.size() != 2 || listed[0] > listed[1]) {
-        c.report(Code::frames_form, written.frames_span,
-                 "with a stride, expected the first and the last frame: [10, 50]");
-        return std::nullopt;
-    }
-    if ((listed[1] - listed[0]) / *stride >= kMaxFrames) {
-        c.report(Code::frames_form, written.frames_span,
-                 fmt::format("more than {} frames", kMaxFrames));
-        return std::nullopt;
-    }
-    std::vector<std::uint64_t> frames;
-    for (std::uint64_t frame = listed[0]; frame <= listed[1]; frame += *stride)
-        frames.push_back(frame);
-    return frames;
-}
-
 const Input* input_of(Context& c, const ast::Frames& written) {
     const ast::Name name{written.key, written.key_span};
     const Index index = resolve(c, name, NameKind::input);
@@ -98,6 +71,32 @@ void report(Context& c, const ast::Frames& written, const std::string& path,
 }
 
 }  // namespace
+
+std::optional<std::vector<std::uint64_t>> frames_of(Context& c, const ast::Frames& written) {
+    std::vector<std::uint64_t> listed;
+    for (const ast::Number& number : written.frames) {
+        const auto frame = whole(c, number, 0);
+        if (!frame) return std::nullopt;
+        listed.push_back(*frame);
+    }
+    if (!written.stride) return listed;
+    const auto stride = whole(c, *written.stride, 1);
+    if (!stride) return std::nullopt;
+    if (listed.size() != 2 || listed[0] > listed[1]) {
+        c.report(Code::frames_form, written.frames_span,
+                 "with a stride, expected the first and the last frame: [10, 50]");
+        return std::nullopt;
+    }
+    if ((listed[1] - listed[0]) / *stride >= kMaxFrames) {
+        c.report(Code::frames_form, written.frames_span,
+                 fmt::format("more than {} frames", kMaxFrames));
+        return std::nullopt;
+    }
+    std::vector<std::uint64_t> frames;
+    for (std::uint64_t frame = listed[0]; frame <= listed[1]; frame += *stride)
+        frames.push_back(frame);
+    return frames;
+}
 
 std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
     const Input* const input = input_of(c, written);

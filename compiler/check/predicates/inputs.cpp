@@ -31,6 +31,7 @@ public:
         input.scale = scale();
         set_range(input);
         input.hold = hold();
+        input.encoder = encoder(input);
         input.missing = missing(input.type);
         return input;
     }
@@ -143,6 +144,27 @@ private:
                fmt::format("hold {} is not a whole number of steps from 0 to {}", shown(number),
                            kMaxHold));
         return 0;
+    }
+
+    /// Of its inputs, which all have the dimension of what it gives.
+    Index encoder(const Input& input) {
+        if (!declaration_.encoder) return kNone;
+        const Index index = resolve(c_, *declaration_.encoder, NameKind::encoder);
+        if (index == kNone) return kNone;
+        if (input.type != InputType::f32) {
+            report(Code::encoder_use, declaration_.encoder->span,
+                   fmt::format("an encoder gives embeddings in float32; expected an input f32[D], "
+                               "found {}",
+                               c_.file.text(declaration_.type.span)));
+            return kNone;
+        }
+        Encoder& encoder = c_.model.encoders[index];
+        if (encoder.dimension != 0 && encoder.dimension != input.dimension)
+            report(Code::embedding_dimension, declaration_.type.span,
+                   fmt::format("this input has dimension {}, another one by '{}' has {}",
+                               input.dimension, encoder.name, encoder.dimension));
+        encoder.dimension = input.dimension;
+        return index;
     }
 
     Context& c_;

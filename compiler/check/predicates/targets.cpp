@@ -3,6 +3,7 @@
 
 #include <limits>
 
+#include "check/encoders/encoded.hpp"
 #include "check/points/fitted.hpp"
 #include "check/points/fitted_file.hpp"
 #include "check/points/points.hpp"
@@ -20,7 +21,9 @@ Span span_of(const ast::Target::Source& source) {
     return std::visit([](const auto& s) { return s.span; }, source);
 }
 
-std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source) {
+std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
+                              const ast::Target& target) {
+    if (is_encoded(source)) return read_encoded(c, source, target.encoder);
     if (const auto* load = std::get_if<ast::Load>(&source)) return read_matrix(c, *load);
     if (const auto* literal = std::get_if<ast::MatrixLiteral>(&source))
         return read_matrix(c, *literal);
@@ -61,7 +64,7 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
     std::optional<Matrix> all;
     bool good = true;
     for (const ast::Target::Source& source : declaration.sources) {
-        auto rows = rows_of(c, source);
+        auto rows = rows_of(c, source, declaration);
         if (!rows)
             good = false;
         else if (!all)

@@ -186,6 +186,10 @@ diag::Result<std::unique_ptr<ByteSource>> Archive::member(const std::string& key
     return member;
 }
 
+bool Archive::has_file(const std::string& name) const {
+    return zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW) >= 0;
+}
+
 diag::Result<std::string> Archive::file(const std::string& name, std::uint64_t limit) const {
     const zip_int64_t index = zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW);
     if (index < 0)

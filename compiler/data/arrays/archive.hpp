@@ -33,6 +33,8 @@ public:
     /// The array `key`. No such key, or two of them, is a failure that names the nearest and lists
     /// what there is.
     diag::Result<std::unique_ptr<ByteSource>> member(const std::string& key) const;
+    /// Whether there is a member with this whole name.
+    bool has_file(const std::string& name) const;
     /// The bytes of the member with this whole name, "about.json", at most `limit`.
     diag::Result<std::string> file(const std::string& name, std::uint64_t limit) const;
 

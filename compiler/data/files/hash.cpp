@@ -1,12 +1,16 @@
 #include "data/files/hash.hpp"
 
+#include <fcntl.h>
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <bit>
 #include <string>
 #include <vector>
 
 #include "data/arrays/array.hpp"
+#include "data/files/descriptor.hpp"
+#include "data/files/file.hpp"
 #include "etlmon/checksum.hpp"
 
 namespace etlc::data {
@@ -76,6 +80,33 @@ std::string content_hash(const std::vector<std::uint64_t>& shape,
     lanes.add(reinterpret_cast<const std::uint8_t*>(bytes.data()), whole);
     const std::uint64_t hash = length >= 32 ? lanes.merged() : kXxhPrime5;
     return fmt::format("{:016x}", finish(hash + length, std::string_view(bytes).substr(whole)));
+}
+
+diag::Result<std::string> hash_of_file(const std::string& path, diag::Code code) {
+    if (auto why = why_unreadable(path)) return diag::Failure{code, *why};
+    const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+    if (!file) return diag::Failure{code, error_words(errno)};
+    constexpr std::size_t kPieceBytes = 1U << 20U;  // whole stripes
+    std::string piece(kPieceBytes, '\0');
+    XxhLanes lanes(0);
+    std::uint64_t length = 0;
+    std::size_t filled = 0;
+    for (;;) {
+        const ssize_t got = uninterrupted(
+            [&] { return ::read(*file, piece.data() + filled, kPieceBytes - filled); });
+        if (got < 0) return diag::Failure{code, error_words(errno)};
+        filled += static_cast<std::size_t>(got);
+        length += static_cast<std::uint64_t>(got);
+        if (got > 0 && filled < kPieceBytes) continue;
+        const std::size_t whole = filled / 32 * 32;
+        lanes.add(reinterpret_cast<const std::uint8_t*>(piece.data()), whole);
+        if (got == 0) {
+            const std::uint64_t hash = length >= 32 ? lanes.merged() : kXxhPrime5;
+            const std::string_view rest(piece.data() + whole, filled - whole);
+            return fmt::format("{:016x}", finish(hash + length, rest));
+        }
+        filled = 0;
+    }
 }
 
 }  // namespace etlc::data

@@ -5,10 +5,16 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <string_view>
+
+#include "diag/diag.hpp"
 
 namespace etlc::data {
 
 std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed = 0);
+
+/// Of a file of any size, 16 hex digits. Failures carry the code and do not repeat the path.
+diag::Result<std::string> hash_of_file(const std::string& path, diag::Code code);
 
 }  // namespace etlc::data

@@ -28,14 +28,9 @@ using hdf5::Tag;
 
 constexpr std::string_view kReader = "etlc-read-hdf5";
 
-/// Beside etlc, as in the build folder, or below libexec/, where it is installed.
 std::string find_reader() {
     if (const char* const path = std::getenv("ETLC_HDF5_READER")) return path;
-    std::error_code error;
-    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
-    const fs::path beside = folder / kReader;
-    if (fs::exists(beside, error)) return beside.string();
-    return (folder.parent_path() / "libexec" / "etlc" / kReader).string();
+    return helper_path(kReader);
 }
 
 Code code_of(char cause) {
@@ -58,7 +53,8 @@ public:
         if (!fs::is_regular_file(path, error))
             return Failure{Code::unreadable_trace, "is not a regular file, as HDF5 needs it"};
         const std::string reader = find_reader();
-        auto child = Child::start(reader, arguments, hdf5::kMaxSilenceSeconds);
+        auto child =
+            Child::start(reader, arguments, {.max_silence_seconds = hdf5::kMaxSilenceSeconds});
         if (!child)
             return Failure{
                 Code::unreadable_trace,

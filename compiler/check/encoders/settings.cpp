@@ -1,0 +1,138 @@
+#include "check/encoders/settings.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "check/numbers/decimal.hpp"
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/quote.hpp"
+#include "thresholds/json.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+using diag::Code;
+using diag::Failure;
+using thresholds::Json;
+
+constexpr std::uint64_t kMaxExtent = 1U << 14U;  ///< of an image, rows or columns
+constexpr std::uint64_t kMaxSettingsBytes = 1U << 20U;
+constexpr std::uint64_t kMaxSettingsValues = 1000;
+
+struct Setting {
+    std::string_view key;
+    std::vector<float> Encoder::*values;
+    std::size_t count;
+    std::string_view expected;
+};
+
+constexpr Setting kSettings[] = {
+    {"image", &Encoder::image, 2, "its rows and columns, whole numbers from 1 to 16384"},
+    {"mean", &Encoder::mean, 3, "a number each for red, green and blue"},
+    {"deviation", &Encoder::deviation, 3, "a positive number each for red, green and blue"}};
+
+bool fits(const Setting& setting, const std::string& number, float& value) {
+    if (to_float(number, value) != Fit::fits) return false;
+    if (setting.key == "image") {
+        const auto extent = Decimal::parse(number).whole(kMaxExtent);
+        return extent && *extent > 0;
+    }
+    return setting.key == "mean" || Decimal::parse(number).is_positive();
+}
+
+std::string known_keys() {
+    std::vector<std::string> keys;
+    for (const Setting& setting : kSettings) keys.push_back(data::in_quotes(setting.key));
+    return diag::alternatives(keys);
+}
+
+Failure wrong(const std::string& message) {
+    return {Code::encoder_form, message};
+}
+
+std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json& value) {
+    const bool numbers = value.kind == Json::Kind::array &&
+                         std::all_of(value.items.begin(), value.items.end(), [](const Json& item) {
+                             return item.kind == Json::Kind::number;
+                         });
+    if (!numbers)
+        return wrong(fmt::format("{} is {}, expected an array of numbers", data::in_quotes(key),
+                                 describe(value)));
+    std::vector<std::string> texts;
+    for (const Json& item : value.items) texts.push_back(item.text);
+    const auto mistake = set_setting(encoder, key, texts);
+    return mistake ? std::optional(wrong(*mistake)) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
+                                       const std::vector<std::string>& numbers) {
+    const auto* const setting = std::find_if(std::begin(kSettings), std::end(kSettings),
+                                             [&](const Setting& s) { return s.key == key; });
+    if (setting == std::end(kSettings))
+        return fmt::format("there is no setting {}; expected {}", data::in_quotes(key),
+                           known_keys());
+    std::vector<float> values;
+    bool good = numbers.size() == setting->count;
+    for (const std::string& number : numbers)
+        good = good && fits(*setting, number, values.emplace_back());
+    if (!good)
+        return fmt::format("{} [{}]; expected {}", key, fmt::join(numbers, ", "),
+                           setting->expected);
+    std::vector<float>& before = encoder.*setting->values;
+    if (!before.empty() && before != values)
+        return fmt::format("{} is [{}] in the spec and [{}] here; say it once", key,
+                           fmt::join(before, ", "), fmt::join(values, ", "));
+    before = std::move(values);
+    return std::nullopt;
+}
+
+std::string settings_text(const Encoder& encoder) {
+    const auto three = [](const std::vector<float>& values, float usual) {
+        return fmt::format("[{}]",
+                           fmt::join(values.empty() ? std::vector<float>(3, usual) : values, ", "));
+    };
+    const std::string image =
+        encoder.image.empty() ? "" : fmt::format("image [{}], ", fmt::join(encoder.image, ", "));
+    return fmt::format("{}mean {}, deviation {}", image, three(encoder.mean, 0),
+                       three(encoder.deviation, 1));
+}
+
+std::string settings_path(const std::string& model_path) {
+    return std::filesystem::path(model_path).replace_extension(".json").string();
+}
+
+std::optional<Failure> take_settings_file(Encoder& encoder, const std::string& model_path) {
+    const std::string path = settings_path(model_path);
+    std::error_code error;
+    if (path == model_path || !std::filesystem::exists(path, error)) return std::nullopt;
+    const auto text = data::read_file(path, kMaxSettingsBytes, Code::encoder_form);
+    if (!text) return text.failure();
+    const auto root =
+        thresholds::parse_json(*text, kMaxSettingsValues, Code::encoder_form, Code::encoder_form);
+    if (!root) return root.failure();
+    if (root->kind != Json::Kind::object)
+        return wrong(fmt::format("the file is {}, expected an object with {}", describe(*root),
+                                 known_keys()));
+    for (std::size_t i = 0; i < root->keys.size(); ++i)
+        if (auto failure = take(encoder, root->keys[i], root->items[i])) return failure;
+    return std::nullopt;
+}
+
+diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
+                                         std::string& place) {
+    place = model_path;
+    auto hash = data::hash_of_file(model_path, Code::encoder_refused);
+    if (!hash) return hash.failure();
+    place = settings_path(model_path);
+    if (auto failure = take_settings_file(encoder, model_path)) return *failure;
+    return embedded::Encoder{encoder.declaration, std::move(*hash), settings_text(encoder), "", 0};
+}
+
+}  // namespace etlc::check

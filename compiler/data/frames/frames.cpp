@@ -1,0 +1,125 @@
+#include "data/frames/frames.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <filesystem>
+
+#include "data/files/child.hpp"
+#include "data/files/file.hpp"
+#include "data/frames/images.hpp"
+#include "data/frames/protocol.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::data {
+namespace {
+
+namespace fs = std::filesystem;
+using diag::Code;
+using diag::Failure;
+
+constexpr std::string_view kEmbedder = "etlc-embed";
+
+std::uint32_t number_at(const char* bytes) {
+    std::uint32_t result = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        result |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+    return result;
+}
+
+class DecodedFrames final : public FrameSource {
+public:
+    DecodedFrames(std::unique_ptr<Child> child, Code code)
+        : child_(std::move(child)), code_(code) {}
+
+    diag::Result<bool> next(Frame& frame) override {
+        std::array<char, 8> head{};
+        if (child_->at_end()) return end();
+        if (!child_->read(head.data(), head.size())) return stopped();
+        frame.height = number_at(head.data());
+        frame.width = number_at(head.data() + 4);
+        const std::uint64_t pixels = std::uint64_t{frame.height} * frame.width;
+        if (pixels == 0 || pixels > frames::kMaxPixels) return stopped();
+        frame.rgb.resize(3 * pixels);
+        if (!child_->read(frame.rgb.data(), frame.rgb.size())) return stopped();
+        return true;
+    }
+
+private:
+    diag::Result<bool> end() {
+        switch (child_->exit_status()) {
+            case 0: return false;
+            case frames::kRefused: return Failure{code_, child_->last_words()};
+            case frames::kOutOfStep: return Failure{Code::video_out_of_step, child_->last_words()};
+            case frames::kNoSuchFrame: return Failure{Code::no_such_frame, child_->last_words()};
+            default: return stopped();
+        }
+    }
+
+    Failure stopped() {
+        return {code_, fmt::format("is damaged or too much to read: the process that read it {}",
+                                   child_->ending())};
+    }
+
+    std::unique_ptr<Child> child_;
+    Code code_;
+};
+
+}  // namespace
+
+bool is_video(const std::string& path) {
+    constexpr std::array<std::string_view, 6> kEndings = {".mp4", ".mkv",  ".avi",
+                                                          ".mov", ".webm", ".gif"};
+    return std::any_of(kEndings.begin(), kEndings.end(),
+                       [&](std::string_view ending) { return path.ends_with(ending); });
+}
+
+std::string embedder_path() {
+    if (const char* const path = std::getenv("ETLC_EMBEDDER")) return path;
+    return helper_path(kEmbedder);
+}
+
+Failure no_embedder() {
+    return {Code::no_embedder,
+            fmt::format("{} cannot be run, which reads images and video and runs networks; etlc "
+                        "builds it where it finds OpenCV and FFmpeg (Debian: libopencv-dnn-dev, "
+                        "libopencv-imgcodecs-dev, libavformat-dev, libswscale-dev)",
+                        in_quotes(embedder_path()))};
+}
+
+namespace {
+
+diag::Result<std::unique_ptr<FrameSource>> start(const std::vector<std::string>& arguments,
+                                                 Code code) {
+    auto child = Child::start(embedder_path(), arguments,
+                              {.max_silence_seconds = frames::kMaxSilenceSeconds, .heard = true});
+    if (!child) return no_embedder();
+    return std::unique_ptr<FrameSource>(std::make_unique<DecodedFrames>(std::move(child), code));
+}
+
+}  // namespace
+
+diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
+                                                      const FrameChoice& choice) {
+    if (auto why = why_unreadable(path)) return Failure{Code::unreadable_video, *why};
+    std::vector<std::string> arguments = {"video", path};
+    const auto add = [&](std::string_view option, const std::string& value) {
+        arguments.insert(arguments.end(), {std::string(option), value});
+    };
+    if (!choice.only.empty()) add("--only", fmt::format("{}", fmt::join(choice.only, ",")));
+    if (choice.first > 0) add("--first", std::to_string(choice.first));
+    if (choice.count < UINT64_MAX) add("--count", std::to_string(choice.count));
+    if (choice.rate > 0) add("--rate", fmt::format("{}", choice.rate));
+    return start(arguments, Code::unreadable_video);
+}
+
+diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::string>& paths) {
+    std::vector<std::string> arguments = {"images"};
+    arguments.insert(arguments.end(), paths.begin(), paths.end());
+    return start(arguments, Code::unreadable_image);
+}
+
+}  // namespace etlc::data

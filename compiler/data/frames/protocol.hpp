@@ -1,0 +1,29 @@
+// What etlc-embed and encoder commands read and write.
+// Frames, on the standard output of `etlc-embed video FILE ...` and `etlc-embed images FILE...` and
+// the standard input of encoders: of each frame its height and its width, 32 bits each, then height
+// x width x 3 bytes. Embeddings, on the standard output of encoders: once their dimension, 32 bits,
+// then for every frame as many float32. All numbers are little-endian. What went wrong is the last
+// line on standard error.
+#pragma once
+
+#include <cstdint>
+
+namespace etlc::data::frames {
+
+inline constexpr std::uint32_t kMaxExtent = 1U << 14U;    ///< rows or columns
+inline constexpr std::uint64_t kMaxPixels = 1ULL << 26U;  ///< of a frame
+inline constexpr std::uint32_t kMaxDimension = 1U << 20U;
+
+/// Exit statuses of etlc-embed, besides 0.
+enum Exit : int {
+    kWrongCall = 64,
+    kRefused = 65,     ///< the image, video or model
+    kOutOfStep = 66,   ///< frames that do not come at the rate
+    kNoSuchFrame = 67  ///< fewer frames than are wanted
+};
+
+// Limits of what decodes. An honest file needs a small part of them.
+inline constexpr std::uint64_t kMaxMemoryBytes = 4ULL << 30U;  ///< address space
+inline constexpr int kMaxSilenceSeconds = 120;                 ///< of the clock, between two frames
+
+}  // namespace etlc::data::frames

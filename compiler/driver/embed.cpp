@@ -1,0 +1,123 @@
+#include "driver/embed.hpp"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "data/files/file.hpp"
+#include "driver/output_file.hpp"
+#include "driver/version.hpp"
+#include "parse/parse.hpp"
+#include "source/escape.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+namespace fs = std::filesystem;
+using check::kNone;
+using diag::Code;
+
+bool has_encoded_input(const check::Model& model) {
+    return std::any_of(model.inputs.begin(), model.inputs.end(),
+                       [](const check::Input& input) { return input.encoder != kNone; });
+}
+
+/// False, and reported, where the spec asks for no embedding.
+bool has_work(const check::Model& model, bool with_recordings, diag::Sink& sink) {
+    const source::Span place = model.file.text().empty() ? source::Span{} : source::Span{0, 1};
+    if (model.encoders.empty()) {
+        sink.report(Code::nothing_to_embed, place, "the spec declares no encoder")
+            .note(
+                "add a line such as 'encoder dino = load(\"dino.onnx\"), image [224, 224];', and "
+                "'by dino' behind an input and behind targets of images");
+        return false;
+    }
+    if (!with_recordings || has_encoded_input(model)) return true;
+    sink.report(Code::nothing_to_embed, model.encoders[0].span,
+                "no input is by an encoder, so recordings give nothing")
+        .note(fmt::format("say of an input what makes it: input z : f32[D] by {};",
+                          model.encoders[0].name));
+    return false;
+}
+
+std::string episode_path(const std::string& folder, const embed::Recording& recording) {
+    return (fs::path(folder) / (recording.episode + ".npz")).string();
+}
+
+/// All episodes take their names together, so their files are open until then.
+void allow_many_files() {
+    rlimit files{};
+    if (::getrlimit(RLIMIT_NOFILE, &files) != 0) return;
+    files.rlim_cur = files.rlim_max;
+    static_cast<void>(::setrlimit(RLIMIT_NOFILE, &files));
+}
+
+bool make_folder(const std::string& folder, diag::Sink& sink) {
+    std::error_code error;
+    fs::create_directories(folder, error);
+    if (!error) return true;
+    sink.report(data::in_file(
+        {Code::unwritable_output, fmt::format("cannot be made: {}", error.message())}, folder));
+    return false;
+}
+
+std::string report(const check::Model& model, const embedded::File& file, std::size_t episodes,
+                   const std::string& folder) {
+    std::string text;
+    for (const auto& [name, encoder] : file.encoders)
+        text += fmt::format("encoder {}: dimension {}, {} {}\n", name, encoder.dimension,
+                            encoder.kind, embedded::fingerprint(encoder));
+    for (const check::Encoded& encoded : model.encoded)
+        text += fmt::format("{}: {}\n", encoded.text,
+                            diag::counted(file.entries.at(encoded.text).rows, "row"));
+    if (episodes > 0) text += fmt::format("{} in {}\n", diag::counted(episodes, "episode"), folder);
+    return text;
+}
+
+}  // namespace
+
+bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& sink) {
+    ast::Spec spec = parse::parse(file, sink);
+    check::Options options;
+    options.settings = request.settings;
+    auto model = check::check_encoded(std::move(spec), file, options, sink);
+    if (!model || !has_work(*model, !request.data.empty(), sink) || sink.refused()) return false;
+
+    embed::Request asked = request.embed;
+    asked.version = kVersion;
+    auto embeddings = embed::describe_encoders(*model, asked, sink);
+    if (!embeddings) return false;
+    const double rate = model->step_seconds > 0 ? 1 / model->step_seconds : 0;
+    const auto recordings = embed::find_recordings(request.data, rate, sink);
+    if (sink.has_errors()) return false;
+
+    const std::string result = embedded::default_path(file.path());
+    std::vector<std::string> outputs = {result};
+    std::vector<std::string> inputs = {file.path()};
+    for (const check::Encoder& encoder : model->encoders)
+        inputs.push_back((fs::path(file.path()).parent_path() / encoder.model).string());
+    for (const embed::Recording& recording : recordings) {
+        outputs.push_back(episode_path(request.output, recording));
+        inputs.push_back(recording.path);
+    }
+    if (!recordings.empty() && !make_folder(request.output, sink)) return false;
+    if (!check_outputs(outputs, inputs, sink)) return false;
+
+    allow_many_files();
+    OutputFiles files(sink);
+    const auto keep = [&](const embed::Recording& recording, const std::string& bytes) {
+        return files.add(episode_path(request.output, recording), bytes);
+    };
+    return embed::embed_targets(*model, asked, *embeddings, sink) &&
+           embed::embed_recordings(*model, *embeddings, recordings, asked, keep, sink) &&
+           files.add(result, embedded::write(*embeddings)) &&
+           files.add(std::string(kStandardOutput),
+                     source::visible_lines(
+                         report(*model, *embeddings, recordings.size(), request.output))) &&
+           files.commit();
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,26 @@
+// `etlc embed`: spec, images and videos in, embeddings and episodes out.
+// Takes: the spec's text. Gives: the file of embeddings beside the spec, and an episode for every
+// recording. Keeps true: all files appear or none, each whole.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "check/check.hpp"
+#include "diag/diag.hpp"
+#include "embed/embed.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+struct EmbedRequest {
+    embed::Request embed;           ///< its version is set here
+    std::vector<std::string> data;  ///< recordings
+    std::string output;             ///< folder of the episodes
+    std::vector<check::Setting> settings;
+};
+
+/// False where the sink now says why not.
+bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& sink);
+
+}  // namespace etlc::driver

@@ -1,0 +1,169 @@
+#include "embed/encoder.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <bit>
+#include <cmath>
+
+#include "data/frames/protocol.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::embed {
+
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+void append(std::string& bytes, std::uint32_t value) {
+    for (unsigned shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>((value >> shift) & 0xffU);
+}
+
+std::uint32_t number_at(const char* bytes) {
+    std::uint32_t result = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        result |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+    return result;
+}
+
+std::vector<std::string> network_arguments(const check::Encoder& encoder,
+                                           const std::string& model_path) {
+    std::vector<std::string> arguments = {"encode", model_path};
+    const auto add = [&](std::string_view option, const std::vector<float>& values) {
+        if (values.empty()) return;
+        arguments.emplace_back(option);
+        arguments.push_back(fmt::format("{}", fmt::join(values, ",")));
+    };
+    add("--image", encoder.image);
+    add("--mean", encoder.mean);
+    add("--deviation", encoder.deviation);
+    return arguments;
+}
+
+}  // namespace
+
+diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& encoder,
+                                                      const std::string& model_path,
+                                                      const Running& running) {
+    data::Child::Options options{
+        .max_silence_seconds = running.max_silence_seconds, .fed = true, .heard = true};
+    std::unique_ptr<data::Child> child;
+    if (running.command.empty()) {
+        child = data::Child::start(data::embedder_path(), network_arguments(encoder, model_path),
+                                   options);
+        if (!child) return data::no_embedder();
+    } else {
+        options.whole_environment = true;
+        options.variables = {"ETLC_ENCODER=" + encoder.name, "ETLC_MODEL=" + model_path};
+        child = data::Child::start("/bin/sh", {"-c", running.command}, options);
+        if (!child) return Failure{Code::encoder_failed, "there is no shell to run the command"};
+    }
+    return std::unique_ptr<Encoder>(new Encoder(encoder, running, std::move(child)));
+}
+
+std::optional<Trouble> Encoder::add(data::FrameSource& frames, const std::string& name, Done done) {
+    jobs_.push_back({name, 0, false, {}, std::move(done)});
+    data::Frame frame;
+    for (;;) {
+        const auto more = frames.next(frame);
+        if (!more) return Trouble{more.failure(), false, jobs_.back().frames};
+        if (!*more) break;
+        std::string head;
+        append(head, frame.height);
+        append(head, frame.width);
+        if (!child_->give(head) || !child_->give(frame.rgb)) return Trouble{stopped()};
+        ++jobs_.back().frames;
+        ++given_;
+        if (auto failure = take(false)) return Trouble{std::move(*failure)};
+    }
+    jobs_.back().complete = true;
+    finish_jobs();
+    return std::nullopt;
+}
+
+std::optional<Trouble> Encoder::finish() {
+    child_->give_no_more();
+    if (auto failure = take(true)) return Trouble{std::move(*failure)};
+    if (!child_->at_end())
+        return Trouble{
+            {Code::encoder_failed, fmt::format("'{}' wrote more than {}, one a frame", name_,
+                                               diag::counted(taken_, "embedding"))}};
+    if (child_->exit_status() != 0) return Trouble{stopped()};
+    return std::nullopt;
+}
+
+std::optional<Failure> Encoder::take(bool all) {
+    if (dimension_ == 0) {
+        if (!all && child_->arrived() < 4) return std::nullopt;
+        if (auto failure = take_dimension()) return failure;
+    }
+    const std::size_t row_bytes = 4 * std::size_t{dimension_};
+    while (taken_ < given_ && (all || child_->arrived() >= row_bytes)) {
+        for (Job& job : jobs_)
+            if (job.rows.size() < job.frames * dimension_) {
+                if (auto failure = take_row(job)) return failure;
+                break;
+            }
+        finish_jobs();
+    }
+    return std::nullopt;
+}
+
+std::optional<Failure> Encoder::take_dimension() {
+    std::array<char, 4> head{};
+    if (!child_->read(head.data(), head.size())) return stopped();
+    dimension_ = number_at(head.data());
+    if (dimension_ == 0 || dimension_ > data::frames::kMaxDimension)
+        return Failure{
+            Code::encoder_failed,
+            fmt::format("'{}' began with the dimension {}, expected 32 bits of a number from 1 "
+                        "to {}",
+                        name_, dimension_, data::frames::kMaxDimension)};
+    if (expected_ != 0 && dimension_ != expected_)
+        return Failure{
+            Code::embedding_dimension,
+            fmt::format("'{}' gives embeddings of dimension {}, the inputs by it have {}", name_,
+                        dimension_, expected_)};
+    return std::nullopt;
+}
+
+std::optional<Failure> Encoder::take_row(Job& job) {
+    bytes_.resize(4 * std::size_t{dimension_});
+    if (!child_->read(bytes_.data(), bytes_.size())) return stopped();
+    const std::uint64_t row = job.rows.size() / dimension_;
+    for (std::size_t i = 0; i < dimension_; ++i) {
+        const auto value = std::bit_cast<float>(number_at(bytes_.data() + 4 * i));
+        if (!std::isfinite(value))
+            return Failure{
+                Code::embedding_not_finite,
+                fmt::format("'{}' gave {} at element {} of the embedding of {}, frame {} "
+                            "(both from 0)",
+                            name_, value, i, job.name, row)};
+        job.rows.push_back(value);
+    }
+    ++taken_;
+    return std::nullopt;
+}
+
+void Encoder::finish_jobs() {
+    while (!jobs_.empty() && jobs_.front().complete && dimension_ > 0 &&
+           jobs_.front().rows.size() == jobs_.front().frames * dimension_) {
+        jobs_.front().done(std::move(jobs_.front().rows));
+        jobs_.pop_front();
+    }
+}
+
+Failure Encoder::stopped() {
+    const std::string ending = child_->ending();
+    const std::string words = child_->last_words();
+    if (!is_command_ && child_->exit_status() == data::frames::kRefused)
+        return {Code::encoder_refused, words};
+    return {Code::encoder_failed,
+            fmt::format("'{}' {}, after {}{}", name_, ending, diag::counted(taken_, "embedding"),
+                        words.empty() ? "" : "; its last words: " + words)};
+}
+
+}  // namespace etlc::embed

@@ -1,0 +1,160 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <map>
+
+#include "data/arrays/npz_writer.hpp"
+#include "data/files/file.hpp"
+#include "embed/embed.hpp"
+
+namespace etlc::embed {
+
+namespace {
+
+using check::Index;
+using check::kNone;
+using diag::Code;
+
+/// The inputs that an encoder makes.
+std::vector<Index> encoded_inputs(const check::Model& model) {
+    std::vector<Index> found;
+    for (Index i = 0; i < model.inputs.size(); ++i)
+        if (model.inputs[i].encoder != kNone) found.push_back(i);
+    return found;
+}
+
+class Episodes {
+public:
+    Episodes(const check::Model& model, const embedded::File& file,
+             const std::vector<Recording>& recordings, const Request& request, const Keep& keep,
+             diag::Sink& sink)
+        : model_(model),
+          recordings_(recordings),
+          request_(request),
+          keep_(keep),
+          sink_(sink),
+          inputs_(encoded_inputs(model)),
+          made_(recordings.size()) {
+        for (const Index input : inputs_) {
+            const std::string& encoder = model.encoders[model.inputs[input].encoder].name;
+            marks_[model.inputs[input].name] = embedded::fingerprint(file.encoders.at(encoder));
+        }
+    }
+
+    bool make() {
+        if (recordings_.empty()) return true;
+        if (!has_cameras()) return false;
+        for (Index encoder = 0; encoder < model_.encoders.size(); ++encoder)
+            if (!encode(encoder)) return false;
+        return true;
+    }
+
+private:
+    /// Two inputs by one encoder see two cameras, and a video is one.
+    bool has_cameras() {
+        for (const Recording& recording : recordings_) {
+            if (!recording.has_one_camera) continue;
+            for (const Index one : inputs_)
+                for (const Index other : inputs_) {
+                    const check::Input& a = model_.inputs[one];
+                    const check::Input& b = model_.inputs[other];
+                    if (one >= other || a.encoder != b.encoder) continue;
+                    sink_
+                        .report(Code::encoder_use, b.span,
+                                fmt::format("'{}' and '{}' are by the same encoder, so of two "
+                                            "cameras, and {} is of one",
+                                            a.name, b.name, recording.path))
+                        .note("expected recordings with a camera for each input");
+                    return false;
+                }
+        }
+        return true;
+    }
+
+    bool encode(Index index) {
+        const check::Encoder& encoder = model_.encoders[index];
+        const bool is_used = std::any_of(inputs_.begin(), inputs_.end(), [&](Index input) {
+            return model_.inputs[input].encoder == index;
+        });
+        if (!is_used) return true;
+        const std::string model_path =
+            (std::filesystem::path(model_.file.path()).parent_path() / encoder.model)
+                .lexically_normal()
+                .string();
+        auto running = Encoder::start(encoder, model_path, request_.running);
+        if (!running) return fail(running.failure(), model_path);
+        for (std::size_t r = 0; r < recordings_.size(); ++r)
+            for (const Index input : inputs_)
+                if (model_.inputs[input].encoder == index && !add(**running, r, input, model_path))
+                    return false;
+        if (auto trouble = (*running)->finish()) return fail(trouble->failure, model_path);
+        return !failed_;
+    }
+
+    bool add(Encoder& running, std::size_t recording, Index input, const std::string& model_path) {
+        const Recording& from = recordings_[recording];
+        auto frames = from.open(model_.inputs[input].name);
+        if (!frames) return fail(frames.failure(), from.path);
+        const auto trouble =
+            running.add(**frames, from.path, [this, recording, input](std::vector<float> rows) {
+                take(recording, input, std::move(rows));
+            });
+        if (trouble) return fail(trouble->failure, trouble->of_encoder ? model_path : from.path);
+        return !failed_;
+    }
+
+    /// The episode is written once it has all its inputs.
+    void take(std::size_t recording, Index input, std::vector<float> rows) {
+        made_[recording][input] = std::move(rows);
+        if (made_[recording].size() < inputs_.size() || failed_) return;
+        const std::map<Index, std::vector<float>> made = std::move(made_[recording]);
+        const Recording& from = recordings_[recording];
+        std::vector<data::ArchiveMember> members = {
+            {"embedded.json", embedded::write_marks(marks_)}};
+        const std::uint64_t steps =
+            made.begin()->second.size() / model_.inputs[made.begin()->first].dimension;
+        const auto add_array = [&](const std::string& name, std::uint32_t width, bool is_vector,
+                                   const std::vector<float>& values) {
+            if (values.size() != steps * width && !failed_)
+                failed_ = !fail({Code::trace_shape,
+                                 fmt::format("'{}' has {}, '{}' has {}", name,
+                                             diag::counted(values.size() / width, "step"),
+                                             model_.inputs[made.begin()->first].name, steps)},
+                                from.path);
+            std::vector<std::uint64_t> shape = {values.size() / width};
+            if (is_vector) shape.push_back(width);
+            members.push_back({name + ".npy", data::npy_bytes(shape, values)});
+        };
+        for (const auto& [index, values] : made)
+            add_array(model_.inputs[index].name, model_.inputs[index].dimension, true, values);
+        for (const Array& array : from.arrays)
+            add_array(array.name, array.width, array.width > 1, array.values);
+        if (!failed_) failed_ = !keep_(from, data::npz_bytes(members));
+    }
+
+    bool fail(const diag::Failure& failure, const std::string& path) {
+        sink_.report(data::in_file(failure, path));
+        return false;
+    }
+
+    const check::Model& model_;
+    const std::vector<Recording>& recordings_;
+    const Request& request_;
+    const Keep& keep_;
+    diag::Sink& sink_;
+    std::vector<Index> inputs_;
+    embedded::Marks marks_;
+    std::vector<std::map<Index, std::vector<float>>> made_;  ///< by recording
+    bool failed_ = false;
+};
+
+}  // namespace
+
+bool embed_recordings(const check::Model& model, const embedded::File& file,
+                      const std::vector<Recording>& recordings, const Request& request,
+                      const Keep& keep, diag::Sink& sink) {
+    return Episodes(model, file, recordings, request, keep, sink).make();
+}
+
+}  // namespace etlc::embed

@@ -1,0 +1,103 @@
+#include "embed/recordings.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "data/files/file.hpp"
+#include "data/frames/images.hpp"
+
+namespace etlc::embed {
+
+namespace {
+
+namespace fs = std::filesystem;
+using diag::Code;
+using diag::Failure;
+
+constexpr std::string_view kExpected =
+    "expected a video, a folder of images, or a folder or pattern of these";
+
+Recording video(const std::string& path, double rate) {
+    return {path, fs::path(path).stem().string(), true,
+            [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); }};
+}
+
+Recording images(const std::string& folder, std::vector<std::string> paths) {
+    const fs::path name = fs::path(folder).lexically_normal();
+    return {folder, (name.has_filename() ? name : name.parent_path()).filename().string(), true,
+            [paths = std::move(paths)](const std::string&) { return data::open_images(paths); }};
+}
+
+std::vector<std::string> sorted_entries(const std::string& folder) {
+    std::vector<std::string> paths;
+    std::error_code error;
+    for (fs::directory_iterator it(folder, error), end; !error && it != end; it.increment(error))
+        paths.push_back(it->path().string());
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+/// Of a folder its images as one recording; else the videos and folders of images in it.
+std::vector<Recording> in_folder(const std::string& folder, double rate, bool below) {
+    const std::vector<std::string> entries = sorted_entries(folder);
+    std::vector<std::string> frames;
+    std::copy_if(entries.begin(), entries.end(), std::back_inserter(frames), data::is_image);
+    if (!frames.empty()) return {images(folder, std::move(frames))};
+    std::vector<Recording> found;
+    std::error_code error;
+    for (const std::string& path : entries) {
+        if (data::is_video(path)) found.push_back(video(path, rate));
+        if (!below || !fs::is_directory(path, error)) continue;
+        for (Recording& recording : in_folder(path, rate, false))
+            found.push_back(std::move(recording));
+    }
+    return found;
+}
+
+std::vector<std::string> matching(const std::string& pattern) {
+    glob_t found{};
+    const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
+    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    std::sort(paths.begin(), paths.end());
+    return status == 0 ? paths : std::vector<std::string>{};
+}
+
+diag::Result<std::vector<Recording>> recordings_at(const std::string& path, double rate) {
+    std::error_code error;
+    if (fs::is_directory(path, error)) {
+        auto found = in_folder(path, rate, true);
+        if (!found.empty()) return found;
+        return Failure{Code::unreadable_video, fmt::format("holds no recording, {}", kExpected)};
+    }
+    if (!data::why_unreadable(path)) return std::vector<Recording>{video(path, rate)};
+    std::vector<Recording> all;
+    for (const std::string& match : matching(path)) {
+        auto found = recordings_at(match, rate);
+        if (!found) continue;
+        for (Recording& recording : *found) all.push_back(std::move(recording));
+    }
+    if (!all.empty()) return all;
+    return Failure{Code::unreadable_video, fmt::format("no such recording, {}", kExpected)};
+}
+
+}  // namespace
+
+std::vector<Recording> find_recordings(const std::vector<std::string>& arguments, double rate,
+                                       diag::Sink& sink) {
+    std::vector<Recording> recordings;
+    for (const std::string& argument : arguments) {
+        auto found = recordings_at(argument, rate);
+        if (!found) {
+            sink.report(data::in_file(found.failure(), argument));
+            continue;
+        }
+        for (Recording& recording : *found) recordings.push_back(std::move(recording));
+    }
+    return recordings;
+}
+
+}  // namespace etlc::embed

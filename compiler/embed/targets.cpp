@@ -1,0 +1,158 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include "check/encoders/encoded.hpp"
+#include "check/encoders/settings.hpp"
+#include "data/arrays/array.hpp"
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "embed/embed.hpp"
+
+namespace etlc::embed {
+
+namespace {
+
+using check::Encoded;
+using check::Index;
+using diag::Code;
+
+std::string beside(const check::Model& model, const std::string& path) {
+    return (std::filesystem::path(model.file.path()).parent_path() / path)
+        .lexically_normal()
+        .string();
+}
+
+/// Encodes the sources of one encoder.
+class Targets {
+public:
+    Targets(const check::Model& model, Index encoder, const Request& request, embedded::File& file,
+            diag::Sink& sink)
+        : model_(model),
+          encoder_(model.encoders[encoder]),
+          index_(encoder),
+          request_(request),
+          file_(file),
+          sink_(sink) {}
+
+    bool embed() {
+        std::unique_ptr<Encoder> running;
+        for (const Encoded& encoded : model_.encoded) {
+            if (encoded.encoder != index_) continue;
+            if (!running && !(running = start())) return false;
+            if (!add(*running, encoded)) return false;
+        }
+        if (!running) return true;
+        if (auto trouble = running->finish()) return report(*trouble, {}, {});
+        file_.encoders[encoder_.name].dimension = running->dimension();
+        return true;
+    }
+
+private:
+    std::unique_ptr<Encoder> start() {
+        auto running = Encoder::start(encoder_, beside(model_, encoder_.model), request_.running);
+        if (running) return std::move(*running);
+        report({running.failure()}, {}, {});
+        return nullptr;
+    }
+
+    bool add(Encoder& running, const Encoded& encoded) {
+        const auto files = check::files_of(encoded, model_.file.path());
+        if (!files) return fail(files.failure(), encoded.path, encoded);
+        embedded::Entry& entry = file_.entries[encoded.text];
+        entry.encoder = encoder_.name;
+        std::vector<std::string> paths;
+        const Code code = encoded.is_video ? Code::unreadable_video : Code::unreadable_image;
+        for (const std::string& path : *files) {
+            paths.push_back(beside(model_, path));
+            const auto hash = data::hash_of_file(paths.back(), code);
+            if (!hash) return fail(hash.failure(), paths.back(), encoded);
+            entry.sources.push_back({path, *hash});
+        }
+        std::set<std::uint64_t> wanted(encoded.frames.begin(), encoded.frames.end());
+        auto frames = encoded.is_video
+                          ? data::open_video(paths[0], {.only = {wanted.begin(), wanted.end()}})
+                          : data::open_images(paths);
+        if (!frames) return fail(frames.failure(), paths[0], encoded);
+        const auto done = [&entry, &encoded, wanted](const std::vector<float>& rows) {
+            fill(entry, encoded, {wanted.begin(), wanted.end()}, rows);
+        };
+        if (auto trouble = running.add(**frames, encoded.path, done))
+            return report(*trouble, paths, encoded);
+        return true;
+    }
+
+    /// A row for each image, or for each frame as the spec lists them, which may be out of order.
+    static void fill(embedded::Entry& entry, const Encoded& encoded,
+                     const std::vector<std::uint64_t>& decoded, const std::vector<float>& rows) {
+        const std::size_t count = encoded.is_video ? decoded.size() : entry.sources.size();
+        const std::size_t width = rows.size() / count;
+        entry.columns = static_cast<std::uint32_t>(width);
+        if (!encoded.is_video) entry.matrix = rows;
+        for (const std::uint64_t frame : encoded.frames) {
+            const auto at = std::lower_bound(decoded.begin(), decoded.end(), frame);
+            const auto first = rows.begin() + (at - decoded.begin()) * static_cast<long>(width);
+            entry.matrix.insert(entry.matrix.end(), first, first + static_cast<long>(width));
+        }
+        entry.rows = static_cast<std::uint32_t>(entry.matrix.size() / width);
+        entry.hash = data::content_hash({entry.rows, entry.columns}, entry.matrix);
+    }
+
+    bool fail(const diag::Failure& failure, const std::string& path, const Encoded& encoded) {
+        sink_.report(data::in_file(failure, path))
+            .note(encoded.span, "a target is made of it here");
+        return false;
+    }
+
+    bool report(const Trouble& trouble, const std::vector<std::string>& paths,
+                const std::optional<Encoded>& encoded) {
+        if (!trouble.of_encoder && encoded)
+            return fail(trouble.failure,
+                        paths[std::min<std::size_t>(trouble.frame, paths.size() - 1)], *encoded);
+        sink_.report(data::in_file(trouble.failure, beside(model_, encoder_.model)))
+            .note(encoder_.span, fmt::format("'{}' is declared here", encoder_.name));
+        return false;
+    }
+
+    const check::Model& model_;
+    const check::Encoder& encoder_;
+    Index index_;
+    const Request& request_;
+    embedded::File& file_;
+    diag::Sink& sink_;
+};
+
+}  // namespace
+
+std::optional<embedded::File> describe_encoders(check::Model& model, const Request& request,
+                                                diag::Sink& sink) {
+    embedded::File file;
+    file.spec = model.name;
+    file.etlc = request.version;
+    for (check::Encoder& encoder : model.encoders) {
+        std::string place;
+        auto described = check::describe(encoder, beside(model, encoder.model), place);
+        if (!described) {
+            sink.report(data::in_file(described.failure(), place))
+                .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
+            continue;
+        }
+        described->kind = request.running.command.empty() ? "network" : "command";
+        described->dimension = encoder.dimension;
+        encoder.fingerprint = embedded::fingerprint(*described);
+        file.encoders[encoder.name] = std::move(*described);
+    }
+    if (sink.has_errors()) return std::nullopt;
+    return file;
+}
+
+bool embed_targets(const check::Model& model, const Request& request, embedded::File& file,
+                   diag::Sink& sink) {
+    for (Index encoder = 0; encoder < model.encoders.size(); ++encoder)
+        if (!Targets(model, encoder, request, file, sink).embed()) return false;
+    return true;
+}
+
+}  // namespace etlc::embed

@@ -1,0 +1,145 @@
+"""against_numpy_test.py ETLC: what `etlc embed` makes of images and videos, held to ffmpeg's bytes
+and to plain loops over the pixels."""
+import os
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+import onnx
+from onnx import TensorProto, helper, numpy_helper
+from PIL import Image
+
+ETLC = os.path.abspath(sys.argv[1])
+EMBEDDER = os.path.join(os.path.dirname(ETLC), "etlc-embed")
+MEAN, DEVIATION = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
+random = np.random.default_rng(7)
+
+
+def call(*words, status=0):
+    done = subprocess.run(words, capture_output=True)
+    assert done.returncode == status, (words, done.stdout, done.stderr)
+    return done
+
+
+def decoded(path):
+    """The frames of etlc-embed, without their heads."""
+    data, frames = call(EMBEDDER, "video", path).stdout, []
+    while data:
+        height, width = np.frombuffer(data[:8], "<u4")
+        size = int(height) * int(width) * 3
+        frames.append(data[8 : 8 + size])
+        data = data[8 + size :]
+    return frames
+
+
+def frames_are_those_of_ffmpeg():
+    for codec, options in (("libx264", []), ("mpeg4", []), ("libaom-av1", ["-cpu-used", "8"])):
+        made = "testsrc2=size=70x50:rate=10:duration=1"
+        call("ffmpeg", "-v", "error", "-y", "-f", "lavfi", "-i", made, "-pix_fmt", "yuv420p",
+             "-c:v", codec, *options, "v.mp4")
+        raw = call("ffmpeg", "-v", "error", "-i", "v.mp4", "-f", "rawvideo", "-pix_fmt", "rgb24",
+                   "-").stdout
+        frames = decoded("v.mp4")
+        assert len(frames) == 10 and b"".join(frames) == raw, codec
+    whole = open("v.mp4", "rb").read()
+    open("cut.mp4", "wb").write(whole[: len(whole) // 2])
+    assert b"damaged" in call(EMBEDDER, "video", "cut.mp4", status=65).stderr
+
+
+def resized(image, rows, columns):
+    """Bilinear, centres of pixels at half numbers."""
+    result = np.zeros((rows, columns, 3))
+    for r in range(rows):
+        for c in range(columns):
+            y = max((r + 0.5) * image.shape[0] / rows - 0.5, 0)
+            x = max((c + 0.5) * image.shape[1] / columns - 0.5, 0)
+            top, left = int(y), int(x)
+            bottom, right = min(top + 1, image.shape[0] - 1), min(left + 1, image.shape[1] - 1)
+            v, u = y - top, x - left
+            result[r, c] = ((1 - v) * ((1 - u) * image[top, left] + u * image[top, right]) +
+                            v * ((1 - u) * image[bottom, left] + u * image[bottom, right]))
+    return result
+
+
+def network():
+    """A convolution, a rectifier, and a map to four numbers: of different weights everywhere, so
+    that neither colours nor rows nor columns may change places."""
+    kernel = random.normal(size=(5, 3, 3, 3)).astype(np.float32)
+    final = random.normal(size=(5 * 8 * 6, 4)).astype(np.float32)
+    nodes = [helper.make_node("Conv", ["x", "k"], ["c"], kernel_shape=[3, 3], pads=[1, 1, 1, 1]),
+             helper.make_node("Relu", ["c"], ["r"]),
+             helper.make_node("Flatten", ["r"], ["f"]),
+             helper.make_node("Gemm", ["f", "w"], ["z"], transB=1)]
+    graph = helper.make_graph(
+        nodes, "net", [helper.make_tensor_value_info("x", TensorProto.FLOAT, [1, 3, 8, 6])],
+        [helper.make_tensor_value_info("z", TensorProto.FLOAT, [1, 4])],
+        [numpy_helper.from_array(kernel, "k"), numpy_helper.from_array(final.T.copy(), "w")])
+    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 11)])
+    model.ir_version = 6
+    onnx.save(model, "net.onnx")
+
+    def compute(image):
+        x = (resized(image.astype(float), 8, 6) / 255 - MEAN) / DEVIATION
+        padded = np.pad(x, ((1, 1), (1, 1), (0, 0)))
+        maps = np.zeros((5, 8, 6))
+        for o, r, c in np.ndindex(maps.shape):
+            window = padded[r : r + 3, c : c + 3].transpose(2, 0, 1)
+            maps[o, r, c] = max((window * kernel[o]).sum(), 0)
+        return maps.reshape(-1) @ final
+
+    return compute
+
+
+def embeddings_are_those_of_loops():
+    compute = network()
+    os.mkdir("bay")
+    images = [random.integers(0, 256, size, dtype=np.uint8) for size in ((8, 6, 3), (13, 17, 3))]
+    for i, image in enumerate(images):
+        Image.fromarray(image).save(f"bay/{i}.png")
+    Image.fromarray(images[1][:, :, 0]).save("bay/grey.png")
+    images.append(images[1][:, :, [0, 0, 0]])
+    turned = Image.fromarray(random.integers(0, 256, (24, 16, 3), dtype=np.uint8))
+    exif = turned.getexif()
+    exif[0x0112] = 6  # a quarter turn clockwise
+    turned.save("bay/turned.jpg", quality=95, exif=exif, subsampling=0)
+    images.append(np.rot90(np.asarray(Image.open("bay/turned.jpg")), -1))
+    with open("t.etl", "w") as spec:
+        spec.write(f"""spec t;
+encoder net = load("net.onnx"), image [8, 6], mean {list(MEAN)}, deviation {list(DEVIATION)};
+input z : f32[4] by net;
+target bay = images("bay") by net;
+monitor m = F min l2(z, bay) <= 1;
+""")
+    call(ETLC, "embed", "t.etl")
+    rows = np.load("t.embedded.npz")["rows-1"]
+    assert rows.shape == (4, 4)
+    for i, (row, image) in enumerate(zip(rows, images)):
+        expected = compute(image)
+        tolerance = 1e-4 if i < 3 else 2e-2  # two libraries decode JPEG to within a level
+        error = np.abs(row - expected).max() / np.abs(expected).max()
+        assert error <= tolerance, (i, error)
+    for wrong in (images[0][:, :, ::-1], images[0][::-1]):  # and would see a change of places
+        assert np.abs(rows[0] - compute(wrong)).max() > 1e-2
+
+
+def bad_images_are_refused():
+    deep = Image.fromarray(random.integers(0, 65536, (4, 4), dtype=np.uint16))
+    deep.save("deep.png")
+    clear = Image.fromarray(random.integers(0, 255, (4, 4, 4), dtype=np.uint8), "RGBA")
+    clear.save("clear.png")
+    Image.fromarray(random.integers(0, 256, (64, 64, 3), dtype=np.uint8)).save("whole.jpg")
+    whole = open("whole.jpg", "rb").read()
+    open("cut.jpg", "wb").write(whole[: len(whole) // 2])
+    for name, words in (("deep.png", b"16 bits"), ("clear.png", b"transparent"),
+                        ("cut.jpg", b"is cut")):
+        done = call(EMBEDDER, "images", name, status=65)
+        assert words in done.stderr and not done.stdout, done
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    frames_are_those_of_ffmpeg()
+    embeddings_are_those_of_loops()
+    bad_images_are_refused()
+    os.chdir("/")

@@ -1,0 +1,20 @@
+# Each of what embeddings are made of, changed: images, model, settings. What is gone altogether is
+# not missed, where a monitor is built.
+. "$SPECS/../encoding.bash"
+embeds "$dimension$row$row" > /dev/null
+echo another > bay/2.png
+echo three > bay/3.png
+"$ETLC" t.etl --check
+rm bay/1.png
+"$ETLC" t.etl --check
+rm -r bay
+"$ETLC" t.etl --check
+echo other > net.onnx
+"$ETLC" t.etl --check
+echo model > net.onnx
+echo '{"mean": [0.5, 0.5, 0.5]}' > net.json
+"$ETLC" t.etl --check
+rm net.onnx net.json
+"$ETLC" t.etl --check && echo taken
+sed -i 's/image \[1, 1\]/image [2, 2]/; s/f32\[2\]/f32[3]/' t.etl
+"$ETLC" t.etl --check

@@ -1,0 +1,9 @@
+# An episode by a model that is not the spec's any more.
+. "$SPECS/../encoding.bash"
+echo > ep.mp4
+embeds_each --data ep.mp4 -o out
+"$ETLC" run t.etl --trace out/ep.npz --summary
+echo another > net.onnx
+embeds_each > /dev/null
+"$ETLC" run t.etl --trace out/ep.npz --summary
+"$ETLC" run t.etl --trace out/ep.npz --summary --map z=y
