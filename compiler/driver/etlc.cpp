@@ -18,11 +18,14 @@
 #include "driver/explain/options.hpp"
 #include "driver/fit.hpp"
 #include "driver/incident/incident.hpp"
+#include "driver/incident/options.hpp"
 #include "driver/options/compile_options.hpp"
 #include "driver/options/evaluate_options.hpp"
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
 #include "driver/options/recording_options.hpp"
+#include "driver/options/report_options.hpp"
+#include "driver/options/run_options.hpp"
 #include "driver/options/spec_options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
@@ -30,6 +33,7 @@
 #include "driver/run/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
+#include "report/page.hpp"
 #include "source/escape.hpp"
 
 namespace {
@@ -54,6 +58,7 @@ struct Call {
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
     driver::ExplainRequest explain;
+    driver::ReportRequest report;
     driver::IncidentRequest incident;
 };
 
@@ -171,7 +176,8 @@ int compile_command(int argc, char** argv) {
         "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
         "etlc crossvalidate SPEC.etl... --data FILE...,\n"
-        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl",
+        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
+        "etlc report SPEC.etl --data FILE... -o PAGE.html",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
@@ -196,6 +202,13 @@ int compile_command(int argc, char** argv) {
     });
 }
 
+/// Where it cannot, this has said why.
+bool can_make_pages() {
+    const std::string missing = report::what_is_missing();
+    if (!missing.empty()) driver::print_error(fmt::format("etlc: {}\n", missing));
+    return missing.empty();
+}
+
 int run_command(int argc, char** argv) {
     Call call;
     CLI::App app(
@@ -203,27 +216,12 @@ int run_command(int argc, char** argv) {
         "memory.",
         "etlc run");
     add_common_options(app, call);
-    app.add_option("--trace", call.run.trace,
-                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
-        ->type_name("FILE")
-        ->required();
-    driver::add_map_option(app, call.run.names);
-    app.add_option("-o,--output", call.run.output,
-                   "where to write the verdicts, as CSV; - is standard output")
-        ->type_name("FILE")
-        ->capture_default_str();
-    app.add_flag("--finish", call.run.finish,
-                 "after the trace, also report the last positions of sliding monitors");
-    app.add_flag("--distances", call.run.distances,
-                 "a column for each predicate: the distance or expression that it compares");
-    app.add_flag("--lets", call.request.check.lets,
-                 "a column for each let that does not look ahead: its robustness at that step");
-    app.add_flag(
-        "--summary", call.run.summary,
-        "a line for each monitor, and for inputs with missing samples, on standard output; "
-        "the rows are written only where -o says");
+    driver::add_run_options(app, call.run, call.request.check.lets);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    if (call.run.summary && app.count("--output") == 0) call.run.output.clear();
+    const bool has_other_output =
+        call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
+    if (has_other_output && app.count("--output") == 0) call.run.output.clear();
+    if (!call.run.html.empty() && !can_make_pages()) return driver::kFailed;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
@@ -340,8 +338,24 @@ int explain_command(int argc, char** argv) {
     });
 }
 
+int report_command(int argc, char** argv) {
+    Call call;
+    CLI::App app(
+        "Makes a page to look at: what a spec's monitors say of recorded episodes, why, and where "
+        "they are wrong.",
+        "etlc report");
+    add_common_options(app, call);
+    driver::add_report_options(app, call.report);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (!can_make_pages()) return driver::kFailed;
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
+        const auto compiled = driver::compile(file, call.request, sink);
+        if (compiled && !sink.refused())
+            driver::report(file, *compiled, call.request, call.report, sink);
+    });
+}
+
 int incident_command(int argc, char** argv) {
-    using driver::IncidentFormat;
     Call call;
     CLI::App app("Prints what the flight recorder of a monitor wrote: the steps around an alarm.",
                  "etlc incident");
@@ -349,17 +363,7 @@ int incident_command(int argc, char** argv) {
         ->type_name("FILE")
         ->required();
     add_common_options(app, call, "--spec");
-    driver::add_choice<IncidentFormat>(
-        app, "--format", call.incident.format,
-        {{"table", IncidentFormat::table},
-         {"csv", IncidentFormat::csv},
-         {"trace", IncidentFormat::trace},
-         {"spec", IncidentFormat::spec}},
-        "trace: what was measured, as a .csv file for etlc run and etlc explain; spec: the spec "
-        "that reads that trace, with what was measured for inputs");
-    app.add_option("-o,--output", call.incident.output, "where to write it; - is standard output")
-        ->type_name("FILE")
-        ->capture_default_str();
+    driver::add_incident_options(app, call.incident);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
@@ -373,6 +377,7 @@ int execute(int argc, char** argv) {
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1, false);
     if (command == "crossvalidate") return evaluate_command(argc - 1, argv + 1, true);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
+    if (command == "report") return report_command(argc - 1, argv + 1);
     if (command == "incident") return incident_command(argc - 1, argv + 1);
     if (command == "fit") return fit_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
