@@ -19,12 +19,16 @@
 #include "driver/explain/options.hpp"
 #include "driver/fit.hpp"
 #include "driver/incident/incident.hpp"
+#include "driver/incident/options.hpp"
 #include "driver/options/compile_options.hpp"
 #include "driver/options/embed_options.hpp"
 #include "driver/options/evaluate_options.hpp"
+#include "driver/options/fit_options.hpp"
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
 #include "driver/options/recording_options.hpp"
+#include "driver/options/report_options.hpp"
+#include "driver/options/run_options.hpp"
 #include "driver/options/spec_options.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
@@ -32,6 +36,7 @@
 #include "driver/run/run.hpp"
 #include "driver/version.hpp"
 #include "parse/parse.hpp"
+#include "report/page.hpp"
 #include "source/escape.hpp"
 
 namespace {
@@ -57,6 +62,7 @@ struct Call {
     driver::CalibrateRequest calibrate;
     driver::EvaluateRequest evaluate;
     driver::ExplainRequest explain;
+    driver::ReportRequest report;
     driver::IncidentRequest incident;
 };
 
@@ -175,7 +181,8 @@ int compile_command(int argc, char** argv) {
         "etlc embed SPEC.etl --data FILE... -o FOLDER,\n"
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
         "etlc crossvalidate SPEC.etl... --data FILE...,\n"
-        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl",
+        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
+        "etlc report SPEC.etl --data FILE... -o PAGE.html",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
@@ -200,6 +207,13 @@ int compile_command(int argc, char** argv) {
     });
 }
 
+/// Where it cannot, this has said why.
+bool can_make_pages() {
+    const std::string missing = report::what_is_missing();
+    if (!missing.empty()) driver::print_error(fmt::format("etlc: {}\n", missing));
+    return missing.empty();
+}
+
 int run_command(int argc, char** argv) {
     Call call;
     CLI::App app(
@@ -207,27 +221,12 @@ int run_command(int argc, char** argv) {
         "memory.",
         "etlc run");
     add_common_options(app, call);
-    app.add_option("--trace", call.run.trace,
-                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
-        ->type_name("FILE")
-        ->required();
-    driver::add_map_option(app, call.run.names);
-    app.add_option("-o,--output", call.run.output,
-                   "where to write the verdicts, as CSV; - is standard output")
-        ->type_name("FILE")
-        ->capture_default_str();
-    app.add_flag("--finish", call.run.finish,
-                 "after the trace, also report the last positions of sliding monitors");
-    app.add_flag("--distances", call.run.distances,
-                 "a column for each predicate: the distance or expression that it compares");
-    app.add_flag("--lets", call.request.check.lets,
-                 "a column for each let that does not look ahead: its robustness at that step");
-    app.add_flag(
-        "--summary", call.run.summary,
-        "a line for each monitor, and for inputs with missing samples, on standard output; "
-        "the rows are written only where -o says");
+    driver::add_run_options(app, call.run, call.request.check.lets);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    if (call.run.summary && app.count("--output") == 0) call.run.output.clear();
+    const bool has_other_output =
+        call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
+    if (has_other_output && app.count("--output") == 0) call.run.output.clear();
+    if (!call.run.html.empty() && !can_make_pages()) return driver::kFailed;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::run(file, *compiled, call.run, sink);
@@ -252,32 +251,14 @@ int embed_command(int argc, char** argv) {
 
 int fit_command(int argc, char** argv) {
     Call call;
-    fit::Request& fitting = call.fit.fit;
     CLI::App app(
         "Finds the projections, targets and metrics that a spec declares fitted(...) from labelled "
         "demonstrations,\none episode a file, and says how well its predicates then separate.",
         "etlc fit");
     add_spec_options(app, call);
-    driver::add_set_option(app, call.fit.settings);
-    driver::add_episode_options(app, call.fit.data, call.fit.groups, fitting.allow_overlap,
-                                fitting.jobs);
-    driver::add_map_option(app, fitting.names);
-    app.add_option("-o,--output", call.fit.output,
-                   "where to write what is fitted (default: SPEC.fitted.npz beside the spec); "
-                   "- is standard output")
-        ->type_name("FILE");
-    CLI::Option* suggest =
-        app.add_option("--suggest", call.fit.predicates,
-                       "try distances, targets and projections for these predicates (default: all "
-                       "with labels) and print\nhow well each separates, with the lines to paste; "
-                       "nothing is written")
-            ->type_name("[PREDICATE...]")
-            ->expected(0, -1)
-            ->excludes("--output");
-    app.add_flag("--json", call.fit.json, "with --suggest: for programs")->needs(suggest);
+    driver::add_fit_options(app, call.fit);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
-    call.fit.suggest = suggest->count() > 0;
-    std::erase(call.fit.predicates, "");  // what CLI11 makes of none
+    driver::read_suggest_option(app, call.fit);
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //
                          driver::fit(file, call.fit, sink);
@@ -360,8 +341,24 @@ int explain_command(int argc, char** argv) {
     });
 }
 
+int report_command(int argc, char** argv) {
+    Call call;
+    CLI::App app(
+        "Makes a page to look at: what a spec's monitors say of recorded episodes, why, and where "
+        "they are wrong.",
+        "etlc report");
+    add_common_options(app, call);
+    driver::add_report_options(app, call.report);
+    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (!can_make_pages()) return driver::kFailed;
+    return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
+        const auto compiled = driver::compile(file, call.request, sink);
+        if (compiled && !sink.refused())
+            driver::report(file, *compiled, call.request, call.report, sink);
+    });
+}
+
 int incident_command(int argc, char** argv) {
-    using driver::IncidentFormat;
     Call call;
     CLI::App app("Prints what the flight recorder of a monitor wrote: the steps around an alarm.",
                  "etlc incident");
@@ -369,17 +366,7 @@ int incident_command(int argc, char** argv) {
         ->type_name("FILE")
         ->required();
     add_common_options(app, call, "--spec");
-    driver::add_choice<IncidentFormat>(
-        app, "--format", call.incident.format,
-        {{"table", IncidentFormat::table},
-         {"csv", IncidentFormat::csv},
-         {"trace", IncidentFormat::trace},
-         {"spec", IncidentFormat::spec}},
-        "trace: what was measured, as a .csv file for etlc run and etlc explain; spec: the spec "
-        "that reads that trace, with what was measured for inputs");
-    app.add_option("-o,--output", call.incident.output, "where to write it; - is standard output")
-        ->type_name("FILE")
-        ->capture_default_str();
+    driver::add_incident_options(app, call.incident);
     if (const auto status = parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
@@ -393,6 +380,7 @@ int execute(int argc, char** argv) {
     if (command == "evaluate") return evaluate_command(argc - 1, argv + 1, false);
     if (command == "crossvalidate") return evaluate_command(argc - 1, argv + 1, true);
     if (command == "explain") return explain_command(argc - 1, argv + 1);
+    if (command == "report") return report_command(argc - 1, argv + 1);
     if (command == "incident") return incident_command(argc - 1, argv + 1);
     if (command == "embed") return embed_command(argc - 1, argv + 1);
     if (command == "fit") return fit_command(argc - 1, argv + 1);

@@ -46,19 +46,6 @@ std::optional<Candidate> candidate(const SpecToJudge& spec, const Request& reque
     return result;
 }
 
-/// The file that the spec's thresholds were read from; nothing where nothing is calibrated.
-std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
-                                              const Request& request) {
-    const std::string& given = request.check.thresholds_path;
-    const std::string path = given.empty() ? check::default_thresholds_path(spec) : given;
-    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) ==
-        model.dependencies.end())
-        return std::nullopt;
-    auto file = thresholds::read(path);
-    if (!file) return std::nullopt;  // check/ has read it, and would have said so
-    return std::move(*file);
-}
-
 std::vector<std::string> inputs(const std::vector<Candidate>& candidates,
                                 const std::vector<std::string>& episodes) {
     std::vector<std::string> paths;
@@ -91,15 +78,6 @@ public:
         calibration_.progress = asked.progress;
     }
 
-    /// By the thresholds that it has.
-    std::optional<evaluate::Judgement> as_it_is(const Candidate& one, diag::Sink& sink) const {
-        std::vector<std::size_t> all(asked_.episodes.size());
-        std::iota(all.begin(), all.end(), std::size_t{0});
-        auto seen = thresholds_of(one.model(), one.spec.file.path(), request_);
-        return evaluate::judge({{*one.compiled, std::move(seen), std::move(all), fitted_of(one)}},
-                               asked_, sink);
-    }
-
     /// Every fold by what the others give. The folds are those of the first spec.
     std::optional<evaluate::Judgement> in_folds(const Candidate& one, std::uint32_t count,
                                                 diag::Sink& sink) {
@@ -120,10 +98,6 @@ public:
     }
 
 private:
-    fitted::File fitted_of(const Candidate& one) const {
-        return fitted_file(one.model(), one.spec.file.path(), request_.check.fitted_path);
-    }
-
     const Request& request_;
     const evaluate::Request& asked_;
     calibrate::Request calibration_;
@@ -140,8 +114,9 @@ std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candida
     for (const Candidate& one : candidates) {
         const std::string& path = one.spec.file.path();
         diag::Sink found;  // of an episode, too, say for which spec
-        auto judgement = evaluation.folds > 0 ? judging.in_folds(one, evaluation.folds, found)
-                                              : judging.as_it_is(one, found);
+        auto judgement = evaluation.folds > 0
+                             ? judging.in_folds(one, evaluation.folds, found)
+                             : judge_as_it_is(*one.compiled, path, request, asked, found);
         one.spec.sink.add(found, candidates.size() > 1 ? fmt::format("for the spec {}", path) : "");
         if (!judgement) return std::nullopt;
         auto& spec = result.specs.emplace_back();
@@ -172,6 +147,30 @@ bool write(const evaluate::SideBySide& specs, const EvaluateRequest& evaluation,
 }
 
 }  // namespace
+
+std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
+                                              const Request& request) {
+    const std::string& given = request.check.thresholds_path;
+    const std::string path = given.empty() ? check::default_thresholds_path(spec) : given;
+    if (std::find(model.dependencies.begin(), model.dependencies.end(), path) ==
+        model.dependencies.end())
+        return std::nullopt;
+    auto file = thresholds::read(path);
+    if (!file) return std::nullopt;  // check/ has read it, and would have said so
+    return std::move(*file);
+}
+
+std::optional<evaluate::Judgement> judge_as_it_is(const Compiled& compiled, const std::string& spec,
+                                                  const Request& request,
+                                                  const evaluate::Request& asked,
+                                                  diag::Sink& sink) {
+    std::vector<std::size_t> all(asked.episodes.size());
+    std::iota(all.begin(), all.end(), std::size_t{0});
+    return evaluate::judge(
+        {{compiled, thresholds_of(*compiled.model, spec, request), std::move(all),
+          fitted_file(*compiled.model, spec, request.check.fitted_path)}},
+        asked, sink);
+}
 
 bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request,
               const EvaluateRequest& evaluation) {

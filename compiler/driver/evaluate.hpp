@@ -6,12 +6,14 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "diag/diag.hpp"
 #include "driver/compile.hpp"
 #include "evaluate/evaluate.hpp"
+#include "thresholds/thresholds.hpp"
 
 namespace etlc::driver {
 
@@ -30,6 +32,15 @@ struct SpecToJudge {
     const source::File& file;
     diag::Sink& sink;
 };
+
+/// The file that the spec's thresholds were read from; nothing where nothing is calibrated.
+std::optional<thresholds::File> thresholds_of(const check::Model& model, const std::string& spec,
+                                              const Request& request);
+
+/// A compiled spec, judged by the thresholds that it has. Nothing where the sink now says why.
+std::optional<evaluate::Judgement> judge_as_it_is(const Compiled& compiled, const std::string& spec,
+                                                  const Request& request,
+                                                  const evaluate::Request& asked, diag::Sink& sink);
 
 /// False where a sink now says why not. Thresholds are looked for beside each spec, where the
 /// request names no file.

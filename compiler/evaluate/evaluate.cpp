@@ -30,15 +30,9 @@ void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& 
     warning.note("targets have to come from other recordings");
 }
 
-bool has_truth(const MonitorSubject& monitor) {
-    return monitor.lacking.empty();
-}
-
 bool refuse_without_truth(const check::Model& model, const Subject& subject, diag::Sink& sink) {
-    const auto& monitors = subject.monitors;
-    if (!subject.labelled.empty() || std::any_of(monitors.begin(), monitors.end(), has_truth))
-        return true;
-    const std::string name = model.predicates[monitors.front().lacking.front()].name;
+    if (has_truths(subject)) return true;
+    const std::string name = model.predicates[subject.monitors.front().lacking.front()].name;
     const std::string shown = name.empty() ? "NAME" : name;
     sink.report(diag::Code::nothing_to_evaluate, model.monitors.front().span,
                 "no predicate of this spec has a truth to compare it with")

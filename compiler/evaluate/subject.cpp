@@ -98,4 +98,10 @@ Subject subject(const check::Model& model, std::vector<Index> labelled) {
     return result;
 }
 
+bool has_truths(const Subject& subject) {
+    return !subject.labelled.empty() ||
+           std::any_of(subject.monitors.begin(), subject.monitors.end(),
+                       [](const MonitorSubject& monitor) { return monitor.lacking.empty(); });
+}
+
 }  // namespace etlc::evaluate

@@ -33,4 +33,7 @@ struct Subject {
 /// `labelled`: predicates that the spec or every episode has a truth of.
 Subject subject(const check::Model& model, std::vector<Index> labelled);
 
+/// Whether there is anything to compare with: a label, or a monitor that is its own truth.
+bool has_truths(const Subject& subject);
+
 }  // namespace etlc::evaluate

@@ -37,7 +37,8 @@ const std::map<std::string, Names> kArrows = {
     {"fit", {"episodes", "pipeline", "fitted"}},
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
-    {"driver", {"parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate"}},
+    {"report", {"explain", "fit", "evaluate"}},
+    {"driver", {"parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.
@@ -48,8 +49,9 @@ const Names kBelowTheModel = {"reference", "ir",       "opt", "plan",      "emit
 const Names kWithoutRuntime = {"reference"};
 
 /// Libraries that one folder keeps to itself.
-const std::map<std::string, std::string> kOwners = {
-    {"antlr4", "parse"}, {"hdf5", "data"}, {"H5", "data"}, {"zip", "data"}, {"CLI", "driver"}};
+const std::map<std::string, std::string> kOwners = {{"antlr4", "parse"}, {"hdf5", "data"},
+                                                    {"H5", "data"},      {"zip", "data"},
+                                                    {"zlib", "report"},  {"CLI", "driver"}};
 
 /// All that generated code may need of a C library.
 const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "math.h"};

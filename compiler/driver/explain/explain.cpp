@@ -12,6 +12,7 @@
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "episodes/replay.hpp"
+#include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "source/escape.hpp"
 
@@ -20,24 +21,7 @@ namespace etlc::driver {
 namespace {
 
 using check::Index;
-
-/// What a monitor said at every step.
-struct History {
-    std::vector<etlmon::Verdict> verdicts;
-    std::vector<std::uint64_t> positions;  ///< what they are about
-    std::optional<std::uint64_t> first_alarm;
-    std::optional<std::uint64_t> first_final;
-
-    void add(const etlmon::Verdict& verdict, std::uint64_t position) {
-        if (verdict.alarm() && !first_alarm) first_alarm = verdicts.size();
-        if (verdict.final() && !first_final) first_final = verdicts.size();
-        add_after_trace(verdict, position);
-    }
-    void add_after_trace(const etlmon::Verdict& verdict, std::uint64_t position) {
-        verdicts.push_back(verdict);
-        positions.push_back(position);
-    }
-};
+using explain::History;
 
 class Explaining {
 public:
@@ -142,17 +126,12 @@ private:
     std::optional<std::uint64_t> choose_step(const History& history) {
         const plan::Monitor& monitor = plan_.monitors[chosen_];
         const std::uint64_t steps = history.verdicts.size();
-        std::uint64_t step = observations_.steps() - 1;
-        if (request_.step) {
+        std::uint64_t step = history.usual_step(monitor.sliding, observations_.steps() - 1);
+        if (request_.step)
             step = *request_.step;
-        } else if (request_.at) {
+        else if (request_.at)
             step = static_cast<std::uint64_t>(
                 std::llround(std::min(*request_.at / model_.step_seconds, 1e18)));
-        } else if (history.first_alarm) {
-            step = *history.first_alarm;
-        } else if (history.first_final && !monitor.sliding) {
-            step = *history.first_final;
-        }
         if (step >= steps) return refuse(diag::Code::no_such_step, beyond(steps));
         if (!history.verdicts[step].decided())
             return refuse(diag::Code::no_such_step,

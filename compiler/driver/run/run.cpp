@@ -11,6 +11,7 @@
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/progress.hpp"
+#include "driver/report/report.hpp"
 #include "driver/run/summary.hpp"
 #include "episodes/replay.hpp"
 #include "plan/recorder.hpp"
@@ -29,7 +30,8 @@ class Run {
 public:
     Run(const source::File& spec, const Compiled& compiled, const RunRequest& request,
         diag::Sink& sink)
-        : spec_(spec.path()),
+        : spec_(spec),
+          compiled_(compiled),
           plan_(compiled.plan),
           request_(request),
           sink_(sink),
@@ -42,14 +44,15 @@ public:
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
-        inputs.insert(inputs.end(), {spec_, data::trace_file(request_.trace)});
-        if (!check_outputs({request_.output}, inputs, sink_)) return false;
+        inputs.insert(inputs.end(), {spec_.path(), data::trace_file(request_.trace)});
+        if (!check_outputs({request_.output, request_.html, request_.svg}, inputs, sink_))
+            return false;
         if (writes_rows() && !output_.begin(request_.output)) return false;
         print_head();
         if (!step_through_trace() || !flush()) return false;
         if (request_.summary && !print(summary_.text(steps_, monitors_.evaluator()), sink_))
             return false;
-        return output_.commit();
+        return write_pictures() && output_.commit();
     }
 
 private:
@@ -59,6 +62,17 @@ private:
     }
 
     bool writes_rows() const { return !request_.output.empty(); }
+
+    bool write_pictures() {
+        const std::string& trace = request_.trace;
+        if (!request_.html.empty()) {
+            const auto page = page_of_trace(spec_, compiled_, trace, request_.names, sink_);
+            if (!page || !output_.add(request_.html, *page)) return false;
+        }
+        if (request_.svg.empty()) return true;
+        const auto picture = report::picture(compiled_, trace, request_.names, sink_);
+        return picture && output_.add(request_.svg, *picture);
+    }
 
     /// Comparisons without a name that are of one expression have one column.
     void choose_columns() {
@@ -171,7 +185,8 @@ private:
         if (step_ + kStepsPerReport > length) print_error(kEraseProgress);
     }
 
-    const std::string& spec_;
+    const source::File& spec_;
+    const Compiled& compiled_;
     const plan::Plan& plan_;
     const RunRequest& request_;
     diag::Sink& sink_;

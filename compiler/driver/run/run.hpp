@@ -21,6 +21,8 @@ struct RunRequest {
     /// Beside the columns of lets, which the plan has: one for each predicate, the distance, or
     /// expression, that it compares.
     bool distances = false;
+    std::string html;  ///< a page of the trace to look at; empty: not asked for
+    std::string svg;   ///< a picture of its timelines
     /// Also the positions that sliding monitors report after the end of the trace.
     bool finish = false;
 };

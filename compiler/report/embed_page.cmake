@@ -1,0 +1,40 @@
+# Writes OUTPUT, a C++ source that holds the files of the page, with their hashes for the page's
+# Content-Security-Policy: those of FOLDER, its programs as one, and D3, the chart library.
+function(add_file name text)
+  string(SHA256 hash "${text}")
+  string(APPEND files "        {\"${name}\", \"${hash}\",\n"
+    "         R\"etlc_page(${text})etlc_page\"},\n")
+  set(files "${files}" PARENT_SCOPE)
+endfunction()
+
+set(files "")
+foreach(name page.html page.css d3_licence.txt)
+  file(READ "${FOLDER}/${name}" text)
+  add_file(${name} "${text}")
+endforeach()
+set(text "\"use strict\";\n")
+foreach(name IN LISTS SCRIPTS)
+  file(READ "${FOLDER}/${name}" script)
+  string(APPEND text "${script}")
+endforeach()
+add_file(page.js "${text}")
+if(D3)
+  file(READ "${D3}" text)
+  add_file(d3.js "${text}")
+endif()
+
+file(WRITE "${OUTPUT}" "#include \"report/page_files.hpp\"
+
+// C++ compilers need not support strings as long as these.
+#pragma GCC diagnostic ignored \"-Woverlength-strings\"
+
+namespace etlc::report {
+
+const std::vector<PageFile>& page_files() {
+    static const std::vector<PageFile> files = {
+${files}    };
+    return files;
+}
+
+}  // namespace etlc::report
+")

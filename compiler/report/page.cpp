@@ -1,0 +1,67 @@
+#include "report/page.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <map>
+#include <string_view>
+
+#include "report/pack.hpp"
+#include "report/page_files.hpp"
+
+namespace etlc::report {
+
+namespace {
+
+std::string hash_source(const PageFile& file) {
+    std::string bytes;
+    for (std::size_t i = 0; i < file.sha256.size(); i += 2)
+        bytes += static_cast<char>(std::stoi(std::string(file.sha256.substr(i, 2)), nullptr, 16));
+    return "'sha256-" + base64(bytes) + "'";
+}
+
+/// The page's frame names what goes into it: {{style}}, say.
+std::string filled(const std::map<std::string, std::string, std::less<>>& parts) {
+    const std::string_view frame = page_file("page.html").text;
+    std::string text;
+    for (std::size_t at = 0;;) {
+        const std::size_t open = frame.find("{{", at);
+        text += frame.substr(at, open - at);
+        if (open == std::string_view::npos) return text;
+        const std::size_t close = frame.find("}}", open);
+        text += parts.find(frame.substr(open + 2, close - open - 2))->second;
+        at = close + 2;
+    }
+}
+
+}  // namespace
+
+std::string page_of(const std::string& data, const std::string& figures) {
+    const PageFile& d3 = page_file("d3.js");
+    const PageFile& script = page_file("page.js");
+    const PageFile& style = page_file("page.css");
+    return filled({{"style", std::string(style.text)},
+                   {"style-hash", hash_source(style)},
+                   {"d3", std::string(d3.text)},
+                   {"d3-licence", std::string(page_file("d3_licence.txt").text)},
+                   {"script", std::string(script.text)},
+                   {"script-hashes", hash_source(d3) + " " + hash_source(script)},
+                   {"figures", figures},
+                   {"data", data}});
+}
+
+std::string what_is_missing() {
+    const auto& files = page_files();
+    const bool draws = std::any_of(files.begin(), files.end(),
+                                   [](const PageFile& file) { return file.name == "d3.js"; });
+    return draws ? ""
+                 : "this etlc was built without the library that draws its pages: install "
+                   "libjs-d3 and build it again";
+}
+
+const PageFile& page_file(std::string_view name) {
+    const auto& files = page_files();
+    return *std::find_if(files.begin(), files.end(),
+                         [&](const PageFile& file) { return file.name == name; });
+}
+
+}  // namespace etlc::report

@@ -1,0 +1,43 @@
+// What all charts share: a drawing with margins, axes, and a line through points.
+
+// A drawing of `width` x `height` pixels whose origin is at the margins.
+function drawing(parent, width, height, margin) {
+  const svg = d3.select(parent).append("svg")
+    .attr("width", width).attr("height", height).attr("viewBox", `0 0 ${width} ${height}`);
+  return svg.append("g").attr("transform", `translate(${margin.left},${margin.top})`);
+}
+
+const scale = (domain, range) => d3.scale.linear().domain(domain).range(range);
+
+function xAxis(g, x, height, label, ticks = 5) {
+  g.append("g").attr("class", "axis").attr("transform", `translate(0,${height})`)
+    .call(d3.svg.axis().scale(x).orient("bottom").ticks(ticks).tickSize(4));
+  if (label)
+    g.append("text").attr("class", "label").attr("x", (x.range()[0] + x.range()[1]) / 2)
+      .attr("y", height + 30).attr("text-anchor", "middle").text(label);
+}
+
+function yAxis(g, y, label, ticks = 4) {
+  g.append("g").attr("class", "axis")
+    .call(d3.svg.axis().scale(y).orient("left").ticks(ticks).tickSize(4));
+  if (label)
+    g.append("text").attr("class", "label").attr("transform", "rotate(-90)")
+      .attr("x", -(y.range()[0] + y.range()[1]) / 2).attr("y", -38)
+      .attr("text-anchor", "middle").text(label);
+}
+
+// Through [x, y] pairs, in the data's numbers; with gaps where a y is no number.
+function path(g, points, x, y, name) {
+  const line = d3.svg.line().x((p) => x(p[0])).y((p) => y(p[1]))
+    .defined((p) => Number.isFinite(p[1]));
+  return g.append("path").attr("class", name).attr("d", line(points));
+}
+
+// The span of the finite ones, a little wider, so that no line lies on an edge.
+function spanOf(values) {
+  const finite = values.filter(Number.isFinite);
+  let [low, high] = finite.length > 0 ? d3.extent(finite) : [0, 1];
+  if (low === high) [low, high] = [low - 0.5, high + 0.5];
+  const room = (high - low) * 0.06;
+  return [low - room, high + room];
+}

@@ -1,0 +1,119 @@
+// The top of the page: the figures of `etlc evaluate`, beside those of monitors that look at
+// nothing, and where thresholds come from.
+
+function figureCell(of, key) {
+  const interval = of[`${key}_interval`];
+  const cell = element("td", { class: "number", "data-figure": key }, rate(of[key]));
+  if (interval)
+    cell.append(element("small", {}, ` ${rate(interval[0])}–${rate(interval[1])}`));
+  return cell;
+}
+
+const baselineCell = (of, name, key) =>
+  element("td", { class: "number blind", "data-figure": `${name}.${key}` }, rate(of[name]?.[key]));
+
+function headRow(...titles) {
+  const row = element("tr", {});
+  for (const [title, help] of titles) row.append(element("th", { title: help }, title));
+  return element("thead", {}, row);
+}
+
+const blindHeads = [
+  ["always true", "F1 of saying true every time"],
+  ["always false", "F1 of saying false every time"],
+  ["duration", "F1 of what the length of the episode, or the number of the step, says by itself"],
+];
+
+function blindCells(of, key) {
+  return ["always_true", "always_false", "duration"].map((name) => baselineCell(of, name, key));
+}
+
+function predicateTable() {
+  const body = element("tbody", {});
+  for (const [name, of] of Object.entries(figures.predicates))
+    body.append(element("tr", { "data-predicate": name }, element("th", {}, name),
+      figureCell(of, "f1"), figureCell(of, "precision"), figureCell(of, "recall"),
+      figureCell(of, "auroc"), ...blindCells(of, "f1"),
+      element("td", { class: "number" }, counted(of.positives, "frame"))));
+  return element("table", {}, headRow(["", ""], ["F1", "by frames, with its 95 % interval"],
+    ["precision", "of what it says holds, the part that does"],
+    ["recall", "of what holds, the part that it says"],
+    ["AUROC", "how well the distance tells the frames apart, whatever the threshold"],
+    ...blindHeads, ["truly so", "frames at which the truth holds"]), body);
+}
+
+function delayText(detection) {
+  if (detection.turns === 0) return "–";
+  const mean = detection.mean_seconds ?? detection.mean_steps;
+  const unit = detection.mean_seconds === undefined ? "steps" : "s";
+  const missed = detection.missed > 0 ? `, ${detection.missed} missed` : "";
+  if (mean === null) return `${detection.missed} missed`;
+  return `${Number(mean.toPrecision(3))} ${unit}${missed}`;
+}
+
+function monitorTable() {
+  const body = element("tbody", {});
+  for (const monitor of data.monitors) {
+    const of = figures?.monitors[monitor.name];
+    const row = element("tr", { "data-monitor": monitor.name },
+      element("th", {}, monitor.name), element("td", { class: "formula" }, monitor.formula));
+    body.append(row);
+    if (!figures) continue;
+    if (!of.evaluable) {
+      row.append(element("td", { colspan: 7 },
+        `no truth of ${of.without_truth.join(", ")}: not evaluated`));
+      continue;
+    }
+    row.append(figureCell(of, "episode_agreement"), figureCell(of, "step_agreement"),
+      figureCell(of.episodes, "f1"), ...blindCells(of.episodes, "f1"),
+      element("td", { class: "number" }, delayText(of.detection)));
+  }
+  const heads = [["", ""], ["formula", ""]];
+  if (figures)
+    heads.push(["episodes right", "part of the episodes whose last verdict is the true one"],
+      ["steps right", "part of the steps"], ["F1", "by episodes, with its 95 % interval"],
+      ...blindHeads, ["delay", "mean time from the true turn to the monitor's"]);
+  return element("table", {}, headRow(...heads), body);
+}
+
+function provenanceTable() {
+  const body = element("tbody", {});
+  for (const predicate of data.predicates)
+    body.append(element("tr", {}, element("th", {}, predicate.shown),
+      element("td", { class: "formula" },
+        `${predicate.expression} ${predicate.comparison} ${measured(predicate.threshold)}`),
+      element("td", {}, predicate.provenance)));
+  for (const monitor of data.monitors)
+    for (const guarantee of monitor.guarantees)
+      body.append(element("tr", {}, element("th", {}, monitor.name),
+        element("td", { class: "formula" }, "guarantee"), element("td", {}, guarantee)));
+  return element("table", {}, body);
+}
+
+function remarks() {
+  const found = [`${counted(data.episodes, "episode")}, ${counted(data.steps, "step")}.`];
+  if (!data.has_truth) found.push(`Without truths: ${data.why_no_truth}.`);
+  for (const input of data.inputs) {
+    const missing = input.missing + input.out_of_range;
+    if (missing > 0)
+      found.push(`${input.name}: ${counted(missing, "sample")} missing` +
+        (input.held > 0 ? `, ${input.held} held.` : "."));
+  }
+  if (data.inputs.every((input) => input.missing + input.out_of_range === 0))
+    found.push("No sample is missing.");
+  found.push(...(figures?.reservations ?? []));
+  return found.join(" ");
+}
+
+function showFigures() {
+  document.title = `${data.spec.name}: etlc report`;
+  document.getElementById("title").textContent = data.spec.name;
+  document.getElementById("subtitle").textContent = data.spec.path;
+  document.getElementById("spec").textContent = data.spec.text;
+  document.getElementById("remarks").textContent = remarks();
+  fill("monitor-figures", monitorTable());
+  if (figures) {
+    fill("predicate-figures", element("h2", {}, "Predicates"), predicateTable());
+  }
+  fill("provenance", element("h2", {}, "Thresholds and what they promise"), provenanceTable());
+}

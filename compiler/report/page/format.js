@@ -1,0 +1,40 @@
+// Words and elements that all parts of the page use. Text from the data is only ever set as text.
+
+const data = JSON.parse(document.getElementById("report").textContent);
+const figures = JSON.parse(document.getElementById("figures").textContent);
+
+const statusWords = ["violated", "satisfied", "unknown", "undecided"];
+const isFinal = (code) => code >= 4;
+const statusOf = (code) => code % 4;
+
+// element("td", {class: "number"}, "0.5", child, ...)
+function element(name, attributes, ...children) {
+  const made = document.createElement(name);
+  for (const [key, value] of Object.entries(attributes ?? {})) made.setAttribute(key, value);
+  made.append(...children.filter((child) => child !== null && child !== undefined));
+  return made;
+}
+
+function fill(id, ...children) {
+  document.getElementById(id).replaceChildren(...children);
+}
+
+// A figure as etlc's tables have it: "0.95".
+const rate = (value) => (value === null || value === undefined ? "–" : value.toFixed(3));
+
+function measured(value) {
+  if (value === null || value === undefined || Number.isNaN(value)) return "missing";
+  if (value === Infinity) return "∞";
+  if (value === -Infinity) return "−∞";
+  return String(Number(value.toPrecision(5))).replace("-", "−");
+}
+
+const counted = (n, noun) => `${n.toLocaleString("en")} ${noun}${n === 1 ? "" : "s"}`;
+
+function when(step) {
+  const seconds = data.spec.step_seconds;
+  return seconds > 0 ? `step ${step} (${Number((step * seconds).toPrecision(6))} s)`
+    : `step ${step}`;
+}
+
+const baseName = (path) => path.slice(path.lastIndexOf("/") + 1);

@@ -1,0 +1,144 @@
+// The list of episodes, which sorts and filters; worst first.
+
+// A row of the data as compiler/report/document.cpp writes it, with names.
+const episodes = data.rows.map(
+  ([path, frames, outcomes, missing, judged, exact, buckets, series, pictures], place) => {
+    const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);
+    const alarms = outcomes.map((of) => of[2]).filter((step) => step !== null);
+    return {
+      place, path, frames, missing, exact, buckets, series, pictures,
+      outcomes: outcomes.map(([status, robustness, alarm, finalAt]) =>
+        ({ status, robustness, alarm, finalAt })),
+      wrong: judged?.[0] ?? [], f1: judged?.[1] ?? null, agreement: judged?.[2] ?? null,
+      firstError: judged?.[3] ?? null,
+      margin: finite.length > 0 ? Math.min(...finite.map(Math.abs)) : Infinity,
+      alarm: alarms.length > 0 ? Math.min(...alarms) : Infinity,
+    };
+  });
+
+const orders = {
+  worst: { title: "Worst", help: "wrong verdicts, then the share of wrong frames; without truths " +
+    "alarms, then the least robustness", key: (episode) => episode.place },
+  margin: { title: "Margin", help: "the least distance of a last verdict from turning",
+    key: (episode) => episode.margin },
+  alarm: { title: "Alarm", help: "the step of the first alarm", key: (episode) => episode.alarm },
+  name: { title: "Name", help: "the file", key: (episode) => episode.path },
+};
+
+const rowsAtOnce = 120;
+
+const list = { order: "worst", filter: "", shown: [], drawn: 0, selected: null };
+
+function statusDot(outcome, index) {
+  const word = statusWords[statusOf(outcome.status)];
+  return element("span", { class: `dot ${word}`,
+    title: `${data.monitors[index].name}: ${word}` });
+}
+
+function rowElement(episode) {
+  const errors = !data.has_truth ? null
+    : episode.wrong.length > 0 ? `${episode.wrong.length} wrong: ${episode.wrong.join(", ")}`
+    : episode.agreement === null ? "no truth known"
+    : episode.agreement < 1 ? `${((1 - episode.agreement) * 100).toFixed(1)} % of frames wrong`
+    : "all right";
+  const row = element("div", { class: "row", role: "option", "data-place": episode.place },
+    element("span", { class: "name", title: episode.path }, baseName(episode.path)),
+    element("span", { class: "dots" }, ...episode.outcomes.map(statusDot)),
+    element("span", { class: episode.wrong.length > 0 ? "error" : "quiet" },
+      errors ?? counted(episode.frames, "step")),
+    element("span", { class: "quiet" },
+      Number.isFinite(episode.alarm) ? `alarm ${episode.alarm}` : "",
+      Number.isFinite(episode.margin) ? ` ±${measured(episode.margin)}` : ""));
+  row.addEventListener("click", () => selectEpisode(episode));
+  return row;
+}
+
+function drawMoreRows() {
+  const box = document.getElementById("rows");
+  const end = Math.min(list.drawn + rowsAtOnce, list.shown.length);
+  for (; list.drawn < end; list.drawn++) box.append(rowElement(list.shown[list.drawn]));
+  markSelected();
+}
+
+// Within the list: the page itself stays where it is.
+function bringIntoSight(row) {
+  const box = row.parentElement;
+  const top = row.offsetTop;
+  if (top < box.scrollTop) box.scrollTop = top;
+  const bottom = top + row.offsetHeight;
+  if (bottom > box.scrollTop + box.clientHeight) box.scrollTop = bottom - box.clientHeight;
+}
+
+function markSelected() {
+  for (const row of document.getElementById("rows").children) {
+    const isSelected = row.dataset.place === String(list.selected?.place);
+    row.classList.toggle("selected", isSelected);
+    row.setAttribute("aria-selected", isSelected);
+    if (isSelected) bringIntoSight(row);
+  }
+}
+
+function drawList() {
+  const { key } = orders[list.order];
+  list.shown = episodes.filter((episode) => episode.path.toLowerCase().includes(list.filter));
+  list.shown.sort((a, b) => {
+    const [x, y] = [key(a), key(b)];
+    return x < y ? -1 : x > y ? 1 : a.place - b.place;
+  });
+  list.drawn = 0;
+  document.getElementById("rows").replaceChildren();
+  drawMoreRows();
+}
+
+function neighbour(step) {
+  const at = list.shown.indexOf(list.selected) + step;
+  if (at < 0 || at >= list.shown.length) return;
+  while (at >= list.drawn) drawMoreRows();
+  selectEpisode(list.shown[at]);
+}
+
+function leftOut() {
+  const found = [];
+  const unlisted = data.episodes - episodes.length;
+  const without = episodes.filter((episode) => episode.series === null).length;
+  const rounded = episodes.filter((episode) => episode.series !== null && !episode.exact).length;
+  const reduced = episodes.filter((episode) => episode.series !== null && episode.buckets > 0);
+  if (unlisted > 0)
+    found.push(`${counted(unlisted, "episode")} that went better left out of the list`);
+  if (without > 0) found.push(`${counted(without, "listed episode")} without timelines`);
+  if (rounded > 0)
+    found.push(`numbers of ${counted(rounded, "episode")} rounded to 1/32000 of their span`);
+  if (reduced.length > 0)
+    found.push(`of ${counted(reduced.length, "long episode")} only the least and greatest number ` +
+      "of every few steps");
+  if (found.length === 0) return "";
+  return `To keep this page small: ${found.join("; ")}. Verdicts and truths are exact. ` +
+    "etlc report --size says how large it may be.";
+}
+
+function showList() {
+  const box = document.getElementById("list");
+  const buttons = element("div", { class: "orders" });
+  for (const [name, order] of Object.entries(orders)) {
+    const button = element("button", { type: "button", title: order.help, "data-order": name },
+      order.title);
+    button.addEventListener("click", () => {
+      list.order = name;
+      for (const other of buttons.children) other.classList.toggle("chosen", other === button);
+      drawList();
+    });
+    button.classList.toggle("chosen", name === list.order);
+    buttons.append(button);
+  }
+  box.prepend(buttons);
+  document.getElementById("filter").addEventListener("input", (event) => {
+    list.filter = event.target.value.toLowerCase();
+    drawList();
+  });
+  const rows = document.getElementById("rows");
+  rows.addEventListener("scroll", () => {
+    if (rows.scrollTop + rows.clientHeight > rows.scrollHeight - 200) drawMoreRows();
+  });
+  document.getElementById("left-out").textContent = leftOut();
+  drawList();
+}

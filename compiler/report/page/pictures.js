@@ -1,0 +1,44 @@
+// What the camera saw at the cursor, or at the last step before it that there is a picture of.
+
+let sheet = null;  // the pictures of the episode, one below the other; null: they are files
+
+function showPictures() {
+  const { pictures } = view.row;
+  sheet = null;
+  if (!pictures) {
+    fill("pictures");
+    return;
+  }
+  const caption = element("figcaption", { id: "picture-step" });
+  if (pictures.width === 0) {
+    fill("pictures", element("figure", {}, element("img", { id: "frame", alt: "" }), caption));
+    return;
+  }
+  const canvas = element("canvas",
+    { id: "frame", width: pictures.width, height: pictures.height });
+  fill("pictures", element("figure", {}, canvas, caption));
+  const image = new Image();
+  image.addEventListener("load", () => {
+    if (view.row.pictures !== pictures) return;
+    sheet = image;
+    movePictures();
+  });
+  image.src = pictures.files[0];
+}
+
+function movePictures() {
+  const { pictures } = view.row;
+  if (!pictures) return;
+  const at = Math.max(d3.bisectRight(pictures.steps, view.step) - 1, 0);
+  const step = pictures.steps[at];
+  const frame = document.getElementById("frame");
+  frame.dataset.step = step;
+  document.getElementById("picture-step").textContent = `the camera at ${when(step)}`;
+  if (pictures.width === 0) {
+    frame.src = pictures.files[at];
+    frame.alt = `camera, ${when(step)}`;
+  } else if (sheet) {
+    const { width, height } = pictures;
+    frame.getContext("2d").drawImage(sheet, 0, at * height, width, height, 0, 0, width, height);
+  }
+}

@@ -1,0 +1,202 @@
+#include "report/pictures.hpp"
+
+#include <fmt/format.h>
+#include <glob.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+
+#include "data/arrays/archive.hpp"
+#include "data/arrays/npy_header.hpp"
+#include "data/files/file.hpp"
+#include "data/quote.hpp"
+#include "data/traces/trace.hpp"
+#include "report/pack.hpp"
+#include "report/png.hpp"
+
+namespace etlc::report {
+
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+constexpr std::string_view kEpisode = "{episode}";
+constexpr std::uint32_t kMostPixels = 96;  ///< of a side
+constexpr std::size_t kMostPictures = 120;
+constexpr std::uint64_t kLargestFile = 64U << 20U;
+
+/// Evenly, first and last among them.
+std::vector<std::uint64_t> chosen_steps(std::uint64_t steps, std::size_t most) {
+    const std::size_t n = std::min<std::size_t>(steps, most);
+    std::vector<std::uint64_t> chosen;
+    for (std::size_t i = 0; i < n; ++i)
+        chosen.push_back(n == 1 ? 0 : (i * (steps - 1) + (n - 1) / 2) / (n - 1));
+    return chosen;
+}
+
+/// "runs/ep3.npz" is ep3, "set.h5:data/demo_7" is demo_7.
+std::string name_of(const std::string& episode) {
+    const std::string file = data::trace_file(episode);
+    if (file.size() == episode.size()) return std::filesystem::path(file).stem().string();
+    return std::filesystem::path(episode.substr(file.size() + 1)).filename().string();
+}
+
+std::vector<std::string> matching(std::string pattern, const std::string& episode) {
+    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;)
+        pattern.replace(at, kEpisode.size(), name_of(episode));
+    glob_t found{};
+    ::glob(pattern.c_str(), 0, nullptr, &found);
+    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
+    ::globfree(&found);
+    std::sort(paths.begin(), paths.end());
+    return paths;
+}
+
+std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
+    return fmt::format("found {}, expected {}, one a step", diag::counted(found, "picture"), steps);
+}
+
+diag::Result<std::string> address_of(const std::string& path) {
+    const auto bytes = data::read_file(path, kLargestFile, Code::not_pictures);
+    if (!bytes) return Failure{Code::not_pictures, path + ": " + bytes.failure().message};
+    if (bytes->starts_with("\x89PNG")) return "data:image/png;base64," + base64(*bytes);
+    if (bytes->starts_with("\xFF\xD8\xFF")) return "data:image/jpeg;base64," + base64(*bytes);
+    return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
+}
+
+diag::Result<Pictures> from_files(const std::string& pattern, const std::string& episode,
+                                  std::uint64_t steps, std::uint64_t most_bytes) {
+    Pictures result;
+    const std::vector<std::string> paths = matching(pattern, episode);
+    if (paths.size() != steps) {
+        result.why = not_one_a_step(paths.size(), steps);
+        return result;
+    }
+    // As many as fit, by the size of the first.
+    const auto first = address_of(paths[0]);
+    if (!first) return first.failure();
+    const std::size_t most = std::min<std::uint64_t>(kMostPictures, most_bytes / first->size());
+    for (const std::uint64_t step : chosen_steps(steps, most)) {
+        auto address = address_of(paths[step]);
+        if (!address) return address.failure();
+        result.steps.push_back(step);
+        result.files.push_back(std::move(*address));
+    }
+    if (result.steps.empty()) result.why = "one picture is larger than there is room for";
+    return result;
+}
+
+/// An array T x H x W x 3, or T x H x W, of bytes.
+struct Film {
+    std::uint64_t steps = 0;
+    std::uint32_t height = 0;
+    std::uint32_t width = 0;
+    std::uint32_t channels = 3;
+
+    std::size_t bytes() const { return std::size_t{height} * width * channels; }
+};
+
+std::optional<Film> film_of(const data::NpyHeader& header) {
+    constexpr std::uint64_t kMostSide = 1U << 14U;
+    const auto& shape = header.shape;
+    const bool is_grey = shape.size() == 3;
+    if (!is_grey && (shape.size() != 4 || shape[3] != 3)) return std::nullopt;
+    if (header.element != data::Element::u8 || header.fortran_order) return std::nullopt;
+    if (shape[1] == 0 || shape[2] == 0 || shape[1] > kMostSide || shape[2] > kMostSide)
+        return std::nullopt;
+    return Film{shape[0], static_cast<std::uint32_t>(shape[1]),
+                static_cast<std::uint32_t>(shape[2]), is_grey ? 1U : 3U};
+}
+
+/// The pictures of these steps, small.
+diag::Result<std::vector<Picture>> small_pictures(data::ByteSource& source, const Film& film,
+                                                  const std::vector<std::uint64_t>& steps) {
+    std::vector<Picture> pictures;
+    std::string frame(film.bytes(), '\0');
+    std::uint64_t at = 0;
+    for (const std::uint64_t step : steps) {
+        for (; at <= step; ++at) {
+            const auto read = source.read(frame.data(), frame.size());
+            if (!read) return read.failure();
+            if (*read < frame.size())
+                return Failure{Code::not_pictures, "the array ends before its last picture"};
+        }
+        pictures.push_back(shrunk(frame, film.width, film.height, film.channels, kMostPixels));
+    }
+    return pictures;
+}
+
+std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
+    Picture all{pictures[0].width, 0, ""};
+    for (std::size_t i = 0; i < pictures.size(); i += stride) {
+        all.height += pictures[i].height;
+        all.pixels += pictures[i].pixels;
+    }
+    return "data:image/png;base64," + base64(png(all));
+}
+
+diag::Result<Pictures> from_array(const std::string& key, const std::string& episode,
+                                  std::uint64_t steps, std::uint64_t most_bytes) {
+    if (!episode.ends_with(".npz"))
+        return Failure{Code::not_pictures, "pictures in arrays are read from .npz files alone"};
+    Pictures result;
+    const auto archive = data::Archive::open({episode, {}});
+    if (!archive) return archive.failure();
+    const auto& keys = archive->keys();
+    if (std::find(keys.begin(), keys.end(), key) == keys.end()) {
+        result.why = fmt::format("there is no array {}", data::in_quotes(key));
+        return result;
+    }
+    const auto source = archive->member(key);
+    if (!source) return source.failure();
+    const auto header = data::read_npy_header(**source);
+    if (!header) return header.failure();
+    const auto film = film_of(*header);
+    if (!film)
+        return Failure{Code::not_pictures,
+                       fmt::format("array {} has shape {} of {}, expected T x H x W x 3 of uint8",
+                                   data::in_quotes(key), data::shape_text(header->shape),
+                                   data::name(header->element))};
+    if (film->steps != steps) {
+        result.why = not_one_a_step(film->steps, steps);
+        return result;
+    }
+    const std::vector<std::uint64_t> chosen = chosen_steps(steps, kMostPictures);
+    const auto pictures = small_pictures(**source, *film, chosen);
+    if (!pictures) return pictures.failure();
+    result.width = (*pictures)[0].width;
+    result.height = (*pictures)[0].height;
+    for (std::size_t stride = 1; stride <= chosen.size(); stride *= 2) {
+        std::string address = sheet(*pictures, stride);
+        if (address.size() > most_bytes) continue;
+        result.files.push_back(std::move(address));
+        for (std::size_t i = 0; i < chosen.size(); i += stride) result.steps.push_back(chosen[i]);
+        return result;
+    }
+    result.why = "one picture is larger than there is room for";
+    return result;
+}
+
+}  // namespace
+
+bool FrameSource::is_pattern() const {
+    const auto ends = [&](std::string_view end) { return text.ends_with(end); };
+    return text.find_first_of("*?[{") != std::string::npos || ends(".png") || ends(".jpg") ||
+           ends(".jpeg");
+}
+
+std::uint64_t Pictures::bytes() const {
+    std::uint64_t sum = 0;
+    for (const std::string& file : files) sum += file.size();
+    return sum;
+}
+
+diag::Result<Pictures> pictures_of(const FrameSource& source, const std::string& episode,
+                                   std::uint64_t steps, std::uint64_t most_bytes) {
+    return source.is_pattern() ? from_files(source.text, episode, steps, most_bytes)
+                               : from_array(source.text, episode, steps, most_bytes);
+}
+
+}  // namespace etlc::report

@@ -1,0 +1,255 @@
+#include "report/report.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <memory>
+#include <tuple>
+
+#include "data/files/file.hpp"
+#include "episodes/parallel.hpp"
+#include "report/document.hpp"
+#include "report/page.hpp"
+#include "report/picture_of_trace.hpp"
+
+namespace etlc::report {
+
+namespace {
+
+/// What a row of the list takes beside its series, at most a quarter of the page.
+constexpr std::uint64_t kBytesPerRow = 240;
+constexpr std::uint64_t kLeastForSeries = 2048;
+constexpr std::uint64_t kLeastForPictures = 20'000;
+
+/// How bad an episode is without truths: what raised an alarm first, then the least robustness.
+std::tuple<bool, float> badness(const Row& row) {
+    bool alarm = false;
+    float least = std::numeric_limits<float>::infinity();
+    for (const Outcome& outcome : row.outcomes) {
+        alarm |= outcome.alarm.has_value();
+        least = std::min(least, outcome.robustness);
+    }
+    return {!alarm, least};
+}
+
+Row row_of(const Tracks& tracks) {
+    Row row;
+    row.path = tracks.path;
+    row.frames = tracks.frames;
+    row.outcomes = tracks.outcomes;
+    for (const plan::SampleCounts& counts : tracks.sample_counts)
+        row.missing += counts.missing + counts.out_of_range;
+    return row;
+}
+
+/// The rows of the page, the worst first, and their series and pictures as far as there is room.
+class Shelf {
+public:
+    /// `ranked`: rows have a rank from the evaluation.
+    Shelf(bool ranked, bool pictured, std::size_t episodes, std::uint64_t bytes)
+        : ranked_(ranked),
+          most_rows_(std::min<std::uint64_t>(episodes, bytes / 4 / kBytesPerRow)),
+          room_((bytes - most_rows_ * kBytesPerRow) / (pictured ? 2 : 1)) {}
+
+    /// What an episode may take of the series, and of the pictures.
+    std::uint64_t share() const {
+        return std::max(room_ / std::max<std::uint64_t>(1, most_rows_), kLeastForSeries);
+    }
+    std::uint64_t share_of_pictures() const {
+        return std::clamp(room_ / std::max<std::uint64_t>(1, most_rows_), kLeastForPictures,
+                          std::max(room_, kLeastForPictures));
+    }
+
+    void add(Row row) {
+        series_ += row.blob.text.size();
+        pictures_ += row.pictures.bytes();
+        const auto at =
+            std::upper_bound(rows_.begin(), rows_.end(), row,
+                             [&](const Row& a, const Row& b) { return is_worse(a, b); });
+        rows_.insert(at, std::move(row));
+        if (rows_.size() > most_rows_) {
+            take_from(rows_.back(), true, true);
+            rows_.pop_back();
+        }
+        // The least bad ones lose theirs.
+        for (std::size_t i = rows_.size(); (series_ > room_ || pictures_ > room_) && i-- > 0;)
+            take_from(rows_[i], series_ > room_, pictures_ > room_);
+    }
+
+    std::vector<Row> take() { return std::move(rows_); }
+
+private:
+    bool is_worse(const Row& a, const Row& b) const {
+        return ranked_ ? a.rank < b.rank : badness(a) < badness(b);
+    }
+    void take_from(Row& row, bool series, bool pictures) {
+        if (series) series_ -= row.blob.text.size();
+        if (pictures) pictures_ -= row.pictures.bytes();
+        if (series) row.blob = {};
+        if (pictures) row.pictures = {};
+    }
+
+    bool ranked_;
+    std::uint64_t most_rows_;
+    std::uint64_t room_;  ///< of the series, and as much again of pictures
+    std::uint64_t series_ = 0;
+    std::uint64_t pictures_ = 0;
+    std::vector<Row> rows_;
+};
+
+std::vector<Index> shown_predicates(const Material& material) {
+    std::vector<Index> shown = material.spec.plan.predicates;
+    if (material.truth != nullptr)
+        shown.insert(shown.end(), material.truth->labelled.begin(), material.truth->labelled.end());
+    std::sort(shown.begin(), shown.end());
+    shown.erase(std::unique(shown.begin(), shown.end()), shown.end());
+    return shown;
+}
+
+/// Reads an episode and packs it, in its thread.
+class Packer {
+public:
+    Packer(const Scene& scene, const Request& request, const Shelf& shelf)
+        : reader_(scene), request_(request), shelf_(shelf) {}
+
+    struct Packed {
+        Row row;
+        std::vector<plan::SampleCounts> sample_counts;
+    };
+    diag::Result<Packed> score(const std::string& path) {
+        const auto tracks = reader_.score(path);
+        if (!tracks) return tracks.failure();
+        Packed packed{row_of(*tracks), tracks->sample_counts};
+        packed.row.blob = blob_of(*tracks, shelf_.share());
+        if (request_.frames.text.empty()) return packed;
+        auto pictures =
+            pictures_of(request_.frames, path, tracks->frames, shelf_.share_of_pictures());
+        if (!pictures) return pictures.failure();
+        packed.row.pictures = std::move(*pictures);
+        return packed;
+    }
+
+private:
+    TrackReader reader_;
+    const Request& request_;
+    const Shelf& shelf_;
+};
+
+/// Adds up what the episodes give, in their order.
+class Gathering {
+public:
+    Gathering(const plan::Plan& plan, const std::vector<evaluate::EpisodeRow>& judged, Shelf& shelf)
+        : ranked_(!judged.empty()), shelf_(shelf) {
+        totals.sample_counts.resize(plan.inputs.size());
+        for (std::size_t i = 0; i < judged.size(); ++i) rank_.emplace(judged[i].path, i);
+    }
+
+    void add(Packer::Packed packed) {
+        ++totals.episodes;
+        totals.steps += packed.row.frames;
+        for (std::size_t i = 0; i < totals.sample_counts.size(); ++i) {
+            totals.sample_counts[i].missing += packed.sample_counts[i].missing;
+            totals.sample_counts[i].out_of_range += packed.sample_counts[i].out_of_range;
+            totals.sample_counts[i].held += packed.sample_counts[i].held;
+        }
+        if (ranked_) packed.row.rank = rank_.at(packed.row.path);
+        if (!packed.row.pictures.why.empty() && unpictured++ == 0)
+            first_unpictured = data::in_file({diag::Code::frames_left_out, packed.row.pictures.why},
+                                             packed.row.path);
+        shelf_.add(std::move(packed.row));
+    }
+
+    Totals totals;
+    std::uint64_t unpictured = 0;  ///< episodes that lack pictures
+    diag::Diagnostic first_unpictured{};
+
+private:
+    bool ranked_;
+    Shelf& shelf_;
+    std::map<std::string, std::size_t> rank_;
+};
+
+/// False where no episode has pictures.
+bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
+    if (gathered.unpictured == 0) return true;
+    const bool none = gathered.unpictured == gathered.totals.episodes;
+    diag::Diagnostic found = gathered.first_unpictured;
+    if (none) found.code = diag::Code::no_frames;
+    sink.report(std::move(found))
+        .note(none ? "no episode has the pictures that --frames names"
+                   : fmt::format("{} of {} without pictures", gathered.unpictured,
+                                 diag::counted(gathered.totals.episodes, "episode")));
+    return !none;
+}
+
+/// A pattern says where the pictures of each episode lie.
+bool check_pattern(const Request& request, diag::Sink& sink) {
+    const FrameSource& frames = request.frames;
+    if (!frames.is_pattern() || request.episodes.size() == 1 ||
+        frames.text.find("{episode}") != std::string::npos)
+        return true;
+    sink.report(data::in_file(
+        {diag::Code::no_frames, fmt::format("names the same pictures for each of {}, expected "
+                                            "{{episode}} in it, which stands for an episode's name",
+                                            diag::counted(request.episodes.size(), "episode"))},
+        "--frames " + frames.text));
+    return false;
+}
+
+}  // namespace
+
+std::optional<std::string> page(const Material& material, const Request& request,
+                                diag::Sink& sink) {
+    if (!check_pattern(request, sink)) return std::nullopt;
+    const plan::Plan& plan = material.spec.plan;
+    std::optional<pipeline::Compiled> truth;
+    if (material.truth != nullptr) {
+        truth = pipeline::compile(material.truth->truth.model,
+                                  {request.limits, check::Values::boolean}, sink);
+        if (!truth) return std::nullopt;
+    }
+    Scene scene{plan,           shown_predicates(material),
+                material.truth, truth ? &truth->plan : nullptr,
+                request.names,  {}};
+    auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.names);
+    if (!drawn) {
+        sink.report(data::in_trace(drawn.failure(), request.episodes[0]));
+        return std::nullopt;
+    }
+    scene.planes = std::move(*drawn);
+
+    std::vector<evaluate::EpisodeRow> judged;
+    std::string figures = "null";
+    if (material.judgement != nullptr) {
+        judged = evaluate::by_episode(*material.judgement);
+        evaluate::SideBySide one;
+        one.specs.push_back({material.file.path(), evaluate::summarise(*material.judgement), {}});
+        figures = in_script(evaluate::json(one));
+    }
+    const Totals none{0, 0, std::vector<plan::SampleCounts>(plan.inputs.size())};
+    const std::uint64_t bytes = request.megabytes * 1'000'000;
+    const std::uint64_t fixed = page_of(document(material, scene, none, {}, {}), figures).size();
+    Shelf shelf(!judged.empty(), !request.frames.text.empty(), request.episodes.size(),
+                bytes > 2 * fixed ? bytes - fixed : bytes / 2);
+    Gathering gathered(plan, judged, shelf);
+    const bool read = episodes::in_order<Packer::Packed>(
+        request.episodes, request, sink,
+        [&] { return std::make_unique<Packer>(scene, request, shelf); },
+        [&](std::size_t, Packer::Packed packed) { gathered.add(std::move(packed)); });
+    if (!read || !report_unpictured(gathered, sink)) return std::nullopt;
+    return page_of(document(material, scene, gathered.totals, judged, shelf.take()), figures);
+}
+
+std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
+                                   const data::NamesInFile& names, diag::Sink& sink) {
+    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}};
+    const auto tracks = TrackReader(scene).score(trace);
+    if (tracks) return picture_of_trace(scene, *tracks);
+    sink.report(data::in_trace(tracks.failure(), trace));
+    return std::nullopt;
+}
+
+}  // namespace etlc::report
