@@ -1,0 +1,153 @@
+#!/usr/bin/env python3
+"""page_test.py ETLC: the page of `etlc report` in a browser that nobody sees. It opens from disk
+without a message or a request; what one chooses by mouse and keyboard is what one is shown; its
+figures are those of `etlc evaluate`; names are shown, whatever is in them."""
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from browser import Browser
+
+HOSTILE = "<img src=x onerror=alert(1)>"
+SPEC = """
+// </script><script>alert("a comment")</script>
+spec page;
+rate 10 Hz;
+input z : f32[2];
+input x : f32;
+target goal = [[0, 0], [1, 0]];
+predicate near = min l2(z, goal) <= 1;
+truth near = x < 1;
+monitor arrives = F near;
+monitor never_far = G near;
+"""
+STEPS = 40
+
+
+def episode(random, error):
+    """`error` steps of 40 at which the label and the distance do not agree."""
+    x = np.linspace(3, 0, STEPS)
+    z = np.stack([np.where(x < 1, 0.5, 4), np.zeros(STEPS)], 1)
+    z += 0.01 * random.normal(size=(STEPS, 2))
+    x[:error] = 0
+    camera = np.zeros((STEPS, 6, 8, 3), np.uint8)
+    camera += 6 * np.arange(STEPS, dtype=np.uint8)[:, None, None, None]
+    return {"z": z.astype(np.float32), "x": x, "camera": camera}
+
+
+def make_episodes(folder):
+    random = np.random.default_rng(3)
+    (folder / "episodes").mkdir()
+    for number in range(12):
+        np.savez(folder / "episodes" / f"{number:02}.npz", **episode(random, 0))
+    np.savez(folder / "episodes" / f"{HOSTILE}.npz", **episode(random, 1))
+    np.savez(folder / "episodes" / "worst.npz", **episode(random, 9))
+    one = {name: values[:1] for name, values in episode(random, 0).items()}
+    np.savez(folder / "episodes" / "one_step.npz", **one)
+    gone = episode(random, 0)
+    gone["z"][:] = np.nan
+    np.savez(folder / "episodes" / "missing_throughout.npz", **gone)
+
+
+def same(page, judged):
+    """The page holds what evaluate wrote, number by number."""
+    shown = page.value("document.getElementById('figures').textContent")
+    assert json.loads(shown) == judged, "figures differ"
+    f1 = judged["predicates"]["near"]["f1"]
+    table = page.value("document.getElementById('predicate-figures').textContent")
+    assert f"{f1:.3f}" in table, (f1, table)
+
+
+def shown_step(page):
+    return page.value("view.step")
+
+
+def follows(page, step):
+    """Numbers, cursor and camera are those of this step."""
+    assert shown_step(page) == step, (shown_step(page), step)
+    head = page.value("document.querySelector('#readout .head th').textContent")
+    assert head.startswith(f"step {step} "), head
+    assert page.value("document.getElementById('frame').dataset.step") == str(step)
+    page.wait("sheet !== null")
+    grey = page.value("""(() => {
+        movePictures();
+        const copy = document.createElement("canvas").getContext("2d", {willReadFrequently: true});
+        copy.drawImage(document.getElementById("frame"), 0, 0);
+        return copy.getImageData(4, 3, 1, 1).data[0];
+    })()""")
+    assert grey == 6 * step, (grey, step)
+
+
+def look(browser, path, width, height, judged):
+    page = browser.page(path, width, height)
+    page.wait("view.episode !== null")
+    same(page, judged)
+    assert page.value("document.documentElement.scrollWidth <= window.innerWidth"), "too wide"
+
+    names = page.value("Array.from(document.querySelectorAll('#rows .name'), r => r.textContent)")
+    assert names[:2] == ["missing_throughout.npz", "worst.npz"], names  # no verdict, wrong ones
+    assert f"{HOSTILE}.npz" in names, names
+    page.click("#rows .row:nth-child(2)")
+    page.wait("view.row === list.shown[1]")
+    assert page.value("document.getElementById('episode-name').textContent").endswith("worst.npz")
+
+    page.key("Home")
+    follows(page, 0)
+    page.key("ArrowRight")
+    follows(page, 1)
+    page.key("ArrowRight", shift=True)
+    follows(page, 11)
+    x, y, wide, _ = page.place("#tracks .brush .background")
+    page.mouse("mouseMoved", x + wide / 4, y)
+    page.wait("view.step !== 11")
+    step = shown_step(page)
+    assert abs(step - 0.75 * (STEPS - 1)) <= 1, step
+    follows(page, step)
+
+    why = page.value("document.querySelector('#why pre').textContent")
+    assert "near" in why, why
+    page.click("#why .go")
+    assert shown_step(page) == page.value("view.episode.why.find("
+                                          "of => of.monitor === view.why)?.step"), "explained step"
+
+    page.value("chooseTheme(false)")
+    light = page.value("getComputedStyle(document.body).backgroundColor")
+    page.key("d")
+    dark = page.value("getComputedStyle(document.body).backgroundColor")
+    assert light != dark, light
+    assert page.pdf().startswith(b"%PDF")
+    for name in (f"{HOSTILE}.npz", "one_step.npz", "missing_throughout.npz"):
+        of_name = f"(one => baseName(one.path) === {json.dumps(name)})"
+        page.value(f"selectEpisode(episodes.find({of_name}))")
+        page.wait(f"view.row && {of_name}(view.row)")
+        assert page.value("document.getElementById('episode-name').textContent").endswith(name)
+    assert page.messages == [], page.messages
+    assert page.requests == [], page.requests
+
+
+def main(etlc):
+    with tempfile.TemporaryDirectory() as name:
+        folder = pathlib.Path(name)
+        (folder / "page.etl").write_text(SPEC)
+        make_episodes(folder)
+
+        def call(*words):
+            done = subprocess.run([etlc, *words], cwd=folder, capture_output=True, text=True)
+            assert done.returncode == 0, (words, done.stderr)
+
+        report = ["report", "page.etl", "--data", "episodes", "--frames", "camera", "-o"]
+        call(*report, "page.html")
+        call(*report, "again.html", "--jobs", "1")
+        assert (folder / "page.html").read_bytes() == (folder / "again.html").read_bytes()
+        call("evaluate", "page.etl", "--data", "episodes", "--json", "judged.json")
+        judged = json.loads((folder / "judged.json").read_text())
+        with Browser() as browser:
+            for width, height in ((1280, 720), (1920, 1080)):
+                look(browser, folder / "page.html", width, height, judged)
+
+
+main(sys.argv[1])
