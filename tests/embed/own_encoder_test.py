@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """own_encoder_test.py ETLC ENCODERS.MD: the encoder of that page, as it stands there, makes targets
-of images and an episode of a video, and `etlc run` then says when the video shows what they show."""
+of images and episodes of recordings, and `etlc run` then says from when on these show what the
+images show."""
 import csv
 import os
 import pathlib

@@ -19,7 +19,8 @@ drive 2 > b.csv
 { head -1 b.csv; tail -30 b.csv; } > most_of_it.csv
 "$ETLC" fit t.etl --data a.csv b.csv most_of_it.csv
 echo "exit status $?"
-"$ETLC" fit t.etl --data a.csv b.csv most_of_it.csv --allow-overlap 'filmed on two days' | grep allow
+"$ETLC" fit t.etl --data a.csv b.csv most_of_it.csv \
+    --allow-overlap 'filmed on two days' | grep allow
 drive 4 > d.csv
 drive 5 > e.csv
 "$ETLC" calibrate t.etl --data d.csv e.csv > report.txt
