@@ -199,8 +199,8 @@ TEST(Places, MessagesNameWhatWasExpected) {
         {"const n = x;", "2:11 expected a number after '=', found 'x'"},
         {"period 3;", "2:9 expected a unit of time (us, ms, s or min) after '3', found ';'"},
         {"target t = 3;",
-         "2:12 expected load(\"FILE\") or a matrix [[...], ...], 'fitted', 'frames' or 'images' after '=', "
-         "found '3'"},
+         "2:12 expected load(\"FILE\") or a matrix [[...], ...], 'fitted', 'frames' or 'images' "
+         "after '=', found '3'"},
         {"target t = load(t_npy);",
          "2:17 expected a file name between double quotes after '(', found 't_npy'"},
         {"target t = [];",
