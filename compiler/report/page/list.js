@@ -109,7 +109,7 @@ function leftOut() {
   if (rounded > 0)
     found.push(`numbers of ${counted(rounded, "episode")} rounded to 1/32000 of their span`);
   if (reduced.length > 0)
-    found.push(`of ${counted(reduced.length, "long episode")} only the least and greatest number ` +
+    found.push(`of ${counted(reduced.length, "episode")} only the least and greatest number ` +
       "of every few steps");
   if (found.length === 0) return "";
   return `To keep this page small: ${found.join("; ")}. Verdicts and truths are exact. ` +
