@@ -26,17 +26,23 @@ monitor arrives = F near;
 monitor never_far = G near;
 """
 STEPS = 40
+LONG = 100_000
+
+
+def samples(random, steps):
+    x = np.linspace(3, 0, steps)
+    z = np.stack([np.where(x < 1, 0.5, 4), np.zeros(steps)], 1)
+    z += 0.01 * random.normal(size=(steps, 2))
+    return x, z.astype(np.float32)
 
 
 def episode(random, error):
     """`error` steps of 40 at which the label and the distance do not agree."""
-    x = np.linspace(3, 0, STEPS)
-    z = np.stack([np.where(x < 1, 0.5, 4), np.zeros(STEPS)], 1)
-    z += 0.01 * random.normal(size=(STEPS, 2))
+    x, z = samples(random, STEPS)
     x[:error] = 0
     camera = np.zeros((STEPS, 6, 8, 3), np.uint8)
     camera += 6 * np.arange(STEPS, dtype=np.uint8)[:, None, None, None]
-    return {"z": z.astype(np.float32), "x": x, "camera": camera}
+    return {"z": z, "x": x, "camera": camera}
 
 
 def make_episodes(folder):
@@ -51,6 +57,8 @@ def make_episodes(folder):
     gone = episode(random, 0)
     gone["z"][:] = np.nan
     np.savez(folder / "episodes" / "missing_throughout.npz", **gone)
+    x, z = samples(random, LONG)
+    np.savez(folder / "long.npz", x=x, z=z)
 
 
 def same(page, judged):
@@ -129,15 +137,27 @@ def look(browser, path, width, height, judged):
     assert page.requests == [], page.requests
 
 
+def look_at_a_long_one(browser, path):
+    """Of 100,000 steps the page has the least and greatest of every few, and says so."""
+    page = browser.page(path)
+    page.wait("view.episode !== null")
+    left_out = page.value("document.getElementById('left-out').textContent")
+    assert "least and greatest" in left_out, left_out
+    page.key("End")
+    assert shown_step(page) == LONG - 1
+    assert page.messages == [], page.messages
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
         (folder / "page.etl").write_text(SPEC)
         make_episodes(folder)
 
-        def call(*words):
+        def call(*words, status=0):
             done = subprocess.run([etlc, *words], cwd=folder, capture_output=True, text=True)
-            assert done.returncode == 0, (words, done.stderr)
+            assert done.returncode == status, (words, done.stderr)
+            return done.stderr
 
         report = ["report", "page.etl", "--data", "episodes", "--frames", "camera", "-o"]
         call(*report, "page.html")
@@ -145,7 +165,11 @@ def main(etlc):
         assert (folder / "page.html").read_bytes() == (folder / "again.html").read_bytes()
         call("evaluate", "page.etl", "--data", "episodes", "--json", "judged.json")
         judged = json.loads((folder / "judged.json").read_text())
+        call("report", "page.etl", "--data", "long.npz", "-o", "long.html")
+        refused = call("report", "page.etl", "--data", "long.npz", "-o", "no/folder.html", status=1)
+        assert "no/folder.html" in refused, refused
         with Browser() as browser:
+            look_at_a_long_one(browser, folder / "long.html")
             for width, height in ((1280, 720), (1920, 1080)):
                 look(browser, folder / "page.html", width, height, judged)
 
