@@ -4,17 +4,24 @@
 
 namespace etlc::check {
 
-std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
-                           diag::Sink& sink) {
-    Context context{spec, file, options, sink};
-    context.incomplete = sink.has_errors();
-    context.model.file = file;
+namespace {
 
+void check_up_to_inputs(Context& context, ast::Spec& spec) {
+    context.incomplete = context.sink.has_errors();
+    context.model.file = context.file;
     set_constants(context, spec);
     declare_names(context);
     check_rate(context);
     check_encoders(context);
     check_inputs(context);
+}
+
+}  // namespace
+
+std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
+                           diag::Sink& sink) {
+    Context context{spec, file, options, sink};
+    check_up_to_inputs(context, spec);
     check_embeddings(context);
     check_projections(context);
     check_targets(context);
@@ -37,14 +44,7 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
 std::optional<Model> check_encoded(ast::Spec spec, const source::File& file, const Options& options,
                                    diag::Sink& sink) {
     Context context{spec, file, options, sink};
-    context.incomplete = sink.has_errors();
-    context.model.file = file;
-
-    set_constants(context, spec);
-    declare_names(context);
-    check_rate(context);
-    check_encoders(context);
-    check_inputs(context);
+    check_up_to_inputs(context, spec);
     collect_encoded(context);
 
     if (sink.has_errors()) return std::nullopt;

@@ -1,11 +1,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <map>
 
 #include "data/arrays/npz_writer.hpp"
 #include "data/files/file.hpp"
+#include "data/files/paths.hpp"
 #include "embed/embed.hpp"
 
 namespace etlc::embed {
@@ -78,10 +78,7 @@ private:
             return model_.inputs[input].encoder == index;
         });
         if (!is_used) return true;
-        const std::string model_path =
-            (std::filesystem::path(model_.file.path()).parent_path() / encoder.model)
-                .lexically_normal()
-                .string();
+        const std::string model_path = data::beside(model_.file.path(), encoder.model);
         auto running = Encoder::start(encoder, model_path, request_.running);
         if (!running) return fail(running.failure(), model_path);
         for (std::size_t r = 0; r < recordings_.size(); ++r)

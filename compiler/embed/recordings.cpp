@@ -1,12 +1,12 @@
 #include "embed/recordings.hpp"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <filesystem>
 
 #include "data/files/file.hpp"
+#include "data/files/paths.hpp"
 #include "data/frames/images.hpp"
 
 namespace etlc::embed {
@@ -57,15 +57,6 @@ std::vector<Recording> in_folder(const std::string& folder, double rate, bool be
     return found;
 }
 
-std::vector<std::string> matching(const std::string& pattern) {
-    glob_t found{};
-    const int status = ::glob(pattern.c_str(), 0, nullptr, &found);
-    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    ::globfree(&found);
-    std::sort(paths.begin(), paths.end());
-    return status == 0 ? paths : std::vector<std::string>{};
-}
-
 diag::Result<std::vector<Recording>> recordings_at(const std::string& path, double rate) {
     std::error_code error;
     if (fs::is_directory(path, error)) {
@@ -75,7 +66,8 @@ diag::Result<std::vector<Recording>> recordings_at(const std::string& path, doub
     }
     if (!data::why_unreadable(path)) return std::vector<Recording>{video(path, rate)};
     std::vector<Recording> all;
-    for (const std::string& match : matching(path)) {
+    const auto matches = data::paths_matching(path);
+    for (const std::string& match : matches.value_or(std::vector<std::string>{})) {
         auto found = recordings_at(match, rate);
         if (!found) continue;
         for (Recording& recording : *found) all.push_back(std::move(recording));

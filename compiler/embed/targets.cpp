@@ -1,7 +1,6 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <filesystem>
 #include <set>
 
 #include "check/encoders/encoded.hpp"
@@ -9,6 +8,7 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/files/paths.hpp"
 #include "embed/embed.hpp"
 
 namespace etlc::embed {
@@ -18,12 +18,6 @@ namespace {
 using check::Encoded;
 using check::Index;
 using diag::Code;
-
-std::string beside(const check::Model& model, const std::string& path) {
-    return (std::filesystem::path(model.file.path()).parent_path() / path)
-        .lexically_normal()
-        .string();
-}
 
 /// Encodes the sources of one encoder.
 class Targets {
@@ -52,7 +46,8 @@ public:
 
 private:
     std::unique_ptr<Encoder> start() {
-        auto running = Encoder::start(encoder_, beside(model_, encoder_.model), request_.running);
+        auto running = Encoder::start(encoder_, data::beside(model_.file.path(), encoder_.model),
+                                      request_.running);
         if (running) return std::move(*running);
         report({running.failure()}, {}, {});
         return nullptr;
@@ -66,7 +61,7 @@ private:
         std::vector<std::string> paths;
         const Code code = encoded.is_video ? Code::unreadable_video : Code::unreadable_image;
         for (const std::string& path : *files) {
-            paths.push_back(beside(model_, path));
+            paths.push_back(data::beside(model_.file.path(), path));
             const auto hash = data::hash_of_file(paths.back(), code);
             if (!hash) return fail(hash.failure(), paths.back(), encoded);
             entry.sources.push_back({path, *hash});
@@ -111,7 +106,9 @@ private:
         if (!trouble.of_encoder && encoded)
             return fail(trouble.failure,
                         paths[std::min<std::size_t>(trouble.frame, paths.size() - 1)], *encoded);
-        sink_.report(data::in_file(trouble.failure, beside(model_, encoder_.model)))
+        sink_
+            .report(
+                data::in_file(trouble.failure, data::beside(model_.file.path(), encoder_.model)))
             .note(encoder_.span, fmt::format("'{}' is declared here", encoder_.name));
         return false;
     }
@@ -133,7 +130,8 @@ std::optional<embedded::File> describe_encoders(check::Model& model, const Reque
     file.etlc = request.version;
     for (check::Encoder& encoder : model.encoders) {
         std::string place;
-        auto described = check::describe(encoder, beside(model, encoder.model), place);
+        auto described =
+            check::describe(encoder, data::beside(model.file.path(), encoder.model), place);
         if (!described) {
             sink.report(data::in_file(described.failure(), place))
                 .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));

@@ -1,7 +1,6 @@
 #include "report/pictures.hpp"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -10,6 +9,7 @@
 #include "data/arrays/archive.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/files/file.hpp"
+#include "data/files/paths.hpp"
 #include "data/quote.hpp"
 #include "data/traces/trace.hpp"
 #include "report/pack.hpp"
@@ -44,14 +44,11 @@ std::string name_of(const std::string& episode) {
 }
 
 std::vector<std::string> matching(std::string pattern, const std::string& episode) {
-    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;)
-        pattern.replace(at, kEpisode.size(), name_of(episode));
-    glob_t found{};
-    ::glob(pattern.c_str(), 0, nullptr, &found);
-    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    ::globfree(&found);
-    std::sort(paths.begin(), paths.end());
-    return paths;
+    const std::string name = data::literal(name_of(episode));
+    for (std::size_t at = 0; (at = pattern.find(kEpisode, at)) != std::string::npos;
+         at += name.size())
+        pattern.replace(at, kEpisode.size(), name);
+    return data::paths_matching(pattern).value_or(std::vector<std::string>{});
 }
 
 std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {

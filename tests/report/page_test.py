@@ -9,6 +9,7 @@ import sys
 import tempfile
 
 import numpy as np
+from PIL import Image
 
 from browser import Browser
 
@@ -59,6 +60,19 @@ def make_episodes(folder):
     np.savez(folder / "episodes" / "missing_throughout.npz", **gone)
     x, z = samples(random, LONG)
     np.savez(folder / "long.npz", x=x, z=z)
+
+
+def make_files(folder):
+    """The camera's pictures as files: of the episodes [1] and 1, which are not to be mixed up."""
+    random = np.random.default_rng(4)
+    (folder / "two").mkdir()
+    for name, steps in (("[1]", 4), ("1", 6)):
+        x, z = samples(random, steps)
+        np.savez(folder / "two" / f"{name}.npz", x=x, z=z)
+        (folder / "camera" / name).mkdir(parents=True)
+        for step in range(steps):
+            picture = Image.new("RGB", (4, 4), (40 * step, 0, 0))
+            picture.save(folder / "camera" / name / f"{step}.png")
 
 
 def same(page, judged):
@@ -168,6 +182,10 @@ def main(etlc):
         call("report", "page.etl", "--data", "long.npz", "-o", "long.html")
         refused = call("report", "page.etl", "--data", "long.npz", "-o", "no/folder.html", status=1)
         assert "no/folder.html" in refused, refused
+        make_files(folder)
+        said = call("report", "page.etl", "--data", "two", "--frames", "camera/{episode}/*.png",
+                    "-o", "two.html")
+        assert "W0840" not in said, said
         with Browser() as browser:
             look_at_a_long_one(browser, folder / "long.html")
             for width, height in ((1280, 720), (1920, 1080)):

@@ -8,6 +8,7 @@
 #include "check/context.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
+#include "data/files/paths.hpp"
 
 namespace etlc::check {
 
@@ -113,7 +114,7 @@ std::optional<Matrix> literal_matrix(Context& c,
 }  // namespace
 
 std::string beside_spec(const Context& c, const std::string& path) {
-    return (std::filesystem::path(c.file.path()).parent_path() / path).lexically_normal().string();
+    return data::beside(c.file.path(), path);
 }
 
 std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {

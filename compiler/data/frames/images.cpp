@@ -1,13 +1,13 @@
 #include "data/frames/images.hpp"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 
 #include "data/files/file.hpp"
+#include "data/files/paths.hpp"
 
 namespace etlc::data {
 namespace {
@@ -17,25 +17,6 @@ using diag::Code;
 using diag::Failure;
 
 const std::vector<std::string> kEndings = {".png", ".jpg", ".jpeg"};
-
-/// The path of a folder as a pattern that matches it alone.
-std::string literal(const std::string& folder) {
-    std::string result;
-    for (const char c : folder) {
-        if (std::string_view("*?[]\\").find(c) != std::string_view::npos) result += '\\';
-        result += c;
-    }
-    return result;
-}
-
-std::vector<std::string> matching(const std::string& pattern) {
-    glob_t found{};
-    const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
-    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    ::globfree(&found);
-    if (status != 0) return {};
-    return paths;
-}
 
 }  // namespace
 
@@ -68,7 +49,8 @@ diag::Result<std::vector<std::string>> find_images(const std::string& folder,
                            fmt::format("unknown kind of image, expected {}", image_endings())};
         images.push_back(path);
     } else {
-        for (const std::string& match : matching(literal(prefix) + path))
+        const auto matches = paths_matching(literal(prefix) + path);
+        for (const std::string& match : matches.value_or(std::vector<std::string>{}))
             if (is_image(match)) images.push_back(match.substr(prefix.size()));
     }
     std::sort(images.begin(), images.end());

@@ -1,7 +1,6 @@
 #include "data/traces/episodes.hpp"
 
 #include <fmt/format.h>
-#include <glob.h>
 
 #include <algorithm>
 #include <bit>
@@ -12,6 +11,7 @@
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/files/paths.hpp"
 #include "data/traces/hdf5.hpp"
 
 namespace etlc::data {
@@ -50,16 +50,13 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
 
 /// What matches; folders among it stand for the traces in them.
 diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
-    glob_t found{};
-    const int status = ::glob(pattern.c_str(), GLOB_NOSORT, nullptr, &found);
-    std::vector<std::string> paths(found.gl_pathv, found.gl_pathv + found.gl_pathc);
-    ::globfree(&found);
-    if (status == GLOB_NOMATCH)
-        return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
-    if (status != 0)
+    const auto paths = paths_matching(pattern);
+    if (!paths)
         return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
+    if (paths->empty())
+        return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
     std::vector<std::string> files;
-    for (const std::string& path : paths) {
+    for (const std::string& path : *paths) {
         if (!is_directory(path)) {
             files.push_back(path);
             continue;
