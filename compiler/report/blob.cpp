@@ -16,11 +16,14 @@ namespace {
 
 constexpr std::uint64_t kMostSteps = 2000;  ///< longer series are reduced to kBuckets of steps
 constexpr std::uint64_t kBuckets = 1000;
+/// An eighth of a pixel of a timeline, which is 64 pixels high.
+constexpr int kFewestParts = 500;
 
 class Writer {
 public:
-    Writer(const Tracks& tracks, bool exact, std::uint64_t buckets)
-        : tracks_(tracks), exact_(exact), buckets_(buckets) {}
+    /// `parts`: 0 for numbers that are exact.
+    Writer(const Tracks& tracks, int parts, std::uint64_t buckets)
+        : tracks_(tracks), parts_(parts), buckets_(buckets) {}
 
     std::string text() {
         std::string tracks;
@@ -40,7 +43,9 @@ public:
 
 private:
     std::string number_part(const std::vector<float>& values) {
-        return "{" + (exact_ ? packing_.exact(values) : packing_.rounded(values)) + "}";
+        const std::string part =
+            parts_ == 0 ? packing_.exact(values) : packing_.rounded(values, parts_);
+        return "{" + part + "}";
     }
 
     /// The first step of a bucket; of the one behind the last, the number of steps.
@@ -97,7 +102,7 @@ private:
     }
 
     const Tracks& tracks_;
-    bool exact_;
+    int parts_;
     std::uint64_t buckets_;
     Packing packing_;
 };
@@ -107,11 +112,12 @@ private:
 Blob blob_of(const Tracks& tracks, std::uint64_t most) {
     const bool is_long = tracks.frames > kMostSteps;
     Blob blob;
-    for (const auto& [exact, buckets] :
-         {std::pair(true, is_long ? kBuckets : 0), std::pair(false, is_long ? kBuckets : 0),
-          std::pair(false, std::uint64_t{200})}) {
-        if (buckets >= tracks.frames) continue;
-        blob = {Writer(tracks, exact, buckets).text(), exact, buckets};
+    const std::uint64_t usual = is_long ? kBuckets : 0;
+    for (const auto& [parts, buckets] :
+         {std::pair(0, usual), std::pair(4000, usual), std::pair(kFewestParts, usual),
+          std::pair(kFewestParts, std::uint64_t{200})}) {
+        if (2 * buckets >= tracks.frames) continue;  // two numbers a bucket
+        blob = {Writer(tracks, parts, buckets).text(), parts, buckets};
         if (blob.text.size() <= most) break;
     }
     return blob;

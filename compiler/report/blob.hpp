@@ -13,7 +13,7 @@ namespace etlc::report {
 
 struct Blob {
     std::string text;
-    bool exact = true;          ///< else numbers are rounded
+    int parts = 0;              ///< of the span of a series, to which it is rounded; 0: exact
     std::uint64_t buckets = 0;  ///< of steps whose least and greatest number is kept; 0: all are
 };
 

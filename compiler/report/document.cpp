@@ -169,7 +169,7 @@ Json pictures_json(const Pictures& pictures) {
             {"height", pictures.height}};
 }
 
-/// A row is [path, frames, outcomes, missing, judged, exact, buckets, series, pictures]; judged is
+/// A row is [path, frames, outcomes, missing, judged, parts, buckets, series, pictures]; judged is
 /// [wrong monitors, f1, agreement, first error], or null.
 Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
     Json of_truth;
@@ -184,7 +184,7 @@ Json row_json(const Row& row, const evaluate::EpisodeRow* judged) {
             outcomes_json(row),
             row.missing,
             of_truth,
-            row.blob.exact,
+            row.blob.parts,
             row.blob.buckets,
             row.blob.text.empty() ? Json() : Json(row.blob.text),
             pictures_json(row.pictures)};

@@ -75,9 +75,9 @@ std::string Packing::exact(const std::vector<float>& numbers) {
     return fmt::format("\"type\":\"exact\",\"count\":{}", numbers.size());
 }
 
-std::string Packing::rounded(const std::vector<float>& numbers) {
+std::string Packing::rounded(const std::vector<float>& numbers, int parts) {
     const Span span = span_of(numbers);
-    const double part = (static_cast<double>(span.high) - span.low) / kParts;
+    const double part = (static_cast<double>(span.high) - span.low) / parts;
     std::vector<std::uint32_t> words;
     std::uint32_t before = 0;
     for (const float x : numbers) {
@@ -85,13 +85,13 @@ std::string Packing::rounded(const std::vector<float>& numbers) {
         if (std::isfinite(x))
             value = part == 0 ? 0
                               : static_cast<std::int32_t>(std::lround((x - span.low) / part)) -
-                                    kParts / 2;
+                                    parts / 2;
         words.push_back((static_cast<std::uint32_t>(value) - before) & 0xFFFFU);
         before = static_cast<std::uint32_t>(value);
     }
     add_bytes(words, 2);
-    return fmt::format("\"type\":\"rounded\",\"count\":{},\"low\":{},\"part\":{}", numbers.size(),
-                       span.low, part);
+    return fmt::format("\"type\":\"rounded\",\"count\":{},\"parts\":{},\"low\":{},\"high\":{}",
+                       numbers.size(), parts, span.low, span.high);
 }
 
 std::string Packing::whole(const std::vector<std::uint32_t>& numbers) {

@@ -2,8 +2,8 @@
 // Takes: series of numbers, a step each. Gives: base64 of deflated bytes: the length of a head of
 // JSON text in 4 bytes, the head, then the series, byte by byte of all their numbers, which
 // deflates better than number by number. Keeps true: what is exact reads back to the same bits;
-// what is rounded is off by at most half a part in kParts of the span of its series; infinite and
-// missing numbers stay so.
+// what is rounded to so many parts is off by at most half a part of the span of its series;
+// infinite and missing numbers stay so.
 #pragma once
 
 #include <cstdint>
@@ -24,9 +24,8 @@ class Packing {
 public:
     /// float32, as they are.
     std::string exact(const std::vector<float>& numbers);
-    /// Steps of 1 / kParts of the span, differences from one to the next.
-    static constexpr int kParts = 32000;
-    std::string rounded(const std::vector<float>& numbers);
+    /// In `parts` steps of the span, even and at most 32,000; differences from one to the next.
+    std::string rounded(const std::vector<float>& numbers, int parts);
     /// Whole numbers, in as many bytes as the greatest takes.
     std::string whole(const std::vector<std::uint32_t>& numbers);
 

@@ -40,6 +40,11 @@ Outcome outcome_of(const explain::History& history, bool sliding) {
     return outcome;
 }
 
+bool same_numbers(const Numbers& a, const Numbers& b) {
+    return std::equal(a.values.begin(), a.values.end(), b.values.begin(), b.values.end(),
+                      [](float x, float y) { return x == y || (std::isnan(x) && std::isnan(y)); });
+}
+
 bool has_row(const check::Predicate& predicate, const check::Model& model) {
     if (!predicate.plain_distance()) return false;
     const check::Distance& distance = model.distances[predicate.expression.index];
@@ -193,11 +198,12 @@ void TrackReader::add_verdicts(Tracks& tracks) const {
             upper.values.push_back(verdict.upper);
             status.values.push_back(code_of(verdict));
         }
+        // A sliding monitor's bounds are its robustness; of others the page takes it for a bound
+        // that is not there.
+        for (Numbers* bound : {&lower, &upper})
+            if (!scene_.plan.monitors[m].sliding && !same_numbers(*bound, robustness))
+                tracks.numbers.push_back(std::move(*bound));
         tracks.numbers.push_back(std::move(robustness));
-        if (!scene_.plan.monitors[m].sliding) {  // whose bounds are its robustness
-            tracks.numbers.push_back(std::move(lower));
-            tracks.numbers.push_back(std::move(upper));
-        }
         tracks.codes.push_back(std::move(status));
         if (!said_[m].truth.empty()) tracks.codes.push_back({"monitor_truth", m, said_[m].truth});
     }

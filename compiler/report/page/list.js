@@ -2,11 +2,11 @@
 
 // A row of the data as compiler/report/document.cpp writes it, with names.
 const episodes = data.rows.map(
-  ([path, frames, outcomes, missing, judged, exact, buckets, series, pictures], place) => {
+  ([path, frames, outcomes, missing, judged, parts, buckets, series, pictures], place) => {
     const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);
     const alarms = outcomes.map((of) => of[2]).filter((step) => step !== null);
     return {
-      place, path, frames, missing, exact, buckets, series, pictures,
+      place, path, frames, missing, parts, buckets, series, pictures,
       outcomes: outcomes.map(([status, robustness, alarm, finalAt]) =>
         ({ status, robustness, alarm, finalAt })),
       wrong: judged?.[0] ?? [], f1: judged?.[1] ?? null, agreement: judged?.[2] ?? null,
@@ -101,13 +101,14 @@ function leftOut() {
   const found = [];
   const unlisted = data.episodes - episodes.length;
   const without = episodes.filter((episode) => episode.series === null).length;
-  const rounded = episodes.filter((episode) => episode.series !== null && !episode.exact).length;
+  const rounded = episodes.filter((episode) => episode.series !== null && episode.parts > 0);
   const reduced = episodes.filter((episode) => episode.series !== null && episode.buckets > 0);
   if (unlisted > 0)
     found.push(`${counted(unlisted, "episode")} that went better left out of the list`);
   if (without > 0) found.push(`${counted(without, "listed episode")} without timelines`);
-  if (rounded > 0)
-    found.push(`numbers of ${counted(rounded, "episode")} rounded to 1/32000 of their span`);
+  if (rounded.length > 0)
+    found.push(`numbers of ${counted(rounded.length, "episode")} rounded to 1/` +
+      `${d3.min(rounded, (episode) => episode.parts)} of their span, or finer`);
   if (reduced.length > 0)
     found.push(`of ${counted(reduced.length, "episode")} only the least and greatest number ` +
       "of every few steps");

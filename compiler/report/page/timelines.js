@@ -51,8 +51,8 @@ class Timelines {
     data.monitors.forEach((monitor, index) => {
       lanes.push({ kind: "monitor", index, name: monitor.name, text: monitor.formula, level: 0,
         points: pointsOf(this.episode, tracks.robustness[index]), said: tracks.status[index][0],
-        bounds: [tracks.lower, tracks.upper].map((of) => of?.[index] &&
-          pointsOf(this.episode, of[index])),
+        bounds: monitor.sliding ? null : [tracks.lower, tracks.upper].map((of) =>
+          pointsOf(this.episode, of?.[index] ?? tracks.robustness[index])),
         truth: tracks.monitor_truth?.[index]?.[0] });
     });
     return lanes;
@@ -138,8 +138,8 @@ class Timelines {
 
   // Between the bounds of a prefix monitor's robustness, and where they meet for good.
   drawBounds(g, lane) {
-    const [lower, upper] = lane.bounds;
-    if (lower && upper) {
+    if (lane.bounds) {
+      const [lower, upper] = lane.bounds;
       const end = (value, infinite) => (Number.isFinite(value) ? lane.y(value) : infinite);
       const area = d3.svg.area().x((p) => this.x(p[0]))
         .y0((p, i) => end(p[1], lane.chart)).y1((p, i) => end(upper[i][1], 0))

@@ -20,6 +20,7 @@ const readers = {
   },
   rounded(bytes, at, part) {
     const values = new Float64Array(part.count);
+    const step = (part.high - part.low) / part.parts;
     let before = 0;
     words(bytes, at, part.count, 2).forEach((difference, i) => {
       before = (before + difference) & 0xffff;
@@ -27,7 +28,7 @@ const readers = {
       values[i] = value === -32768 ? NaN
         : value === -32767 ? -Infinity
         : value === 32767 ? Infinity
-        : part.low + (value + 16000) * part.part;
+        : part.low + (value + part.parts / 2) * step;
     });
     return { values, size: 2 };
   },
