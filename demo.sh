@@ -44,7 +44,11 @@ awk '/^ private:/ { exit }
      { print }' "$out/dubins.hpp"
 
 title "100 drives past that class: each verdict beside the truth"
-show build/release/examples/dubins/dubins "$out"
+show build/release/examples/dubins/dubins "$out/hundred_drives"
+
+title "The same drives as a page to look at, the worst first"
+show etlc report examples/dubins/dubins.etl --data "$out/hundred_drives" --frames camera \
+    -o "$out/dubins.html"
 
 title "The paper's experiment: thresholds from labelled drives, by both of its methods"
 drives=$out/drives

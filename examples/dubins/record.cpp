@@ -23,7 +23,7 @@
 #include "encoder.hpp"
 #include "episode.hpp"
 #include "random.hpp"
-#include "recording_csv.hpp"
+#include "record_files.hpp"
 
 namespace demo {
 namespace {

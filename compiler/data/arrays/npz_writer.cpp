@@ -6,6 +6,7 @@
 #include <bit>
 #include <memory>
 #include <new>
+#include <string_view>
 
 #include "data/arrays/npy_header.hpp"
 
@@ -45,19 +46,25 @@ std::string bytes_of(zip_source_t* source) {
     return bytes;
 }
 
-}  // namespace
-
-std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values) {
+/// All of a .npy file before its values. `element`: as numpy writes it, "<f4".
+std::string npy_head(std::string_view element, const std::vector<std::uint64_t>& shape) {
     constexpr std::size_t kAlignment = 64;
     constexpr std::size_t kPreamble = 10;  // magic word, version, length of the header
-    std::string header =
-        fmt::format("{{'descr': '<f4', 'fortran_order': False, 'shape': {}, }}", shape_text(shape));
+    std::string header = fmt::format("{{'descr': '{}', 'fortran_order': False, 'shape': {}, }}",
+                                     element, shape_text(shape));
     header.append(kAlignment - (kPreamble + header.size() + 1) % kAlignment, ' ');
     header += '\n';
     std::string bytes{"\x93NUMPY\x01\x00", 8};
     bytes += static_cast<char>(header.size() & 0xffU);
     bytes += static_cast<char>(header.size() >> 8U);
     bytes += header;
+    return bytes;
+}
+
+}  // namespace
+
+std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values) {
+    std::string bytes = npy_head("<f4", shape);
     bytes.reserve(bytes.size() + 4 * values.size());
     for (const float value : values) {
         const auto bits = std::bit_cast<std::uint32_t>(value);
@@ -65,6 +72,11 @@ std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector
             bytes += static_cast<char>((bits >> shift) & 0xffU);
     }
     return bytes;
+}
+
+std::string npy_bytes(const std::vector<std::uint64_t>& shape,
+                      const std::vector<std::uint8_t>& values) {
+    return npy_head("|u1", shape).append(values.begin(), values.end());
 }
 
 std::string npz_bytes(const std::vector<ArchiveMember>& members) {
