@@ -39,6 +39,11 @@ const char* symbol(check::Comparison comparison) {
     return "!=";
 }
 
+Index declared(const check::Model& model, Index target) {
+    const Index source = model.targets[target].source;
+    return source == check::kNone ? target : source;
+}
+
 /// Where a threshold comes from and what is known of it, in words.
 std::string provenance(const check::Predicate& predicate) {
     const check::Threshold& threshold = predicate.threshold;
@@ -96,9 +101,8 @@ Json distribution_of(const Material& material, const check::Predicate& predicate
 Json predicate_json(const Material& material, const Scene& scene, Index index) {
     const check::Model& model = *scene.plan.model;
     const check::Predicate& predicate = model.predicates[index];
-    Json target;
-    if (predicate.plain_distance())
-        target = model.targets[model.distances[predicate.expression.index].target].name;
+    const Index of = declared_target(model, predicate);
+    const Json target = of == check::kNone ? Json() : Json(model.targets[of].name);
     return {{"name", predicate.name},
             {"shown", predicate.shown()},
             {"expression", check::print(model, predicate.expression)},
@@ -137,8 +141,7 @@ Json plane_json(const check::Model& model, const Plane& plane) {
             const auto at = plane(&target.values[std::size_t{row} * target.dimension]);
             rows.push_back({row, number(at[0]), number(at[1])});
         }
-        const Index named = target.source == check::kNone ? t : target.source;
-        shown.push_back({{"name", model.targets[named].name}, {"rows", rows}});
+        shown.push_back({{"name", model.targets[declared(model, t)].name}, {"rows", rows}});
     }
     const check::Point& point = model.points[plane.point];
     return {{"point", point.text},
@@ -204,6 +207,11 @@ Json inputs_json(const plan::Plan& plan, const Totals& totals) {
 
 }  // namespace
 
+Index declared_target(const check::Model& model, const check::Predicate& predicate) {
+    if (!predicate.plain_distance()) return check::kNone;
+    return declared(model, model.distances[predicate.expression.index].target);
+}
+
 std::string in_script(const std::string& json) {
     std::string text;
     text.reserve(json.size());
@@ -238,6 +246,9 @@ std::string document(const Material& material, const Scene& scene, const Totals&
         all["monitors"].push_back(monitor_json(model, monitor));
     all["planes"] = Json::array();
     for (const Plane& plane : scene.planes) all["planes"].push_back(plane_json(model, plane));
+    all["target_pictures"] = Json::object();
+    for (const auto& [target, pictures] : scene.target_pictures)
+        all["target_pictures"][model.targets[target].name] = pictures;
     all["rows"] = Json::array();
     for (const Row& row : rows)
         all["rows"].push_back(row_json(row, judged.empty() ? nullptr : &judged[row.rank]));

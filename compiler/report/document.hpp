@@ -35,6 +35,9 @@ struct Totals {
     std::vector<plan::SampleCounts> sample_counts;  ///< per input of the plan
 };
 
+/// The target of a plain distance, as the spec declares it; kNone: there is none.
+Index declared_target(const check::Model& model, const check::Predicate& predicate);
+
 /// `rows`: those that are listed, the worst first.
 std::string document(const Material& material, const Scene& scene, const Totals& totals,
                      const std::vector<evaluate::EpisodeRow>& judged, const std::vector<Row>& rows);

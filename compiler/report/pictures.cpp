@@ -6,10 +6,12 @@
 #include <filesystem>
 #include <optional>
 
+#include "check/encoders/encoded.hpp"
 #include "data/arrays/archive.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
+#include "data/frames/frames.hpp"
 #include "data/quote.hpp"
 #include "data/traces/trace.hpp"
 #include "report/pack.hpp"
@@ -55,18 +57,21 @@ std::string not_one_a_step(std::uint64_t found, std::uint64_t steps) {
     return fmt::format("found {}, expected {}, one a step", diag::counted(found, "picture"), steps);
 }
 
+Failure of_file(const Failure& failure, const std::string& path) {
+    return {failure.code, path + ": " + failure.message};
+}
+
 diag::Result<std::string> address_of(const std::string& path) {
     const auto bytes = data::read_file(path, kLargestFile, Code::not_pictures);
-    if (!bytes) return Failure{Code::not_pictures, path + ": " + bytes.failure().message};
+    if (!bytes) return of_file(bytes.failure(), path);
     if (bytes->starts_with("\x89PNG")) return "data:image/png;base64," + base64(*bytes);
     if (bytes->starts_with("\xFF\xD8\xFF")) return "data:image/jpeg;base64," + base64(*bytes);
     return Failure{Code::not_pictures, path + ": expected a PNG or JPEG file"};
 }
 
-diag::Result<Pictures> from_files(const std::string& pattern, const std::string& episode,
-                                  std::uint64_t steps, std::uint64_t most_bytes) {
+diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::uint64_t steps,
+                                  std::uint64_t most_bytes) {
     Pictures result;
-    const std::vector<std::string> paths = matching(pattern, episode);
     if (paths.size() != steps) {
         result.why = not_one_a_step(paths.size(), steps);
         return result;
@@ -82,6 +87,58 @@ diag::Result<Pictures> from_files(const std::string& pattern, const std::string&
         result.files.push_back(std::move(*address));
     }
     if (result.steps.empty()) result.why = "one picture is larger than there is room for";
+    return result;
+}
+
+std::string address(const Picture& picture) {
+    return "data:image/png;base64," + base64(png(picture));
+}
+
+std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
+    Picture all{pictures[0].width, 0, ""};
+    for (std::size_t i = 0; i < pictures.size(); i += stride) {
+        all.height += pictures[i].height;
+        all.pixels += pictures[i].pixels;
+    }
+    return address(all);
+}
+
+/// Every so many of them, on one sheet that has room.
+Pictures on_a_sheet(const std::vector<Picture>& pictures, const std::vector<std::uint64_t>& steps,
+                    std::uint64_t most_bytes) {
+    Pictures result;
+    result.width = pictures[0].width;
+    result.height = pictures[0].height;
+    for (std::size_t stride = 1; stride <= steps.size(); stride *= 2) {
+        std::string text = sheet(pictures, stride);
+        if (text.size() > most_bytes) continue;
+        result.files.push_back(std::move(text));
+        for (std::size_t i = 0; i < steps.size(); i += stride) result.steps.push_back(steps[i]);
+        return result;
+    }
+    result.why = "one picture is larger than there is room for";
+    return result;
+}
+
+/// Frames that are not wanted are decoded as well, since all have to be counted.
+diag::Result<Pictures> from_video(const std::string& path, const Length& length,
+                                  std::uint64_t most_bytes) {
+    const auto decoded = data::open_video(path, {.rate = length.rate});
+    if (!decoded) return of_file(decoded.failure(), path);
+    const std::vector<std::uint64_t> chosen = chosen_steps(length.steps, kMostPictures);
+    std::vector<Picture> pictures;
+    data::Frame frame;
+    std::uint64_t count = 0;
+    for (;; ++count) {
+        const auto more = (*decoded)->next(frame);
+        if (!more) return of_file(more.failure(), path);
+        if (!*more) break;
+        if (pictures.size() < chosen.size() && chosen[pictures.size()] == count)
+            pictures.push_back(shrunk(frame.rgb, frame.width, frame.height, 3, kMostPixels));
+    }
+    if (count == length.steps) return on_a_sheet(pictures, chosen, most_bytes);
+    Pictures result;
+    result.why = not_one_a_step(count, length.steps);
     return result;
 }
 
@@ -125,15 +182,6 @@ diag::Result<std::vector<Picture>> small_pictures(data::ByteSource& source, cons
     return pictures;
 }
 
-std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
-    Picture all{pictures[0].width, 0, ""};
-    for (std::size_t i = 0; i < pictures.size(); i += stride) {
-        all.height += pictures[i].height;
-        all.pixels += pictures[i].pixels;
-    }
-    return "data:image/png;base64," + base64(png(all));
-}
-
 diag::Result<Pictures> from_array(const std::string& key, const std::string& episode,
                                   std::uint64_t steps, std::uint64_t most_bytes) {
     if (!episode.ends_with(".npz"))
@@ -163,25 +211,15 @@ diag::Result<Pictures> from_array(const std::string& key, const std::string& epi
     const std::vector<std::uint64_t> chosen = chosen_steps(steps, kMostPictures);
     const auto pictures = small_pictures(**source, *film, chosen);
     if (!pictures) return pictures.failure();
-    result.width = (*pictures)[0].width;
-    result.height = (*pictures)[0].height;
-    for (std::size_t stride = 1; stride <= chosen.size(); stride *= 2) {
-        std::string address = sheet(*pictures, stride);
-        if (address.size() > most_bytes) continue;
-        result.files.push_back(std::move(address));
-        for (std::size_t i = 0; i < chosen.size(); i += stride) result.steps.push_back(chosen[i]);
-        return result;
-    }
-    result.why = "one picture is larger than there is room for";
-    return result;
+    return on_a_sheet(*pictures, chosen, most_bytes);
 }
 
 }  // namespace
 
-bool FrameSource::is_pattern() const {
+bool FramesOption::is_pattern() const {
     const auto ends = [&](std::string_view end) { return text.ends_with(end); };
     return text.find_first_of("*?[{") != std::string::npos || ends(".png") || ends(".jpg") ||
-           ends(".jpeg");
+           ends(".jpeg") || data::is_video(text);
 }
 
 std::uint64_t Pictures::bytes() const {
@@ -190,10 +228,67 @@ std::uint64_t Pictures::bytes() const {
     return sum;
 }
 
-diag::Result<Pictures> pictures_of(const FrameSource& source, const std::string& episode,
-                                   std::uint64_t steps, std::uint64_t most_bytes) {
-    return source.is_pattern() ? from_files(source.text, episode, steps, most_bytes)
-                               : from_array(source.text, episode, steps, most_bytes);
+diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
+                                   const Length& length, std::uint64_t most_bytes) {
+    if (!option.is_pattern()) return from_array(option.text, episode, length.steps, most_bytes);
+    const std::vector<std::string> paths = matching(option.text, episode);
+    if (paths.size() == 1 && data::is_video(paths[0]))
+        return from_video(paths[0], length, most_bytes);
+    return from_files(paths, length.steps, most_bytes);
+}
+
+namespace {
+
+/// The images of these rows, or the frames of a video, row by row.
+diag::Result<std::vector<Picture>> decoded_rows(const check::Model& model,
+                                                const check::Encoded& of) {
+    const std::string& spec = model.file.path();
+    const auto files = check::files_of(of, spec);
+    if (!files) return files.failure();
+    std::vector<std::string> paths;
+    for (const std::string& file : *files) paths.push_back(data::beside(spec, file));
+    std::vector<std::uint64_t> wanted = of.frames;
+    std::sort(wanted.begin(), wanted.end());
+    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
+    const auto source =
+        of.is_video ? data::open_video(paths[0], {.only = wanted}) : data::open_images(paths);
+    if (!source) return of_file(source.failure(), paths[0]);
+    std::vector<Picture> decoded;
+    data::Frame frame;
+    for (;;) {
+        const auto more = (*source)->next(frame);
+        if (!more)
+            return of_file(more.failure(), paths[std::min(decoded.size(), paths.size() - 1)]);
+        if (!*more) break;
+        decoded.push_back(shrunk(frame.rgb, frame.width, frame.height, 3, kMostPixels));
+    }
+    if (!of.is_video) return decoded;
+    std::vector<Picture> rows;
+    for (const std::uint64_t number : of.frames) {
+        const auto at = std::lower_bound(wanted.begin(), wanted.end(), number);
+        rows.push_back(decoded[static_cast<std::size_t>(at - wanted.begin())]);
+    }
+    return rows;
+}
+
+}  // namespace
+
+diag::Result<std::vector<std::string>> pictures_of(const check::Model& model,
+                                                   const check::Target& target,
+                                                   std::uint64_t most_bytes) {
+    std::vector<std::string> addresses(target.rows);
+    for (const check::EncodedRows& part : target.encoded) {
+        const auto pictures = decoded_rows(model, model.encoded[part.encoded]);
+        if (!pictures) return pictures.failure();
+        const std::size_t count = std::min<std::size_t>(part.count, pictures->size());
+        for (std::size_t i = 0; i < count; ++i) {
+            std::string text = address((*pictures)[i]);
+            if (text.size() > most_bytes) return addresses;
+            most_bytes -= text.size();
+            addresses[part.first + i] = std::move(text);
+        }
+    }
+    return addresses;
 }
 
 }  // namespace etlc::report

@@ -2,19 +2,21 @@
 // Takes: what --frames names, and an episode. Gives: pictures of some of its steps, evenly: one PNG
 // of all of them where they come from an array, else the files as they are. Keeps true: a picture
 // stands beside the step that it was taken at; where pictures and steps are not as many, there are
-// none.
+// none. Images and video are decoded by etlc-embed (data/frames/frames.hpp).
 #pragma once
 
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::report {
 
-/// What --frames names: an array of the episodes, or files by a pattern with {episode} in it.
-struct FrameSource {
+/// What --frames names: an array of the episodes, or files, one a step, or videos, one an episode,
+/// by a pattern with {episode} in it.
+struct FramesOption {
     std::string text;  ///< as given; empty: none
 
     bool is_pattern() const;
@@ -31,8 +33,20 @@ struct Pictures {
     std::uint64_t bytes() const;
 };
 
+/// How long an episode is. Of a video one frame a step of 1 / rate seconds is taken; 0: every one.
+struct Length {
+    std::uint64_t steps = 0;
+    double rate = 0;
+};
+
 /// Failures do not name the episode: a file that is no picture, an array that holds none.
-diag::Result<Pictures> pictures_of(const FrameSource& source, const std::string& episode,
-                                   std::uint64_t steps, std::uint64_t most_bytes);
+diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
+                                   const Length& length, std::uint64_t most_bytes);
+
+/// Of the rows of a target that are made of images, each a PNG as a data: address; empty texts
+/// where a row is of none, or has no room. A failure: what could not be decoded, with its path.
+diag::Result<std::vector<std::string>> pictures_of(const check::Model& model,
+                                                   const check::Target& target,
+                                                   std::uint64_t most_bytes);
 
 }  // namespace etlc::report

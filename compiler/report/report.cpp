@@ -113,7 +113,7 @@ std::vector<Index> shown_predicates(const Material& material) {
 class Packer {
 public:
     Packer(const Scene& scene, const Request& request, const Shelf& shelf)
-        : reader_(scene), request_(request), shelf_(shelf) {}
+        : reader_(scene), scene_(scene), request_(request), shelf_(shelf) {}
 
     struct Packed {
         Row row;
@@ -125,8 +125,10 @@ public:
         Packed packed{row_of(*tracks), tracks->sample_counts};
         packed.row.blob = blob_of(*tracks, shelf_.share());
         if (request_.frames.text.empty()) return packed;
+        const double seconds = scene_.plan.model->step_seconds;
         auto pictures =
-            pictures_of(request_.frames, path, tracks->frames, shelf_.share_of_pictures());
+            pictures_of(request_.frames, path, {tracks->frames, seconds > 0 ? 1 / seconds : 0},
+                        shelf_.share_of_pictures());
         if (!pictures) return pictures.failure();
         packed.row.pictures = std::move(*pictures);
         return packed;
@@ -134,6 +136,7 @@ public:
 
 private:
     TrackReader reader_;
+    const Scene& scene_;
     const Request& request_;
     const Shelf& shelf_;
 };
@@ -187,7 +190,7 @@ bool report_unpictured(const Gathering& gathered, diag::Sink& sink) {
 
 /// A pattern says where the pictures of each episode lie.
 bool check_pattern(const Request& request, diag::Sink& sink) {
-    const FrameSource& frames = request.frames;
+    const FramesOption& frames = request.frames;
     if (!frames.is_pattern() || request.episodes.size() == 1 ||
         frames.text.find("{episode}") != std::string::npos)
         return true;
@@ -197,6 +200,30 @@ bool check_pattern(const Request& request, diag::Sink& sink) {
                                             diag::counted(request.episodes.size(), "episode"))},
         "--frames " + frames.text));
     return false;
+}
+
+/// Of the targets that the distances which are drawn look at.
+std::map<Index, std::vector<std::string>> pictures_of_targets(const Scene& scene,
+                                                              std::uint64_t most_bytes,
+                                                              diag::Sink& sink) {
+    std::map<Index, std::vector<std::string>> found;
+    const check::Model& model = *scene.plan.model;
+    for (const Index p : scene.predicates) {
+        const Index index = declared_target(model, model.predicates[p]);
+        if (index == check::kNone || model.targets[index].encoded.empty()) continue;
+        if (found.find(index) != found.end()) continue;
+        auto pictures = pictures_of(model, model.targets[index], most_bytes);
+        if (!pictures) {
+            sink.report({diag::Code::frames_left_out, pictures.failure().message})
+                .note(fmt::format("target '{}' is shown without pictures",
+                                  model.targets[index].name));
+            continue;
+        }
+        for (const std::string& address : *pictures)
+            most_bytes -= std::min<std::uint64_t>(most_bytes, address.size());
+        found.emplace(index, std::move(*pictures));
+    }
+    return found;
 }
 
 }  // namespace
@@ -213,13 +240,15 @@ std::optional<std::string> page(const Material& material, const Request& request
     }
     Scene scene{plan,           shown_predicates(material),
                 material.truth, truth ? &truth->plan : nullptr,
-                request.names,  {}};
+                request.names,  {},
+                {}};
     auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.names);
     if (!drawn) {
         sink.report(data::in_trace(drawn.failure(), request.episodes[0]));
         return std::nullopt;
     }
     scene.planes = std::move(*drawn);
+    scene.target_pictures = pictures_of_targets(scene, request.megabytes * 1'000'000 / 10, sink);
 
     std::vector<evaluate::EpisodeRow> judged;
     std::string figures = "null";
@@ -245,7 +274,7 @@ std::optional<std::string> page(const Material& material, const Request& request
 
 std::optional<std::string> picture(const pipeline::Compiled& spec, const std::string& trace,
                                    const data::NamesInFile& names, diag::Sink& sink) {
-    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}};
+    const Scene scene{spec.plan, spec.plan.predicates, nullptr, nullptr, names, {}, {}};
     const auto tracks = TrackReader(scene).score(trace);
     if (tracks) return picture_of_trace(scene, *tracks);
     sink.report(data::in_trace(tracks.failure(), trace));

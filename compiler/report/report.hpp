@@ -27,7 +27,7 @@ struct Request {
     data::NamesInFile names;
     unsigned jobs = 0;                          ///< threads; 0: as many as the machine has
     std::uint64_t megabytes = kUsualMegabytes;  ///< the size of the page
-    FrameSource frames;
+    FramesOption frames;
     plan::Limits limits;  ///< of the ground truth's plan
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;

@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -29,6 +30,8 @@ struct Scene {
     const plan::Plan* truth_plan;    ///< of the ground truth; null with it
     const data::NamesInFile& names;
     std::vector<Plane> planes;  ///< of the points that are drawn
+    /// By declared target: a picture a row, a data: address or empty.
+    std::map<Index, std::vector<std::string>> target_pictures;
 };
 
 /// A number a step. `of`: distance, robustness, lower, upper, x, y.

@@ -28,6 +28,7 @@ monitor never_far = G near;
 """
 STEPS = 40
 LONG = 100_000
+MANY = 1200
 
 
 def samples(random, steps):
@@ -162,6 +163,27 @@ def look_at_a_long_one(browser, path):
     assert page.messages == [], page.messages
 
 
+def make_many(folder):
+    """More episodes than a page of 1 MB has rows for; one of them was taken wrongly throughout."""
+    (folder / "many").mkdir()
+    for number in range(MANY):
+        x = 0.5 if number == 700 else 3
+        rows = "".join(f"4,{step},{x}\n" for step in range(3))
+        (folder / "many" / f"{number:04}.csv").write_text("z[0],z[1],x\n" + rows)
+
+
+def look_at_many(browser, path):
+    """The worst is there, and the page says how many are not."""
+    page = browser.page(path)
+    page.wait("view.episode !== null")
+    shown = page.value("episodes.length")
+    left_out = page.value("document.getElementById('left-out').textContent")
+    assert 500 < shown < MANY and f"{MANY - shown} episodes that went better" in left_out, left_out
+    assert page.value("document.getElementById('episode-name').textContent").endswith("0700.csv")
+    assert path.stat().st_size < 1_000_000
+    assert page.messages == [], page.messages
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -186,7 +208,18 @@ def main(etlc):
         said = call("report", "page.etl", "--data", "two", "--frames", "camera/{episode}/*.png",
                     "-o", "two.html")
         assert "W0840" not in said, said
+        said = call("report", "page.etl", "--data", "two", "--frames", "camera/1/*.png", "-o",
+                    "no.html", status=1)
+        assert "expected {episode}" in said, said
+        two = dict(np.load(folder / "episodes" / "worst.npz"))
+        np.savez(folder / "short.npz", **{**two, "camera": two["camera"][1:]})
+        said = call("report", "page.etl", "--data", "short.npz", "--frames", "camera", "-o",
+                    "no.html", status=1)
+        assert "found 39 pictures, expected 40" in said and not (folder / "no.html").exists(), said
+        make_many(folder)
+        call("report", "page.etl", "--data", "many", "--size", "1", "-o", "many.html")
         with Browser() as browser:
+            look_at_many(browser, folder / "many.html")
             look_at_a_long_one(browser, folder / "long.html")
             for width, height in ((1280, 720), (1920, 1080)):
                 look(browser, folder / "page.html", width, height, judged)

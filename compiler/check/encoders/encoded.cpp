@@ -101,6 +101,19 @@ diag::Result<std::vector<std::string>> files_of(const Encoded& encoded,
     return std::vector<std::string>{encoded.path};
 }
 
+namespace {
+
+/// Of Model::encoded, where equal ones stand once.
+Index add(Model& model, const Encoded& encoded) {
+    const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
+    const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);
+    const auto index = static_cast<Index>(at - model.encoded.begin());
+    if (at == model.encoded.end()) model.encoded.push_back(encoded);
+    return index;
+}
+
+}  // namespace
+
 std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source,
                                    const std::optional<ast::Name>& encoder) {
     const auto encoded = encoded_of(c, source, encoder);
@@ -140,6 +153,7 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     matrix.origin = encoded->text;
     matrix.path = path;
     matrix.hash = entry.hash;
+    matrix.encoded = {{add(c.model, *encoded), 0, entry.rows}};
     return matrix;
 }
 
@@ -147,11 +161,8 @@ void collect_encoded(Context& c) {
     for_each_declaration<ast::Target>(c.spec, [&](const ast::Target& declaration, Index) {
         for (const ast::Target::Source& source : declaration.sources) {
             if (!is_encoded(source)) continue;
-            auto encoded = encoded_of(c, source, declaration.encoder);
-            const auto same = [&](const Encoded& other) { return other.text == encoded->text; };
-            auto& all = c.model.encoded;
-            if (encoded && std::none_of(all.begin(), all.end(), same))
-                all.push_back(std::move(*encoded));
+            if (const auto encoded = encoded_of(c, source, declaration.encoder))
+                add(c.model, *encoded);
         }
     });
 }

@@ -96,6 +96,13 @@ struct Point {
     bool is_projected() const { return kind == Kind::projected; }
 };
 
+/// Rows of a target that are made of images, or of frames of a video, one after the other.
+struct EncodedRows {
+    Index encoded = 0;  ///< of Model::encoded
+    std::uint32_t first = 0;
+    std::uint32_t count = 0;
+};
+
 /// Z_target: rows x dimension float32, row-major, all finite.
 struct Target {
     std::string name;
@@ -106,6 +113,7 @@ struct Target {
     std::string origin;
     std::string path;  ///< of a file it was read from; empty for a literal
     std::string hash;  ///< content hash of shape and values, data::content_hash
+    std::vector<EncodedRows> encoded;  ///< the rows that are of images
     /// The point in whose space the rows are, of Model::points; kNone: in that of the inputs.
     Index space = kNone;
     /// The declared target whose rows these are, projected into `space`; kNone: declared itself.

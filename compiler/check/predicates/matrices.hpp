@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "ast/ast.hpp"
+#include "check/model/inputs.hpp"
 
 namespace etlc::check {
 
@@ -24,6 +25,7 @@ struct Matrix {
     std::string origin;         ///< "targets/goal_a.npy", "file.npz:key" or "literal"
     std::string path;           ///< of the file, relative to where etlc runs; empty for a literal
     std::string hash;
+    std::vector<EncodedRows> encoded;  ///< where it was made of images
 };
 
 /// A path of the spec, relative to where etlc runs.

@@ -52,6 +52,10 @@ bool append(Context& c, Matrix& all, Matrix rows, Span span) {
                              std::numeric_limits<std::uint32_t>::max()));
         return false;
     }
+    for (EncodedRows of : rows.encoded) {
+        of.first += all.rows;
+        all.encoded.push_back(of);
+    }
     all.rows += rows.rows;
     all.values.insert(all.values.end(), rows.values.begin(), rows.values.end());
     all.origin += ", " + rows.origin;
@@ -79,6 +83,7 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
     target.origin = std::move(all->origin);
     target.path = std::move(all->path);
     target.hash = std::move(all->hash);
+    target.encoded = std::move(all->encoded);
     return true;
 }
 

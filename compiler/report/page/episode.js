@@ -105,7 +105,7 @@ async function selectEpisode(row) {
   document.getElementById("episode-summary").textContent = summaryOf(row);
   if (row.series === null) {
     view.episode = null;
-    for (const id of ["readout", "why", "planes", "pictures"]) fill(id);
+    for (const id of ["readout", "why", "planes", "pictures", "nearest"]) fill(id);
     fill("tracks", element("p", {}, "No timelines: they were left out to keep this page small."));
     return;
   }

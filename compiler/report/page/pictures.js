@@ -1,14 +1,14 @@
-// What the camera saw at the cursor, or at the last step before it that there is a picture of.
+// What the camera saw at the cursor, or at the last step before it that there is a picture of, and
+// beside it the nearest row of each target that is made of pictures.
 
 let sheet = null;  // the pictures of the episode, one below the other; null: they are files
 
 function showPictures() {
   const { pictures } = view.row;
   sheet = null;
-  if (!pictures) {
-    fill("pictures");
-    return;
-  }
+  fill("pictures");
+  fill("nearest");
+  if (!pictures) return;
   const caption = element("figcaption", { id: "picture-step" });
   if (pictures.width === 0) {
     fill("pictures", element("figure", {}, element("img", { id: "frame", alt: "" }), caption));
@@ -26,7 +26,20 @@ function showPictures() {
   image.src = pictures.files[0];
 }
 
+// One for each predicate whose distance is to such a target.
+function showNearest() {
+  fill("nearest", ...data.predicates.map((predicate, index) => {
+    const [row] = valueAt(view.episode, "nearest", index, view.step);
+    const address = data.target_pictures[predicate.target]?.[row];
+    if (!address) return null;
+    const name = `nearest of ${predicate.target}: row ${row}`;
+    return element("figure", { "data-predicate": predicate.shown, "data-row": row },
+      element("img", { src: address, alt: name }), element("figcaption", {}, name));
+  }).filter((figure) => figure !== null));
+}
+
 function movePictures() {
+  showNearest();
   const { pictures } = view.row;
   if (!pictures) return;
   const at = Math.max(d3.bisectRight(pictures.steps, view.step) - 1, 0);

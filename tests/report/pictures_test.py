@@ -1,0 +1,108 @@
+#!/usr/bin/env python3
+"""pictures_test.py ETLC ENCODERS.MD: from images and a video to a page that shows, at every step,
+the frame that the camera saw and the nearest row of each target as it looks. The encoder is that of
+the page about encoders."""
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image
+
+from browser import Browser
+
+ETLC = os.path.abspath(sys.argv[1])
+CODE = re.search(r"```python\n(.*?)```", pathlib.Path(sys.argv[2]).read_text(), re.DOTALL).group(1)
+SPEC = """
+spec look;
+rate 10 Hz;
+encoder mine = load("encoder.py");
+input z : f32[4] by mine;
+target bay = images("bay/*.png"), frames("tour.mp4", [19, 0]) by mine;
+predicate at_bay = min l2(z, bay) <= 0.3;
+monitor docked = F at_bay;
+"""
+COLOURS = [(0, 200, 0), (200, 0, 0), (0, 0, 200)]
+FRAMES = 20
+
+
+def call(*words):
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert done.returncode == 0, (words, done.stdout, done.stderr)
+    return done.stderr
+
+
+def image(colour):
+    return Image.fromarray(np.full((16, 16, 3), colour, np.uint8))
+
+
+def colour_at(step):
+    return COLOURS[step * len(COLOURS) // FRAMES]
+
+
+def make_files():
+    pathlib.Path("encoder.py").write_text(CODE)
+    pathlib.Path("look.etl").write_text(SPEC)
+    for folder in ("bay", "drives"):
+        os.mkdir(folder)
+    for number, colour in enumerate(COLOURS[:2]):
+        image(colour).save(f"bay/{number}.png")
+    for step in range(FRAMES):
+        image(colour_at(step)).save(f"{step:03}.png")
+    for video in ("tour.mp4", "drives/one.mp4"):
+        call("ffmpeg", "-v", "error", "-framerate", "10", "-i", "%03d.png", "-c:v", "libx264",
+             "-qp", "0", "-pix_fmt", "yuv444p", video)
+
+
+def middle(page, selector):
+    """The colour in the middle of an image or a canvas."""
+    page.wait(f"document.querySelector('{selector}').complete !== false")
+    return page.value(f"""(() => {{
+        const copy = document.createElement("canvas").getContext("2d", {{willReadFrequently: true}});
+        copy.drawImage(document.querySelector("{selector}"), 0, 0);
+        return Array.from(copy.getImageData(8, 8, 1, 1).data).slice(0, 3);
+    }})()""")
+
+
+def is_like(colour, other):
+    return np.abs(np.subtract(colour, other)).max() <= 6  # of a video's colours
+
+
+def look(browser):
+    page = browser.page("page.html")
+    page.wait("view.episode !== null")
+    page.wait("sheet !== null")
+    rows = set()
+    for step in range(FRAMES):
+        page.value(f"moveCursor({step})")
+        assert page.value("document.getElementById('frame').dataset.step") == str(step)
+        assert is_like(middle(page, "#frame"), colour_at(step)), step
+        assert is_like(middle(page, "#nearest img"), colour_at(step)), step
+        rows.add(page.value("document.querySelector('#nearest figure').dataset.row"))
+    assert "2" in rows, rows  # frame 19 of the video, named first, is the only blue one
+    assert page.messages == [] and page.requests == [], (page.messages, page.requests)
+
+
+def main():
+    make_files()
+    call(ETLC, "embed", "look.etl", "--data", "drives/one.mp4", "-o", "episodes",
+         "--encoder-cmd", "/usr/bin/python3 encoder.py")
+    report = [ETLC, "report", "look.etl", "--data", "episodes/one.npz", "--no-truths", "--frames"]
+    said = call(*report, "drives/{episode}.mp4", "-o", "page.html")
+    assert "warning" not in said, said
+    with Browser() as browser:
+        look(browser)
+
+    call("ffmpeg", "-v", "error", "-y", "-i", "tour.mp4", "-frames:v", "7", "drives/short.mp4")
+    done = subprocess.run([*report, "drives/short.mp4", "-o", "short.html"], capture_output=True,
+                          text=True)
+    assert done.returncode == 1 and "found 7 pictures, expected 20" in done.stderr, done.stderr
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    main()
+    os.chdir("/")
