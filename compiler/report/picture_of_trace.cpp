@@ -257,7 +257,8 @@ private:
         for (int part = 0; part <= 4; ++part) {
             const double step = last * part / 4;
             const double shown = seconds > 0 ? step * seconds : step;
-            words(kInner * part / 4, top_ + 8, fmt::format("{:.4g}", shown), "middle");
+            words(kInner * part / 4, top_ + 8, fmt::format("{:.4g}", shown),
+                  part < 4 ? "middle" : "end");  // within the picture
         }
         words(kInner / 2, top_ + 24, seconds > 0 ? "time, s" : "step", "middle");
     }

@@ -141,5 +141,6 @@ function showList() {
     if (rows.scrollTop + rows.clientHeight > rows.scrollHeight - 200) drawMoreRows();
   });
   document.getElementById("left-out").textContent = leftOut();
+  document.getElementById("workbench").classList.toggle("one", data.episodes === 1);
   drawList();
 }
