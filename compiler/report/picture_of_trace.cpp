@@ -64,10 +64,15 @@ std::vector<Lane> lanes_of(const Scene& scene, const Tracks& tracks) {
     }
     for (std::size_t m = 0; m < scene.plan.monitors.size(); ++m) {
         const plan::Monitor& monitor = scene.plan.monitors[m];
+        const Numbers* const robustness = find(tracks.numbers, "robustness", m);
+        const auto bound = [&](const char* of) {
+            const Numbers* const found = find(tracks.numbers, of, m);
+            return monitor.sliding ? nullptr : found != nullptr ? found : robustness;
+        };
         lanes.push_back({monitor.name, check::shown(model, model.monitors[monitor.index].formula),
-                         find(tracks.numbers, "robustness", m), find(tracks.numbers, "lower", m),
-                         find(tracks.numbers, "upper", m), find(tracks.codes, "status", m),
-                         find(tracks.codes, "monitor_truth", m), 0, true, m});
+                         robustness, bound("lower"), bound("upper"),
+                         find(tracks.codes, "status", m), find(tracks.codes, "monitor_truth", m), 0,
+                         true, m});
     }
     return lanes;
 }

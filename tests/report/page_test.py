@@ -7,6 +7,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import xml.etree.ElementTree
 
 import numpy as np
 from PIL import Image
@@ -25,6 +26,7 @@ predicate near = min l2(z, goal) <= 1;
 truth near = x < 1;
 monitor arrives = F near;
 monitor never_far = G near;
+sliding monitor sooner = F[0, 2] near;
 """
 STEPS = 40
 LONG = 100_000
@@ -184,6 +186,17 @@ def look_at_many(browser, path):
     assert page.messages == [], page.messages
 
 
+def pictures_of_a_trace(call, folder):
+    """`etlc run` draws every predicate and monitor, whichever of its bounds are its robustness."""
+    trace = ["run", "page.etl", "--trace", "episodes/worst.npz"]
+    call(*trace, "--svg", "one.svg", "--html", "one.html")
+    drawn = xml.etree.ElementTree.parse(folder / "one.svg").getroot()
+    texts = [text.text for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
+    paths = [path.get("d") for path in drawn.iter("{http://www.w3.org/2000/svg}path")]
+    assert all(name in " ".join(texts) for name in ("near", "arrives", "never_far", "sooner")), texts
+    assert len(paths) >= 6 and "nan" not in "".join(paths), paths
+
+
 def main(etlc):
     with tempfile.TemporaryDirectory() as name:
         folder = pathlib.Path(name)
@@ -216,10 +229,18 @@ def main(etlc):
         said = call("report", "page.etl", "--data", "short.npz", "--frames", "camera", "-o",
                     "no.html", status=1)
         assert "found 39 pictures, expected 40" in said and not (folder / "no.html").exists(), said
+        pictures_of_a_trace(call, folder)
         make_many(folder)
         call("report", "page.etl", "--data", "many", "--size", "1", "-o", "many.html")
         with Browser() as browser:
             look_at_many(browser, folder / "many.html")
+            one = browser.page(folder / "one.html")
+            one.wait("view.episode !== null")
+            assert one.value("getComputedStyle(document.getElementById('list')).display") == "none"
+            tall = one.value("Math.max(...Array.from(document.querySelectorAll('path.bounds'), "
+                             "path => path.getBBox().height))")
+            assert 0 < tall <= one.value("laneSize.monitor"), tall
+            assert one.messages == [], one.messages
             look_at_a_long_one(browser, folder / "long.html")
             for width, height in ((1280, 720), (1920, 1080)):
                 look(browser, folder / "page.html", width, height, judged)

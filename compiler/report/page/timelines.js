@@ -140,7 +140,8 @@ class Timelines {
   drawBounds(g, lane) {
     if (lane.bounds) {
       const [lower, upper] = lane.bounds;
-      const end = (value, infinite) => (Number.isFinite(value) ? lane.y(value) : infinite);
+      const within = (y) => Math.max(0, Math.min(lane.chart, y));
+      const end = (value, infinite) => (Number.isFinite(value) ? within(lane.y(value)) : infinite);
       const area = d3.svg.area().x((p) => this.x(p[0]))
         .y0((p, i) => end(p[1], lane.chart)).y1((p, i) => end(upper[i][1], 0))
         .defined((p) => !Number.isNaN(p[1]));
