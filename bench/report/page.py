@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""page.py ETLC DUBINS_RECORD [--json FILE]: the page of `etlc report` over 1000 drives of 300 steps:
-how large it is, how long it takes to make, and how long headless Chromium takes until its worst
-episode is shown.
+"""page.py ETLC DUBINS_RECORD [--json FILE]: the page of `etlc report` over 1000 drives of 300
+steps: how large it is, how long it takes to make, and how long headless Chromium takes until its
+worst episode is shown.
 
 The drives are those of examples/dubins/dubins.etl, 240 steps each, and the first 60 of the next one
 after them. Times are medians over the rounds, with a new browser and profile for each.

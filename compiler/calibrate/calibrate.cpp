@@ -12,7 +12,6 @@
 #include "data/files/file.hpp"
 #include "episodes/admission.hpp"
 #include "episodes/folds.hpp"
-#include "episodes/parallel.hpp"
 
 namespace etlc::calibrate {
 
@@ -141,7 +140,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
-    const auto demonstrations = episodes::over_episodes<Demonstration>(
+    const auto demonstrations = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
         [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
     if (!demonstrations) return std::nullopt;

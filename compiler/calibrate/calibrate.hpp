@@ -15,6 +15,7 @@
 #include "calibrate/scores.hpp"
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
+#include "episodes/shared/sharing.hpp"
 #include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -31,6 +32,8 @@ struct Request {
     std::string version;      ///< of etlc
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
+    /// One shard of the episodes, or all of them; null: this process reads them all.
+    episodes::Sharing* sharing = nullptr;
 };
 
 struct Calibration {

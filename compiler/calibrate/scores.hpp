@@ -37,6 +37,23 @@ struct Demonstration : episodes::Recorded {
     std::vector<Scores> scores;  ///< per calibrated predicate
 };
 
+template <class Archive>
+void fields(Archive& archive, Scores::Labelled& frame) {
+    archive(frame.score, frame.positive);
+}
+
+template <class Archive>
+void fields(Archive& archive, Scores& scores) {
+    archive(scores.positives, scores.negatives, scores.unlabelled, scores.unmeasured,
+            scores.from_array, scores.has_score, scores.worst_reach, scores.reaches,
+            scores.labelled);
+}
+
+template <class Archive>
+void fields(Archive& archive, Demonstration& demonstration) {
+    archive(static_cast<episodes::Recorded&>(demonstration), demonstration.scores);
+}
+
 /// Predicates of the model whose threshold is calibrated, in order.
 std::vector<Index> calibrated_predicates(const check::Model& model);
 

@@ -127,12 +127,8 @@ std::string monitor_report(const check::Model& model, const check::Monitor& moni
 std::optional<std::vector<Index>> find_labelled(const check::Model& model,
                                                 const std::vector<Index>& monitors,
                                                 const Request& request, diag::Sink& sink) {
-    const std::string& first = request.episodes[0];
-    const auto labelled = episodes::labelled_in(model, first, request.names);
-    if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), first));
-        return std::nullopt;
-    }
+    const auto labelled = episodes::labelled_in_first(model, request, sink);
+    if (!labelled) return std::nullopt;
     std::set<Index> found;
     for (const Index monitor : monitors)
         for (const Index predicate : check::predicates_of(model, model.monitors[monitor].formula))
@@ -173,7 +169,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
 
     const episodes::Leaks leaks(model, *labelled);
     const auto scored =
-        episodes::over_episodes<MonitorEpisode>(request.episodes, request, sink, [&] {
+        episodes::over_shared_episodes<MonitorEpisode>(request.episodes, request, sink, [&] {
             return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
         });
     if (!scored) return std::nullopt;

@@ -42,6 +42,16 @@ struct MonitorEpisode : episodes::Recorded {
     std::vector<MonitorScore> scores;  ///< per calibrated monitor
 };
 
+template <class Archive>
+void fields(Archive& archive, MonitorScore& score) {
+    archive(score.steps, score.unknown, score.worst);
+}
+
+template <class Archive>
+void fields(Archive& archive, MonitorEpisode& episode) {
+    archive(static_cast<episodes::Recorded&>(episode), episode.scores);
+}
+
 /// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the
 /// predicates (or an empty one where all are literal). Labels are asked for of the predicates in
 /// these monitors that are not their own truth, or that the first episode has an array of labels

@@ -3,7 +3,6 @@
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
 #include "data/files/file.hpp"
-#include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
 #include "driver/fit.hpp"
 #include "driver/options/names.hpp"
@@ -63,6 +62,15 @@ std::vector<std::string> inputs(const check::Model& model, const source::File& f
     return paths;
 }
 
+/// What the scores of an episode come from.
+std::vector<std::string> loaded(const check::Model& model, const source::File& file,
+                                const std::string& output) {
+    std::vector<std::string> paths = {file.path()};
+    for (const std::string& path : model.dependencies)
+        if (path != output) paths.push_back(path);
+    return paths;
+}
+
 }  // namespace
 
 bool calibrate(const source::File& file, const CalibrateRequest& request, diag::Sink& sink) {
@@ -78,16 +86,21 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
 
     calibrate::Request calibration = request.calibration;
     if (!check_names({&*model}, calibration.names, sink)) return false;
-    calibration.episodes = data::find_episodes(request.data, request.groups, sink);
+    calibration.episodes =
+        find_shared_episodes(calibration.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;
     calibration.version = kVersion;
     calibration.fitted = fitted_file(*model, file.path(), request.fitted);
     calibration.progress = episodes_progress();
     const std::string output =
         request.output.empty() ? check::default_thresholds_path(file.path()) : request.output;
-    if (!check_outputs({output}, inputs(*model, file, request, calibration.episodes), sink))
+    if (!check_outputs({is_shard(calibration.sharing) ? request.shard.part : output},
+                       inputs(*model, file, request, calibration.episodes), sink))
         return false;
+    if (!note_loaded(calibration.sharing, loaded(*model, file, output), sink)) return false;
     const auto result = calibrate_model(*model, request, calibration, sink);
+    if (is_shard(calibration.sharing))
+        return write_part(*calibration.sharing, request.shard.part, sink);
     if (!result || sink.refused()) return false;
 
     // The report comes before the file takes its name: where a part of it is lost, nothing has

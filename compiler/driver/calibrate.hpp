@@ -9,6 +9,7 @@
 #include "calibrate/calibrate.hpp"
 #include "check/check.hpp"
 #include "diag/diag.hpp"
+#include "driver/fleet/fleet.hpp"
 #include "source/source.hpp"
 
 namespace etlc::driver {
@@ -21,6 +22,7 @@ struct CalibrateRequest {
     std::vector<check::Setting> settings;
     std::string fitted;      ///< the file of what is fitted; empty: beside the spec
     std::string thresholds;  ///< those of the predicates; empty: they are calibrated now
+    ShardRequest shard;
 };
 
 /// False where the sink now says why not.

@@ -1,28 +1,28 @@
 // The command line. Exit statuses: driver/process.hpp.
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
 #include <new>
-#include <sstream>
 #include <stdexcept>
 
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
-#include "diag/render.hpp"
 #include "driver/calibrate.hpp"
 #include "driver/compile.hpp"
 #include "driver/embed.hpp"
-#include "driver/evaluate.hpp"
+#include "driver/evaluate/evaluate.hpp"
+#include "driver/evaluate/options.hpp"
 #include "driver/explain/options.hpp"
 #include "driver/fit.hpp"
+#include "driver/fleet/options.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/incident/options.hpp"
+#include "driver/options/calibrate_options.hpp"
+#include "driver/options/command_line.hpp"
 #include "driver/options/compile_options.hpp"
 #include "driver/options/embed_options.hpp"
-#include "driver/options/evaluate_options.hpp"
 #include "driver/options/fit_options.hpp"
 #include "driver/options/names.hpp"
 #include "driver/options/options.hpp"
@@ -35,9 +35,7 @@
 #include "driver/process.hpp"
 #include "driver/run/run.hpp"
 #include "driver/version.hpp"
-#include "parse/parse.hpp"
 #include "report/page.hpp"
-#include "source/escape.hpp"
 
 namespace {
 
@@ -66,24 +64,6 @@ struct Call {
     driver::IncidentRequest incident;
 };
 
-/// Prints the findings; the exit status that they mean.
-int conclude(const Call& call, const source::File& file, const diag::Sink& sink) {
-    const auto colour = isatty(STDERR_FILENO) != 0 ? diag::Colour::ansi : diag::Colour::none;
-    const bool json = call.diagnostics == "json";
-    const bool told = driver::print_error(json ? diag::render_json(file, sink)
-                                               : diag::render_text(file, sink, colour));
-    return sink.refused() || !told ? driver::kFailed : driver::kDone;
-}
-
-bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
-    // Far more than parse/ takes, which refuses a large spec with its size and what to do about it.
-    constexpr std::size_t kMostRead = 64 * parse::kMaxSpecBytes;
-    auto text = data::read_file(path, kMostRead, diag::Code::unreadable_spec);
-    file = source::File(path, text ? std::move(*text) : "");
-    if (!text) sink.report(data::in_file(text.failure(), path));
-    return static_cast<bool>(text);
-}
-
 enum class SpecWarnings : std::uint8_t { told, dropped };
 
 /// Reads the specs and does `work` with them; the exit status.
@@ -101,7 +81,7 @@ int with_specs(const Call& call, const std::vector<std::string>& paths, SpecWarn
     try {
         bool all_read = true;
         for (std::size_t i = 0; i < paths.size(); ++i)
-            all_read = read_spec(paths[i], files[i], sinks[i]) && all_read;
+            all_read = driver::read_spec(paths[i], files[i], sinks[i]) && all_read;
         if (all_read) work(files, sinks);
     } catch (const std::bad_alloc&) {
         report_lack();
@@ -111,7 +91,7 @@ int with_specs(const Call& call, const std::vector<std::string>& paths, SpecWarn
     int status = driver::kDone;
     for (std::size_t i = 0; i < paths.size(); ++i) {
         if (of_spec == SpecWarnings::dropped) sinks[i].drop_warnings_of_spec();
-        status = std::max(status, conclude(call, files[i], sinks[i]));
+        status = std::max(status, driver::conclude(call.diagnostics, files[i], sinks[i]));
     }
     return status;
 }
@@ -135,34 +115,6 @@ void add_common_options(CLI::App& app, Call& call, const std::string& spec = "sp
     driver::add_compiler_options(app, call.request);
 }
 
-int complain(const CLI::App& app, const std::string& mistake) {
-    driver::print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
-                                    source::visible_lines(mistake), app.get_name()));
-    return driver::kWrongCall;
-}
-
-/// --help, --version
-int fulfil(const CLI::App& app, const CLI::Success& wish) {
-    std::ostringstream text;
-    app.exit(wish, text, text);
-    const Call call;
-    diag::Sink sink;
-    driver::print(text.str(), sink);
-    return conclude(call, source::File(), sink);
-}
-
-/// An exit status where the command ends here.
-std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
-    try {
-        app.parse(argc, argv);
-    } catch (const CLI::Success& wish) {  // --help, --version
-        return fulfil(app, wish);
-    } catch (const CLI::ParseError& error) {
-        return complain(app, error.what());
-    }
-    return std::nullopt;
-}
-
 /// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output.
 void name_targets_file(Call& call) {
     call.output.targets_named = !call.output.targets.empty();
@@ -180,7 +132,7 @@ int compile_command(int argc, char** argv) {
         "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
         "etlc embed SPEC.etl --data FILE... -o FOLDER,\n"
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
-        "etlc crossvalidate SPEC.etl... --data FILE...,\n"
+        "etlc crossvalidate SPEC.etl... --data FILE..., etlc merge PART...,\n"
         "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
         "etlc report SPEC.etl --data FILE... -o PAGE.html",
         "etlc");
@@ -188,11 +140,11 @@ int compile_command(int argc, char** argv) {
     app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
     add_common_options(app, call);
     driver::add_compile_options(app, call.request, call.output, call.check_only);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     if (const std::string mistake =
             driver::mistake_in_compile_call(app, call.request, call.output, call.check_only);
         !mistake.empty())
-        return complain(app, mistake);
+        return driver::complain(app, mistake);
     if (call.request.explain) call.request.values = check::Values::sourced;
     if (call.output.result.empty()) call.output.result = "-";
     name_targets_file(call);
@@ -222,7 +174,7 @@ int run_command(int argc, char** argv) {
         "etlc run");
     add_common_options(app, call);
     driver::add_run_options(app, call.run, call.request.check.lets);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     const bool has_other_output =
         call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
     if (has_other_output && app.count("--output") == 0) call.run.output.clear();
@@ -241,9 +193,9 @@ int embed_command(int argc, char** argv) {
         "etlc embed");
     add_spec_options(app, call);
     driver::add_embed_options(app, call.embed);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     if (const std::string mistake = driver::mistake_in_embed_call(call.embed); !mistake.empty())
-        return complain(app, mistake);
+        return driver::complain(app, mistake);
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         driver::embed(file, call.embed, sink);
     });
@@ -257,7 +209,7 @@ int fit_command(int argc, char** argv) {
         "etlc fit");
     add_spec_options(app, call);
     driver::add_fit_options(app, call.fit);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     driver::read_suggest_option(app, call.fit);
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //
@@ -265,38 +217,29 @@ int fit_command(int argc, char** argv) {
                      });
 }
 
-int calibrate_command(int argc, char** argv) {
+/// `merged`: all parts of this call; null: the episodes are read.
+int calibrate_command(int argc, char** argv, episodes::Sharing* merged = nullptr) {
     Call call;
-    calibrate::Request& calibration = call.calibrate.calibration;
     CLI::App app(
         "Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a "
         "file.",
         "etlc calibrate");
     add_spec_options(app, call);
-    driver::add_set_option(app, call.calibrate.settings);
-    driver::add_episode_options(app, call.calibrate.data, call.calibrate.groups,
-                                calibration.allow_overlap, calibration.jobs);
-    driver::add_map_option(app, calibration.names);
-    app.add_option("-o,--output", call.calibrate.output,
-                   "where to write the thresholds (default: SPEC.thresholds.json beside the spec); "
-                   "- is standard output")
-        ->type_name("FILE");
-    app.add_option("--thresholds", call.calibrate.thresholds,
-                   "the thresholds of the predicates: then the monitors that are calibrated as a "
-                   "whole are, on episodes that these thresholds have not seen")
-        ->type_name("FILE");
-    driver::add_fitted_option(app, call.calibrate.fitted);
-    driver::add_folds_option(app, calibration.folds,
-                             "also say what the thresholds would be without each of N folds of the "
-                             "episodes");
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    driver::add_calibrate_options(app, call.calibrate);
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
+    const driver::ShardRequest& shard = call.calibrate.shard;
+    if (const std::string mistake = driver::mistake_in_shard_call(shard); !mistake.empty())
+        return driver::complain(app, mistake);
+    auto sharing = driver::sharing_of(shard, {argv, argv + argc});
+    call.calibrate.calibration.sharing = sharing ? &*sharing : merged;
     return with_spec(call, SpecWarnings::dropped,
                      [&](const source::File& file, diag::Sink& sink) {  //
                          driver::calibrate(file, call.calibrate, sink);
                      });
 }
 
-int evaluate_command(int argc, char** argv, bool crossvalidates) {
+int evaluate_command(int argc, char** argv, bool crossvalidates,
+                     episodes::Sharing* merged = nullptr) {
     Call call;
     CLI::App app(
         crossvalidates
@@ -311,11 +254,13 @@ int evaluate_command(int argc, char** argv, bool crossvalidates) {
     driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
     driver::add_compiler_options(app, call.request);
     driver::add_evaluate_options(app, call.evaluate, crossvalidates);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     if (const std::string mistake =
             driver::mistake_in_evaluate_call(app, call.specs, call.evaluate);
         !mistake.empty())
-        return complain(app, mistake);
+        return driver::complain(app, mistake);
+    auto sharing = driver::sharing_of(call.evaluate.shard, {argv, argv + argc});
+    call.evaluate.evaluation.sharing = sharing ? &*sharing : merged;
     return with_specs(call, call.specs, SpecWarnings::dropped,
                       [&](const std::vector<source::File>& files, std::vector<diag::Sink>& sinks) {
                           std::vector<driver::SpecToJudge> specs;
@@ -323,6 +268,30 @@ int evaluate_command(int argc, char** argv, bool crossvalidates) {
                               specs.push_back({files[i], sinks[i]});
                           driver::evaluate(specs, call.request, call.evaluate);
                       });
+}
+
+int merge_command(int argc, char** argv) {
+    Call call;
+    std::vector<std::string> paths;
+    CLI::App app("Makes of the parts that all shards of a call wrote what the call itself gives.",
+                 "etlc merge");
+    app.add_option("parts", paths, "the parts, in any order")->type_name("PART...")->required();
+    app.add_option("-o,--output", call.output.result,
+                   "where the result goes (default: where the call says): thresholds, or JSON")
+        ->type_name("FILE");
+    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
+    diag::Sink sink;
+    auto sharing = driver::check_outputs({call.output.result}, paths, sink)
+                       ? driver::read_parts(paths, sink)
+                       : std::nullopt;
+    if (!sharing) return driver::conclude(call.diagnostics, source::File(), sink);
+    std::vector<std::string> words = driver::merged_call(sharing->part(), call.output.result);
+    std::vector<char*> arguments;
+    for (std::string& word : words) arguments.push_back(word.data());
+    const int count = static_cast<int>(arguments.size());
+    if (words[0] == "evaluate") return evaluate_command(count, arguments.data(), false, &*sharing);
+    return calibrate_command(count, arguments.data(), &*sharing);
 }
 
 int explain_command(int argc, char** argv) {
@@ -334,7 +303,7 @@ int explain_command(int argc, char** argv) {
         "etlc explain");
     add_common_options(app, call);
     driver::add_explain_options(app, call.explain);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::explain(file, *compiled, call.explain, sink);
@@ -349,7 +318,7 @@ int report_command(int argc, char** argv) {
         "etlc report");
     add_common_options(app, call);
     driver::add_report_options(app, call.report);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     if (!can_make_pages()) return driver::kFailed;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
@@ -367,7 +336,7 @@ int incident_command(int argc, char** argv) {
         ->required();
     add_common_options(app, call, "--spec");
     driver::add_incident_options(app, call.incident);
-    if (const auto status = parse_arguments(app, argc, argv)) return *status;
+    if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);
         if (compiled && !sink.refused()) driver::incident(file, *compiled, call.incident, sink);
@@ -384,6 +353,7 @@ int execute(int argc, char** argv) {
     if (command == "incident") return incident_command(argc - 1, argv + 1);
     if (command == "embed") return embed_command(argc - 1, argv + 1);
     if (command == "fit") return fit_command(argc - 1, argv + 1);
+    if (command == "merge") return merge_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
     return compile_command(argc, argv);
 }

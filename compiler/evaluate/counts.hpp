@@ -33,6 +33,13 @@ struct Counts {
     bool operator==(const Counts&) const = default;
 };
 
+template <class Archive>
+void fields(Archive& archive, Counts& counts) {
+    archive(counts.true_positives, counts.false_positives, counts.false_negatives,
+            counts.true_negatives, counts.unsaid_positives, counts.unsaid_negatives,
+            counts.unlabelled);
+}
+
 struct Rates {
     /// 2 TP / (2 TP + FP + misses): not defined where nothing is true or said.
     std::optional<double> f1;

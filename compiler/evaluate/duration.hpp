@@ -31,6 +31,15 @@ public:
 
     bool operator==(const LabelRuns&) const = default;
 
+    template <class Archive>
+    friend void fields(Archive& archive, LabelRuns& labels) {
+        archive(labels.next_, labels.runs_);
+    }
+    template <class Archive>
+    friend void fields(Archive& archive, Run& run) {
+        archive(run.begin, run.end, run.label);
+    }
+
 private:
     std::uint64_t next_;
     std::vector<Run> runs_;

@@ -53,6 +53,28 @@ struct EpisodeResult : episodes::Recorded {
     std::vector<MonitorEpisode> monitors;
 };
 
+template <class Archive>
+void fields(Archive& archive, Turn& turn) {
+    archive(turn.delay);
+}
+
+template <class Archive>
+void fields(Archive& archive, MonitorEpisode& monitor) {
+    archive(monitor.steps, monitor.episode, monitor.turn, monitor.ordering, monitor.truth,
+            monitor.first_error);
+}
+
+template <class Archive>
+void fields(Archive& archive, PredicateEpisode& predicate) {
+    archive(predicate.frames, predicate.scored, predicate.unmeasured, predicate.from_array,
+            predicate.truth, predicate.first_error);
+}
+
+template <class Archive>
+void fields(Archive& archive, EpisodeResult& result) {
+    archive(static_cast<episodes::Recorded&>(result), result.predicates, result.monitors);
+}
+
 /// Scores one episode after the other. Not shared between threads; all that it is given outlives
 /// it.
 class EpisodeScorer {

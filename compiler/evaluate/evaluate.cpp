@@ -7,7 +7,6 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission.hpp"
-#include "episodes/parallel.hpp"
 
 namespace etlc::evaluate {
 
@@ -79,7 +78,7 @@ std::optional<std::vector<EpisodeResult>> scored(const Trial& trial, const Subje
     std::vector<std::string> paths;
     for (const std::size_t e : trial.episodes) paths.push_back(request.episodes[e]);
     const episodes::Leaks leaks(*trial.spec.model, subject.labelled);
-    return episodes::over_episodes<EpisodeResult>(paths, request, sink, [&] {
+    return episodes::over_shared_episodes<EpisodeResult>(paths, request, sink, [&] {
         return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
                                                request.names);
     });
@@ -90,11 +89,8 @@ std::optional<std::vector<EpisodeResult>> scored(const Trial& trial, const Subje
 std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& request,
                                diag::Sink& sink) {
     const check::Model& first = *trials[0].spec.model;
-    const auto labelled = episodes::labelled_in(first, request.episodes[0], request.names);
-    if (!labelled) {
-        sink.report(data::in_trace(labelled.failure(), request.episodes[0]));
-        return std::nullopt;
-    }
+    const auto labelled = episodes::labelled_in_first(first, request, sink);
+    if (!labelled) return std::nullopt;
     Judgement result = judgement_of(first, subject(first, *labelled), request.episodes.size());
     if (!refuse_without_truth(first, subject(first, *labelled), sink)) return std::nullopt;
     for (std::size_t t = 0; t < trials.size(); ++t) {

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
+#include "episodes/shared/sharing.hpp"
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/by_episode.hpp"
 #include "evaluate/differences.hpp"
@@ -44,6 +45,8 @@ struct Request {
     plan::Limits limits;        ///< of the ground truth's plan
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
+    /// One shard of the episodes, or all of them; null: this process reads them all.
+    episodes::Sharing* sharing = nullptr;
 };
 
 /// What a spec said of the episodes, and what was true.

@@ -16,6 +16,11 @@ struct Scored {
     bool positive = false;
 };
 
+template <class Archive>
+void fields(Archive& archive, Scored& frame) {
+    archive(frame.score, frame.episode, frame.positive);
+}
+
 class Ranking {
 public:
     /// `folds`: of each episode; empty: all are of one.

@@ -83,9 +83,9 @@ std::string Packing::rounded(const std::vector<float>& numbers, int parts) {
     for (const float x : numbers) {
         std::int32_t value = std::isnan(x) ? kMissing : x < 0 ? kBelowAll : kAboveAll;
         if (std::isfinite(x))
-            value = part == 0 ? 0
-                              : static_cast<std::int32_t>(std::lround((x - span.low) / part)) -
-                                    parts / 2;
+            value = part == 0
+                        ? 0
+                        : static_cast<std::int32_t>(std::lround((x - span.low) / part)) - parts / 2;
         words.push_back((static_cast<std::uint32_t>(value) - before) & 0xFFFFU);
         before = static_cast<std::uint32_t>(value);
     }

@@ -238,9 +238,12 @@ std::optional<std::string> page(const Material& material, const Request& request
                                   {request.limits, check::Values::boolean}, sink);
         if (!truth) return std::nullopt;
     }
-    Scene scene{plan,           shown_predicates(material),
-                material.truth, truth ? &truth->plan : nullptr,
-                request.names,  {},
+    Scene scene{plan,
+                shown_predicates(material),
+                material.truth,
+                truth ? &truth->plan : nullptr,
+                request.names,
+                {},
                 {}};
     auto drawn = planes(*plan.model, scene.predicates, request.episodes, request.names);
     if (!drawn) {

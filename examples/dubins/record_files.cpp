@@ -47,12 +47,13 @@ void write_npz(const std::string& path, const std::vector<Car>& states,
         camera.insert(camera.end(), image.begin(), image.end());
     }
     using etlc::data::npy_bytes;
+    using etlc::data::npy_of_uint8;
     const std::uint64_t steps = states.size();
     write_file(path, etlc::data::npz_bytes({
                          {"px.npy", npy_bytes({steps}, px)},
                          {"py.npy", npy_bytes({steps}, py)},
                          {"z.npy", npy_bytes({steps, kDimension}, z)},
-                         {"camera.npy", npy_bytes({steps, kImageSide, kImageSide}, camera)},
+                         {"camera.npy", npy_of_uint8({steps, kImageSide, kImageSide}, camera)},
                      }));
 }
 

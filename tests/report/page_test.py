@@ -193,7 +193,8 @@ def pictures_of_a_trace(call, folder):
     drawn = xml.etree.ElementTree.parse(folder / "one.svg").getroot()
     texts = [text.text for text in drawn.iter("{http://www.w3.org/2000/svg}text")]
     paths = [path.get("d") for path in drawn.iter("{http://www.w3.org/2000/svg}path")]
-    assert all(name in " ".join(texts) for name in ("near", "arrives", "never_far", "sooner")), texts
+    names = ("near", "arrives", "never_far", "sooner")
+    assert all(name in " ".join(texts) for name in names), texts
     assert len(paths) >= 6 and "nan" not in "".join(paths), paths
 
 

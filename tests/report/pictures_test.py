@@ -61,7 +61,8 @@ def middle(page, selector):
     """The colour in the middle of an image or a canvas."""
     page.wait(f"document.querySelector('{selector}').complete !== false")
     return page.value(f"""(() => {{
-        const copy = document.createElement("canvas").getContext("2d", {{willReadFrequently: true}});
+        const often = {{willReadFrequently: true}};
+        const copy = document.createElement("canvas").getContext("2d", often);
         copy.drawImage(document.querySelector("{selector}"), 0, 0);
         return Array.from(copy.getImageData(8, 8, 1, 1).data).slice(0, 3);
     }})()""")

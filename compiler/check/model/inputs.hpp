@@ -111,8 +111,8 @@ struct Target {
     std::vector<float> values;  ///< empty: not fitted yet
     /// "targets/goal_a.npy", "file.npz:key" or "literal", as written in the spec.
     std::string origin;
-    std::string path;  ///< of a file it was read from; empty for a literal
-    std::string hash;  ///< content hash of shape and values, data::content_hash
+    std::string path;                  ///< of a file it was read from; empty for a literal
+    std::string hash;                  ///< content hash of shape and values, data::content_hash
     std::vector<EncodedRows> encoded;  ///< the rows that are of images
     /// The point in whose space the rows are, of Model::points; kNone: in that of the inputs.
     Index space = kNone;

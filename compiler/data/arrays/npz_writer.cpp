@@ -74,8 +74,8 @@ std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector
     return bytes;
 }
 
-std::string npy_bytes(const std::vector<std::uint64_t>& shape,
-                      const std::vector<std::uint8_t>& values) {
+std::string npy_of_uint8(const std::vector<std::uint64_t>& shape,
+                         const std::vector<std::uint8_t>& values) {
     return npy_head("|u1", shape).append(values.begin(), values.end());
 }
 

@@ -11,9 +11,9 @@ namespace etlc::data {
 
 /// Values in row-major order, one for each element of the shape, as little-endian float32.
 std::string npy_bytes(const std::vector<std::uint64_t>& shape, const std::vector<float>& values);
-/// The same of bytes, as uint8.
-std::string npy_bytes(const std::vector<std::uint64_t>& shape,
-                      const std::vector<std::uint8_t>& values);
+/// The same of uint8.
+std::string npy_of_uint8(const std::vector<std::uint64_t>& shape,
+                         const std::vector<std::uint8_t>& values);
 
 struct ArchiveMember {
     std::string name;  ///< with its ending: "goal.npy"

@@ -11,7 +11,7 @@ void add_report_options(CLI::App& app, ReportRequest& report) {
     app.add_option("--frames", report.report.frames.text,
                    "what the camera saw: an array of the episodes (T x H x W x 3 uint8), or a "
                    "pattern of PNG or JPEG files, one a step, or of videos, in which {episode} "
-                   "stands for the episode's name: 'camera/{episode}/*.png', 'camera/{episode}.mp4'")
+                   "stands for the episode's name: 'camera/{episode}/*.png'")
         ->type_name("ARRAY|PATTERN");
     add_number(app, "--size", report.report.megabytes,
                "the size of the page; what does not fit is left out, best episodes first, and the "

@@ -4,7 +4,7 @@
 #include <utility>
 
 #include "data/traces/episodes.hpp"
-#include "driver/evaluate.hpp"
+#include "driver/evaluate/evaluate.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"

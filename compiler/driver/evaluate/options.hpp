@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "driver/evaluate.hpp"
+#include "driver/evaluate/evaluate.hpp"
 
 namespace etlc::driver {
 

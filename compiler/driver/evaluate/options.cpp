@@ -1,9 +1,10 @@
-#include "driver/options/evaluate_options.hpp"
+#include "driver/evaluate/options.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 
+#include "driver/fleet/options.hpp"
 #include "driver/options/recording_options.hpp"
 
 namespace etlc::driver {
@@ -24,6 +25,7 @@ void add_evaluate_options(CLI::App& app, EvaluateRequest& evaluation, bool cross
         ->type_name("FILE");
     app.add_option("--csv", evaluation.csv, "also write the result as CSV; - is standard output")
         ->type_name("FILE");
+    if (!crossvalidates) add_shard_options(app, evaluation.shard);
 }
 
 std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std::string>& specs,
@@ -31,6 +33,8 @@ std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std:
     for (auto spec = specs.begin(); spec != specs.end(); ++spec)
         if (std::find(specs.begin(), spec, *spec) != spec)
             return fmt::format("the spec {} is given twice", *spec);
+    if (evaluation.shard.shards > 0 && (specs.size() > 1 || evaluation.folds > 0))
+        return "--shard goes with one spec, and not with folds";
     for (const char* option : {"--thresholds", "--fitted"}) {
         if (app.count(option) == 0) continue;
         if (evaluation.folds > 0)
@@ -40,7 +44,7 @@ std::string mistake_in_evaluate_call(const CLI::App& app, const std::vector<std:
             return fmt::format("{} goes with one spec; the files of several lie beside them",
                                option);
     }
-    return "";
+    return mistake_in_shard_call(evaluation.shard);
 }
 
 }  // namespace etlc::driver

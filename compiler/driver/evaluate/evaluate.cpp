@@ -1,4 +1,4 @@
-#include "driver/evaluate.hpp"
+#include "driver/evaluate/evaluate.hpp"
 
 #include <fmt/format.h>
 
@@ -6,9 +6,8 @@
 #include <numeric>
 
 #include "data/files/file.hpp"
-#include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
-#include "driver/crossvalidate.hpp"
+#include "driver/evaluate/crossvalidate.hpp"
 #include "driver/fit.hpp"
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
@@ -185,13 +184,17 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request,
     diag::Sink& sink = specs[0].sink;
     evaluate::Request asked = evaluation.evaluation;
     if (!check_names(models, asked.names, sink)) return false;
-    asked.episodes = data::find_episodes(evaluation.data, evaluation.groups, sink);
+    asked.episodes = find_shared_episodes(asked.sharing, evaluation.data, evaluation.groups, sink);
     if (sink.has_errors()) return false;
-    if (!check_outputs({evaluation.json, evaluation.csv}, inputs(candidates, asked.episodes), sink))
-        return false;
+    const auto outputs = is_shard(asked.sharing)
+                             ? std::vector<std::string>{evaluation.shard.part}
+                             : std::vector<std::string>{evaluation.json, evaluation.csv};
+    if (!check_outputs(outputs, inputs(candidates, asked.episodes), sink)) return false;
+    if (!note_loaded(asked.sharing, inputs(candidates, {}), sink)) return false;
     asked.progress = episodes_progress();
     asked.limits = request.limits;
     const auto result = judged(candidates, request, evaluation, asked);
+    if (is_shard(asked.sharing)) return write_part(*asked.sharing, evaluation.shard.part, sink);
     return result && write(*result, evaluation, sink);
 }
 

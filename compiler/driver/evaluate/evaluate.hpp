@@ -12,6 +12,7 @@
 
 #include "diag/diag.hpp"
 #include "driver/compile.hpp"
+#include "driver/fleet/fleet.hpp"
 #include "evaluate/evaluate.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -25,6 +26,7 @@ struct EvaluateRequest {
     bool by_episode = false;       ///< also a row an episode; in CSV only these
     std::uint32_t folds = 0;       ///< 0: none, the spec's thresholds are there
     evaluate::Request evaluation;  ///< its episodes and progress are set here
+    ShardRequest shard;
 };
 
 /// A spec and what is found in it.

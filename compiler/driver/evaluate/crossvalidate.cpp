@@ -1,4 +1,4 @@
-#include "driver/crossvalidate.hpp"
+#include "driver/evaluate/crossvalidate.hpp"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,124 @@
+#include "driver/fleet/fleet.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <string_view>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/traces/episodes.hpp"
+#include "driver/output_file.hpp"
+#include "driver/version.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+using diag::Code;
+
+/// Without these options and their values: "--jobs 4", "--jobs=4", "-j4".
+std::vector<std::string> without(const std::vector<std::string>& call,
+                                 const std::vector<std::string_view>& options) {
+    std::vector<std::string> rest;
+    for (std::size_t i = 0; i < call.size(); ++i) {
+        const std::string_view word = call[i];
+        const auto is_given = [&](std::string_view option) { return word == option; };
+        const auto has_value = [&](std::string_view option) {
+            const bool is_short = option.size() == 2;
+            return word.starts_with(option) && word.size() > option.size() &&
+                   (is_short || word[option.size()] == '=');
+        };
+        if (std::any_of(options.begin(), options.end(), is_given))
+            ++i;
+        else if (std::none_of(options.begin(), options.end(), has_value))
+            rest.push_back(call[i]);
+    }
+    return rest;
+}
+
+}  // namespace
+
+std::optional<episodes::Sharing> sharing_of(const ShardRequest& request,
+                                            std::vector<std::string> call) {
+    if (request.shards == 0) return std::nullopt;
+    episodes::Part part;
+    part.etlc = kVersion;
+    part.call = without(call, {"--shard", "--part", "-j", "--jobs"});
+    part.shard = request.shard;
+    part.shards = request.shards;
+    return episodes::Sharing::shard(std::move(part));
+}
+
+std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
+                                              const std::vector<std::string>& data,
+                                              const std::string& groups, diag::Sink& sink) {
+    if (sharing != nullptr && sharing->merges()) return sharing->part().episodes;
+    auto found = data::find_episodes(data, groups, sink);
+    if (sharing != nullptr) sharing->part().episodes = found;
+    return found;
+}
+
+bool note_loaded(episodes::Sharing* sharing, std::vector<std::string> loaded, diag::Sink& sink) {
+    if (sharing == nullptr) return true;
+    std::sort(loaded.begin(), loaded.end());
+    std::string hashes;
+    for (const std::string& path : loaded)
+        if (const auto hash = data::hash_of_file(path, Code::unreadable_part)) hashes += *hash;
+    std::string& noted = sharing->part().loaded;
+    if (!sharing->merges()) noted = hashes;
+    if (noted == hashes) return true;
+    sink.report({Code::part_of_another,
+                 "the spec, or a file that it loads, has changed since the parts were written"})
+        .note("run the shards again, or merge with the files that they had");
+    return false;
+}
+
+bool is_shard(const episodes::Sharing* sharing) {
+    return sharing != nullptr && !sharing->merges();
+}
+
+bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink& sink) {
+    if (sink.refused()) return false;
+    const episodes::Part& part = sharing.part();
+    OutputFiles files(sink);
+    return files.add(path, episodes::write(part)) &&
+           files.add(
+               std::string(kStandardOutput),
+               fmt::format("shard {} of {}: {} of {}\n", part.shard, part.shards,
+                           part.results.size(), diag::counted(part.episodes.size(), "episode"))) &&
+           files.commit();
+}
+
+std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& paths,
+                                            diag::Sink& sink) {
+    std::vector<episodes::Part> parts;
+    for (const std::string& path : paths) {
+        auto part = episodes::read_part(path);
+        if (!part) {
+            sink.report(data::in_file(part.failure(), path));
+            return std::nullopt;
+        }
+        if (part->etlc != kVersion) {
+            sink.report(
+                data::in_file({Code::part_of_another,
+                               fmt::format("is of etlc {}; this is {}", part->etlc, kVersion)},
+                              path));
+            return std::nullopt;
+        }
+        parts.push_back(std::move(*part));
+    }
+    auto all = episodes::joined(std::move(parts), paths, sink);
+    if (!all) return std::nullopt;
+    return episodes::Sharing::merge(std::move(*all));
+}
+
+std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output) {
+    if (output.empty()) return part.call;
+    const bool evaluates = part.call[0] == "evaluate";
+    auto call = evaluates ? without(part.call, {"--json"}) : without(part.call, {"-o", "--output"});
+    call.insert(call.end(), {evaluates ? "--json" : "--output", output});
+    return call;
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,24 @@
+// What every command does with its arguments and its findings.
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <optional>
+#include <string>
+
+#include "diag/diag.hpp"
+#include "source/source.hpp"
+
+namespace etlc::driver {
+
+/// Prints the findings as `form` says, "text" or "json"; the exit status that they mean.
+int conclude(const std::string& form, const source::File& file, const diag::Sink& sink);
+
+bool read_spec(const std::string& path, source::File& file, diag::Sink& sink);
+
+/// Says what is wrong with the call; the exit status.
+int complain(const CLI::App& app, const std::string& mistake);
+
+/// An exit status where the command ends here: --help, --version, a wrong call.
+std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv);
+
+}  // namespace etlc::driver

@@ -1,0 +1,165 @@
+#include "episodes/shared/part.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+
+#include "data/files/file.hpp"
+#include "data/files/hash.hpp"
+#include "data/quote.hpp"
+#include "data/traces/trace.hpp"
+#include "episodes/shared/pack.hpp"
+
+namespace etlc::episodes {
+
+namespace {
+
+using diag::Code;
+using diag::Failure;
+
+constexpr std::string_view kMagic = "etlc part 1\n";
+constexpr std::size_t kHash = 8;  ///< bytes, the last of the file: of all before
+constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
+
+std::string ends_of(const std::string& path) {
+    constexpr std::uintmax_t kEnd = 1U << 16U;
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    if (error || !file) return {};  // whoever reads it will say so
+    std::string bytes = std::to_string(size) + ' ';
+    const auto add = [&](std::uintmax_t from) {
+        std::string end(std::min(kEnd, size - from), '\0');
+        file.seekg(static_cast<std::streamoff>(from));
+        file.read(end.data(), static_cast<std::streamsize>(end.size()));
+        bytes += end;
+    };
+    add(0);
+    add(size > kEnd ? size - kEnd : 0);
+    return bytes;
+}
+
+/// What two parts of a call have to share.
+bool same_call(const Part& a, const Part& b) {
+    return a.etlc == b.etlc && a.call == b.call && a.loaded == b.loaded && a.shards == b.shards &&
+           a.episodes == b.episodes && a.labelled == b.labelled;
+}
+
+std::string difference(const Part& a, const Part& b) {
+    if (a.etlc != b.etlc) return fmt::format("is of etlc {}, the first of {}", b.etlc, a.etlc);
+    if (a.call != b.call)
+        return fmt::format("is of the call 'etlc {}', the first of 'etlc {}'",
+                           fmt::join(b.call, " "), fmt::join(a.call, " "));
+    if (a.shards != b.shards)
+        return fmt::format("is one of {} shards, the first one of {}", b.shards, a.shards);
+    if (a.loaded != b.loaded)
+        return "was made with another spec, or other targets or thresholds, than the first";
+    return "was made over other episodes than the first";
+}
+
+/// `path`: of one of the parts.
+bool complete(const Part& all, const std::vector<std::uint32_t>& shards, const std::string& path,
+              diag::Sink& sink) {
+    std::vector<std::uint32_t> missing;
+    for (std::uint32_t shard = 1; shard <= all.shards; ++shard)
+        if (!std::binary_search(shards.begin(), shards.end(), shard)) missing.push_back(shard);
+    if (!missing.empty()) {
+        constexpr std::size_t kMostTold = 8;
+        const auto end =
+            missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostTold));
+        sink.report(data::in_file(
+            {Code::incomplete_parts,
+             fmt::format("is one of {}, of which these are missing: {}{}",
+                         diag::counted(all.shards, "shard"), fmt::join(missing.begin(), end, ", "),
+                         missing.size() > kMostTold ? ", ..." : "")},
+            path));
+        return false;
+    }
+    for (std::size_t place = 0; place < all.episodes.size(); ++place) {
+        if (all.results.count(place) != 0) continue;
+        sink.report(data::in_file(
+            {Code::incomplete_parts, "no shard has read it: its file has changed in between"},
+            all.episodes[place]));
+        return false;
+    }
+    return true;
+}
+
+}  // namespace
+
+std::uint32_t shard_of(const std::string& episode, std::uint32_t shards) {
+    const std::string file = data::trace_file(episode);
+    const std::uint64_t hash = data::xxh64(ends_of(file) + episode.substr(file.size()));
+    return static_cast<std::uint32_t>(hash % shards) + 1;
+}
+
+std::string write(const Part& part) {
+    std::string bytes{kMagic};
+    bytes += packed(part);
+    Writer hash;
+    hash(data::xxh64(bytes));
+    return bytes + hash.bytes();
+}
+
+diag::Result<Part> parse_part(std::string_view bytes) {
+    const Failure damaged{Code::damaged_part, "is cut, or was changed after it was written"};
+    if (!bytes.starts_with(kMagic))
+        return Failure{Code::damaged_part,
+                       fmt::format("is no part of a result: expected {} at its begin",
+                                   data::in_quotes(std::string(kMagic.substr(0, 11))))};
+    if (bytes.size() < kMagic.size() + kHash) return damaged;
+    Writer hash;
+    hash(data::xxh64(bytes.substr(0, bytes.size() - kHash)));
+    if (bytes.substr(bytes.size() - kHash) != hash.bytes()) return damaged;
+    auto part = unpacked<Part>(bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHash));
+    if (!part || part->shard == 0 || part->shard > part->shards || part->call.empty())
+        return damaged;
+    return std::move(*part);
+}
+
+diag::Result<Part> read_part(const std::string& path) {
+    const auto bytes = data::read_file(path, kLargest, Code::unreadable_part);
+    if (!bytes) return bytes.failure();
+    return parse_part(*bytes);
+}
+
+std::optional<Part> joined(std::vector<Part> parts, const std::vector<std::string>& paths,
+                           diag::Sink& sink) {
+    Part all = std::move(parts.front());
+    std::map<std::uint32_t, std::string> seen = {{all.shard, paths.front()}};
+    for (std::size_t i = 1; i < parts.size(); ++i) {
+        Part& part = parts[i];
+        if (!same_call(all, part)) {
+            sink.report(data::in_file({Code::part_of_another, difference(all, part)}, paths[i]))
+                .note(fmt::format("the first is {}", paths.front()));
+            return std::nullopt;
+        }
+        const auto [before, is_new] = seen.emplace(part.shard, paths[i]);
+        if (!is_new) {
+            sink.report(data::in_file(
+                {Code::incomplete_parts, fmt::format("is shard {} of {}, which {} is as well",
+                                                     part.shard, part.shards, before->second)},
+                paths[i]));
+            return std::nullopt;
+        }
+        for (auto& [place, bytes] : part.results) {
+            if (all.results.emplace(place, std::move(bytes)).second) continue;
+            sink.report(data::in_file(
+                {Code::incomplete_parts,
+                 fmt::format("has {}, which another shard has as well: the "
+                             "file has changed in between",
+                             all.episodes[std::min<std::size_t>(place, all.episodes.size() - 1)])},
+                paths[i]));
+            return std::nullopt;
+        }
+    }
+    std::vector<std::uint32_t> shards;
+    for (const auto& [shard, path] : seen) shards.push_back(shard);
+    if (!complete(all, shards, paths.front(), sink)) return std::nullopt;
+    return all;
+}
+
+}  // namespace etlc::episodes

@@ -1,0 +1,110 @@
+// A call whose episodes are shared out among processes.
+// Takes: a shard's number, or all parts of a call. Gives: of a shard, its part; of all parts, what
+// one process would have made of each episode. Keeps true: what comes after the reading of episodes
+// is done once, over all of them in the order of the call, so it gives the bytes of one process.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "episodes/parallel.hpp"
+#include "episodes/recording.hpp"
+#include "episodes/shared/pack.hpp"
+#include "episodes/shared/part.hpp"
+
+namespace etlc::episodes {
+
+class Sharing {
+public:
+    /// One shard: `part` says which, and of what call.
+    static Sharing shard(Part part) { return {std::move(part), false}; }
+    /// All of them, as `joined` gives them.
+    static Sharing merge(Part all) { return {std::move(all), true}; }
+
+    bool merges() const { return merges_; }
+    Part& part() { return part_; }
+
+private:
+    Sharing(Part part, bool merges) : part_(std::move(part)), merges_(merges) {}
+
+    Part part_;
+    bool merges_;
+};
+
+/// As labelled_in of the first episode; where parts are merged, from them. Nothing where the sink
+/// now says why. Of the request it uses `episodes`, `names` and `sharing`.
+template <class Request>
+std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
+                                                    const Request& request, diag::Sink& sink) {
+    if (request.sharing != nullptr && request.sharing->merges())
+        return request.sharing->part().labelled;
+    auto labelled = labelled_in(model, request.episodes.front(), request.names);
+    if (!labelled) {
+        sink.report(data::in_trace(labelled.failure(), request.episodes.front()));
+        return std::nullopt;
+    }
+    if (request.sharing != nullptr) request.sharing->part().labelled = *labelled;
+    return std::move(*labelled);
+}
+
+/// As over_episodes. Of a shard only its own are read, their results go into its part, and nothing
+/// comes back; where parts are merged, nothing is read.
+template <class T, class Request, class Make>
+std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string>& paths,
+                                                   const Request& request, diag::Sink& sink,
+                                                   Make make) {
+    if (request.sharing == nullptr) return over_episodes<T>(paths, request, sink, make);
+    Part& part = request.sharing->part();
+    if (request.sharing->merges()) {
+        std::vector<T> all;
+        for (std::size_t place = 0; place < paths.size(); ++place) {
+            auto result = unpacked<T>(part.results.at(place));
+            if (!result) {
+                sink.report(data::in_file(
+                    {diag::Code::damaged_part, "its result is not one of this version of etlc"},
+                    paths[place]));
+                return std::nullopt;
+            }
+            all.push_back(std::move(*result));
+        }
+        return all;
+    }
+    std::vector<std::size_t> places;
+    std::vector<std::string> own;
+    for (std::size_t place = 0; place < paths.size(); ++place) {
+        if (shard_of(paths[place], part.shards) != part.shard) continue;
+        places.push_back(place);
+        own.push_back(paths[place]);
+    }
+    const auto results = over_episodes<T>(own, request, sink, make);
+    if (results)
+        for (std::size_t i = 0; i < places.size(); ++i)
+            part.results.emplace(places[i], packed((*results)[i]));
+    return std::nullopt;
+}
+
+}  // namespace etlc::episodes
+
+namespace etlc::data {
+
+template <class Archive>
+void fields(Archive& archive, InputContent& content) {
+    archive(content.hash, content.sketch);
+}
+
+}  // namespace etlc::data
+
+namespace etlc::episodes {
+
+template <class Archive>
+void fields(Archive& archive, Leak& leak) {
+    archive(leak.predicate, leak.distance, leak.row, leak.frame);
+}
+
+template <class Archive>
+void fields(Archive& archive, Recorded& recorded) {
+    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
+}
+
+}  // namespace etlc::episodes
