@@ -102,6 +102,7 @@ bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& si
     for (const embed::Recording& recording : recordings) {
         outputs.push_back(episode_path(request.output, recording));
         inputs.push_back(recording.path);
+        if (!recording.beside.empty()) inputs.push_back(recording.beside);
     }
     if (!recordings.empty() && !make_folder(request.output, sink)) return false;
     if (!check_outputs(outputs, inputs, sink)) return false;

@@ -6,6 +6,8 @@
 #include "data/arrays/npz_writer.hpp"
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
+#include "data/traces/trace.hpp"
+#include "embed/beside.hpp"
 #include "embed/embed.hpp"
 
 namespace etlc::embed {
@@ -118,15 +120,23 @@ private:
                                  fmt::format("'{}' has {}, '{}' has {}", name,
                                              diag::counted(values.size() / width, "step"),
                                              model_.inputs[made.begin()->first].name, steps)},
-                                from.path);
+                                from.beside.empty() ? from.path : from.beside);
             std::vector<std::uint64_t> shape = {values.size() / width};
             if (is_vector) shape.push_back(width);
             members.push_back({name + ".npy", data::npy_bytes(shape, values)});
         };
         for (const auto& [index, values] : made)
             add_array(model_.inputs[index].name, model_.inputs[index].dimension, true, values);
-        for (const Array& array : from.arrays)
-            add_array(array.name, array.width, array.width > 1, array.values);
+        if (!from.beside.empty()) {
+            const auto arrays = arrays_beside(model_, from.beside);
+            if (!arrays) {
+                sink_.report(data::in_trace(arrays.failure(), from.beside));
+                failed_ = true;
+                return;
+            }
+            for (const Array& array : *arrays)
+                add_array(array.name, array.width, array.width > 1, array.values);
+        }
         if (!failed_) failed_ = !keep_(from, data::npz_bytes(members));
     }
 

@@ -20,15 +20,28 @@ using diag::Failure;
 constexpr std::string_view kExpected =
     "expected a video, a folder of images, or a folder or pattern of these";
 
+/// "drives/ep3.csv" of "drives/ep3.mp4", or of the folder "drives/ep3".
+std::string beside(const fs::path& folder, const std::string& name) {
+    const fs::path path = folder / (name + ".csv");
+    std::error_code error;
+    return fs::exists(path, error) ? path.string() : "";
+}
+
 Recording video(const std::string& path, double rate) {
-    return {path, fs::path(path).stem().string(), true,
-            [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); }};
+    const fs::path file = path;
+    const std::string name = file.stem().string();
+    return {path, name, true,
+            [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); },
+            beside(file.parent_path(), name)};
 }
 
 Recording images(const std::string& folder, std::vector<std::string> paths) {
-    const fs::path name = fs::path(folder).lexically_normal();
-    return {folder, (name.has_filename() ? name : name.parent_path()).filename().string(), true,
-            [paths = std::move(paths)](const std::string&) { return data::open_images(paths); }};
+    fs::path place = fs::path(folder).lexically_normal();
+    if (!place.has_filename()) place = place.parent_path();  // of "drives/ep3/"
+    const std::string name = place.filename().string();
+    return {folder, name, true,
+            [paths = std::move(paths)](const std::string&) { return data::open_images(paths); },
+            beside(place.parent_path(), name)};
 }
 
 std::vector<std::string> sorted_entries(const std::string& folder) {

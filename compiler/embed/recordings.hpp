@@ -28,7 +28,8 @@ struct Recording {
     bool has_one_camera = true;
     /// The frames for an input, a frame a step. Failures do not repeat the path.
     std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
-    std::vector<Array> arrays{};
+    /// A .csv file of its name beside it: see embed/beside.hpp; empty: there is none.
+    std::string beside{};
 };
 
 /// Every recording of the arguments. `rate`: steps a second, 0 where the spec has no rate: then

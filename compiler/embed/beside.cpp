@@ -1,0 +1,107 @@
+#include "embed/beside.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <limits>
+#include <optional>
+
+#include "data/quote.hpp"
+#include "data/traces/csv.hpp"
+#include "data/traces/trace.hpp"
+
+namespace etlc::embed {
+
+namespace {
+
+using data::Channel;
+using diag::Code;
+using diag::Failure;
+
+struct Column {
+    std::string name;                      ///< "q" of "q[3]"
+    std::optional<std::uint32_t> element;  ///< 3 of "q[3]"
+};
+
+Column column_of(std::string_view text) {
+    const std::size_t open = text.find('[');
+    std::uint32_t element = 0;
+    if (open == std::string_view::npos || !text.ends_with(']')) return {std::string(text), {}};
+    const char* const end = text.data() + text.size() - 1;
+    const auto [rest, error] = std::from_chars(text.data() + open + 1, end, element);
+    if (error != std::errc() || rest != end) return {std::string(text), {}};
+    return {std::string(text.substr(0, open)), element};
+}
+
+/// How a column is read, by its name.
+diag::Result<Channel> channel_of(const check::Model& model, const Column& column) {
+    Channel channel{column.name, column.element ? Channel::Kind::vector : Channel::Kind::scalar, 1,
+                    false};
+    if (column.name.starts_with("truth.")) channel.kind = Channel::Kind::boolean;
+    for (const check::Input& input : model.inputs) {
+        if (input.name != column.name) continue;
+        if (input.encoder != check::kNone)
+            return Failure{
+                Code::no_such_channel,
+                fmt::format("has a column {}, which '{}' makes of the frames",
+                            data::in_quotes(column.name), model.encoders[input.encoder].name),
+                1, 1};
+        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
+    }
+    return channel;
+}
+
+diag::Result<std::vector<Channel>> channels_of(const check::Model& model, const std::string& path) {
+    auto source = data::open_file(path);
+    if (!source) return source.failure();
+    data::CsvReader header(std::move(*source));
+    const auto read = header.next();
+    if (!read) return read.failure();
+    std::vector<Channel> channels;
+    for (std::size_t i = 0; *read && i < header.cells(); ++i) {
+        const Column column = column_of(header.cell(i));
+        const auto same = [&](const Channel& other) { return other.name == column.name; };
+        const auto known = std::find_if(channels.begin(), channels.end(), same);
+        if (known != channels.end()) {
+            known->width = std::max(known->width, column.element.value_or(0) + 1);
+            continue;
+        }
+        auto channel = channel_of(model, column);
+        if (!channel) return channel.failure();
+        channel->width = column.element.value_or(0) + 1;
+        channels.push_back(std::move(*channel));
+    }
+    constexpr std::uint32_t kMostElements = 1U << 20U;  // no row of a file has more cells
+    for (const Channel& channel : channels)
+        if (channel.width > kMostElements)
+            return Failure{Code::trace_shape,
+                           fmt::format("has a column {}[{}], expected at most {} elements",
+                                       channel.name, channel.width - 1, kMostElements),
+                           1, 1};
+    return channels;
+}
+
+}  // namespace
+
+diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
+    const auto channels = channels_of(model, path);
+    if (!channels) return channels.failure();
+    const auto trace = data::open_trace(path, *channels);
+    if (!trace) return trace.failure();
+    std::vector<Array> arrays;
+    for (const Channel& channel : *channels) arrays.push_back({channel.name, channel.width, {}});
+    data::Sample sample;
+    for (;;) {
+        const auto more = (*trace)->next(sample);
+        if (!more) return more.failure();
+        if (!*more) return arrays;
+        for (std::size_t c = 0; c < arrays.size(); ++c)
+            for (const double value : sample.values[c])
+                arrays[c].values.push_back(sample.present[c]
+                                               ? static_cast<float>(value)
+                                               : std::numeric_limits<float>::quiet_NaN());
+    }
+}
+
+}  // namespace etlc::embed
