@@ -2,12 +2,14 @@
 
 #include <fmt/format.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
 
+#include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 
 namespace etlc::data {
@@ -38,6 +40,18 @@ private:
     std::uint64_t size_ = 0;
 };
 
+class StandardInput final : public ByteSource {
+public:
+    diag::Result<std::size_t> read(char* to, std::size_t n) override {
+        const auto got = uninterrupted([&] { return ::read(STDIN_FILENO, to, n); });
+        if (got < 0)
+            return diag::Failure{diag::Code::unreadable_data_file,
+                                 fmt::format("cannot be read: {}", std::strerror(errno))};
+        return static_cast<std::size_t>(got);
+    }
+    std::uint64_t size() const override { return 0; }
+};
+
 class MemoryBytes final : public ByteSource {
 public:
     explicit MemoryBytes(std::string_view bytes) : rest_(bytes), size_(bytes.size()) {}
@@ -56,6 +70,10 @@ private:
 };
 
 }  // namespace
+
+std::unique_ptr<ByteSource> standard_input() {
+    return std::make_unique<StandardInput>();
+}
 
 diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path) {
     if (auto why = why_unreadable(path))

@@ -25,6 +25,9 @@ public:
 /// A regular file, or (size 0) anything else that can be read to its end.
 diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path);
 
+/// Standard input: of a pipe `read` gives what is there, so only 0 bytes are the end.
+std::unique_ptr<ByteSource> standard_input();
+
 /// The bytes must outlive the source.
 std::unique_ptr<ByteSource> from_memory(std::string_view bytes);
 

@@ -81,7 +81,7 @@ diag::Failure no_steps() {
 }
 
 diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path) {
-    diag::Diagnostic result = in_file(failure, path);
+    diag::Diagnostic result = in_file(failure, path == kStandardInput ? "standard input" : path);
     if (failure.code == diag::Code::no_such_channel)
         result.note("--map NAME=NAME_IN_FILE says what an input is called in the file");
     if (failure.code == diag::Code::no_label)
@@ -93,6 +93,7 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
                                                 const std::vector<Channel>& channels) {
+    if (path == kStandardInput) return open_csv_trace(standard_input(), channels);
     if (const Format* format = format_of(trace_file(path))) return format->open(path, channels);
     return diag::Failure{diag::Code::unknown_trace_format,
                          "unknown kind of trace, expected " + trace_endings()};

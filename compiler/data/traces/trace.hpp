@@ -10,6 +10,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diag/diag.hpp"
@@ -54,6 +55,9 @@ std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& n
 bool is_trace(const std::string& path);
 /// The endings of traces: ".csv, .npz, .h5 or .hdf5".
 std::string trace_endings();
+
+/// The path of a trace that comes on standard input, as CSV. It is read once.
+inline constexpr std::string_view kStandardInput = "-";
 
 /// Of FILE.h5:GROUP the file, of any other path the path itself.
 std::string trace_file(const std::string& path);

@@ -6,7 +6,8 @@ namespace etlc::driver {
 
 void add_run_options(CLI::App& app, RunRequest& run, bool& lets) {
     app.add_option("--trace", run.trace,
-                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
+                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it; "
+                   "- is CSV on standard input, a step as soon as its row is there")
         ->type_name("FILE")
         ->required();
     add_map_option(app, run.names);
@@ -29,6 +30,11 @@ void add_run_options(CLI::App& app, RunRequest& run, bool& lets) {
         ->type_name("FILE");
     app.add_option("--svg", run.svg, "also a picture of its timelines; rows then as with --summary")
         ->type_name("FILE");
+}
+
+std::string mistake_in_run_call(const RunRequest& run) {
+    if (run.trace != data::kStandardInput || (run.html.empty() && run.svg.empty())) return "";
+    return "--html and --svg read the trace once more, so it cannot be standard input";
 }
 
 }  // namespace etlc::driver

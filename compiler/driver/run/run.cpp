@@ -44,7 +44,9 @@ public:
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
-        inputs.insert(inputs.end(), {spec_.path(), data::trace_file(request_.trace)});
+        inputs.push_back(spec_.path());
+        if (request_.trace != data::kStandardInput)
+            inputs.push_back(data::trace_file(request_.trace));
         if (!check_outputs({request_.output, request_.html, request_.svg}, inputs, sink_))
             return false;
         if (writes_rows() && !output_.begin(request_.output)) return false;
@@ -134,7 +136,9 @@ private:
             if (writes_rows()) print_row(m, verdicts[m], telemetry);
         }
         ++step_;
-        return text_.size() < kBufferBytes || flush();
+        // Whoever pipes a trace in waits for its verdicts.
+        const bool waits = request_.trace == data::kStandardInput;
+        return (text_.size() < kBufferBytes && !waits) || flush();
     }
 
     void print_row(std::size_t m, const Verdict& v, const std::string& telemetry) {

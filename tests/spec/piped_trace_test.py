@@ -1,0 +1,50 @@
+#!/usr/bin/env python3
+"""piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step when its row has come,
+and in the end what it gives for the same file."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+ETLC = os.path.abspath(sys.argv[1])
+SPEC = "spec t; input x : f32; predicate near = x <= 0.5; monitor m = F near; monitor n = G near;\n"
+ROWS = ["x", "1", "", "0.25", "2"]
+
+
+def main():
+    pathlib.Path("t.etl").write_text(SPEC)
+    pathlib.Path("t.csv").write_text("".join(row + "\n" for row in ROWS))
+    of_file = subprocess.run([ETLC, "run", "t.etl", "--trace", "t.csv"], capture_output=True,
+                             check=True, text=True).stdout
+    running = subprocess.Popen([ETLC, "run", "t.etl", "--trace", "-"], stdin=subprocess.PIPE,
+                               stdout=subprocess.PIPE, text=True)
+    heard = []
+    for step, row in enumerate(ROWS, start=-1):
+        running.stdin.write(row + "\n")
+        running.stdin.flush()
+        if step < 0:
+            continue
+        if step == 0:
+            heard.append(running.stdout.readline())  # the head
+        for monitor in ("m", "n"):
+            heard.append(running.stdout.readline())
+            assert heard[-1].startswith(f"{step},{monitor},"), heard
+    rest, _ = running.communicate()
+    assert running.returncode == 0 and "".join(heard) + rest == of_file, (heard, rest, of_file)
+
+    def refused(text, *words, status):
+        done = subprocess.run([ETLC, "run", "t.etl", "--trace", "-", *words], input=text,
+                              capture_output=True, text=True)
+        assert done.returncode == status, done
+        return done.stderr
+
+    assert "standard input:3:1: error" in refused("x\n1\nno\n", status=1)
+    assert "standard input: error" in refused("", status=1)
+    assert "cannot be standard input" in refused("x\n1\n", "--svg", "t.svg", status=2)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    main()
+    os.chdir("/")
