@@ -54,7 +54,7 @@ std::optional<Calibration> calibrate_model(const check::Model& model,
 std::vector<std::string> inputs(const check::Model& model, const source::File& file,
                                 const CalibrateRequest& request,
                                 const std::vector<std::string>& episodes) {
-    std::vector<std::string> paths;
+    std::vector<std::string> paths = merged_files(request.calibration.sharing);
     for (const std::string& episode : episodes) paths.push_back(data::trace_file(episode));
     paths.push_back(file.path());
     for (const std::string& path : model.dependencies)

@@ -284,9 +284,7 @@ int merge_command(int argc, char** argv) {
     driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
     if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     diag::Sink sink;
-    auto sharing = driver::check_outputs({call.output.result}, paths, sink)
-                       ? driver::read_parts(paths, sink)
-                       : std::nullopt;
+    auto sharing = driver::read_parts(paths, sink);
     if (!sharing) return driver::conclude(call.diagnostics, source::File(), sink);
     std::vector<std::string> words = driver::merged_call(sharing->part(), call.output.result);
     std::vector<char*> arguments;

@@ -122,6 +122,8 @@ def main():
         for bad in (changed, good[:at], good + good[:at + 1]):
             pathlib.Path(parts[0]).write_bytes(bad)
             refused("E1102", *parts)
+    pathlib.Path(parts[0]).write_bytes(good)
+    refused("E0904", *parts, "-o", parts[2])
     call(*evaluate[:-1], "--shard", "1/7", "--part", parts[0])  # without --by-episode
     refused("E1103", *parts)
     pathlib.Path(parts[0]).write_bytes(good)
@@ -130,6 +132,7 @@ def main():
 
     for words, mistake in ((["--shard", "8/7", "--part", "p"], "8/7"), (["--part", "p"], "--shard"),
                            (["--shard", "1/7"], "--part"),
+                           (["--shard", "1/7", "--part", "-"], "not standard output"),
                            (["--shard", "1/2", "--part", "p", "--folds", "3"], "folds")):
         assert mistake in call(*evaluate[:2], "--data", "three", *words, status=2), words
 

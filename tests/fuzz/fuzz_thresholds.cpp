@@ -1,34 +1,48 @@
-// Thresholds files, and the descriptions in files of fitted things: any text is a message, or a
-// file that is the same after writing and reading it again, and of which every threshold agrees
-// with itself or is told why not.
+// Thresholds files, and the descriptions in files of fitted things and of embeddings: any text is a
+// message, or a file that is the same after writing and reading it again, and of which every
+// threshold agrees with itself or is told why not.
 #include <string>
+#include <vector>
 
 #include "check/guarantees/consistency.hpp"
 #include "data/arrays/npz_writer.hpp"
+#include "embedded/embedded.hpp"
 #include "fitted/fitted.hpp"
 #include "fuzz_target.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace {
 
-void read_fitted(const std::string& description) {
-    using namespace etlc;
-    const auto file =
-        fitted::parse(data::npz_bytes({{"fitted.json", description},
-                                       {"Q.npy", data::npy_bytes({2, 2}, {1, 2, 3, 4})},
-                                       {"Q-offset.npy", data::npy_bytes({2}, {1, 2})}}),
-                      "x");
+using namespace etlc;
+
+/// What `parse` made of `bytes` is a message, or reads and writes the same again.
+template <class Parse>
+void read_archive(const std::vector<data::ArchiveMember>& members, Parse parse) {
+    const auto file = parse(data::npz_bytes(members), "x");
     if (!file) return fuzz::require_printable(file.failure().message);
-    const std::string written = fitted::write(*file);
-    const auto again = fitted::parse(written, "x");
+    const std::string written = write(*file);
+    const auto again = parse(written, "x");
     fuzz::require(static_cast<bool>(again), "what is written can be read");
-    fuzz::require(fitted::write(*again) == written, "writing what was read changes nothing");
+    fuzz::require(write(*again) == written, "writing what was read changes nothing");
+}
+
+void read_fitted(const std::string& description) {
+    read_archive({{"fitted.json", description},
+                  {"Q.npy", data::npy_bytes({2, 2}, {1, 2, 3, 4})},
+                  {"Q-offset.npy", data::npy_bytes({2}, {1, 2})}},
+                 fitted::parse);
+}
+
+void read_embedded(const std::string& description) {
+    read_archive(
+        {{"embedded.json", description}, {"rows-1.npy", data::npy_bytes({2, 2}, {1, 2, 3, 4})}},
+        embedded::parse);
 }
 
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
-    using namespace etlc;
+    read_embedded(std::string(fuzz::text(bytes, size)));
     read_fitted(std::string(fuzz::text(bytes, size)));
     const auto file = thresholds::parse(std::string(fuzz::text(bytes, size)), "x");
     if (!file) {

@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step when its row has come,
-and in the end what it gives for the same file."""
+"""piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step when its row has
+come, and in the end what it gives for the same file."""
 import os
 import pathlib
 import subprocess

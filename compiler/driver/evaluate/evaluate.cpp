@@ -189,7 +189,10 @@ bool evaluate(const std::vector<SpecToJudge>& specs, const Request& request,
     const auto outputs = is_shard(asked.sharing)
                              ? std::vector<std::string>{evaluation.shard.part}
                              : std::vector<std::string>{evaluation.json, evaluation.csv};
-    if (!check_outputs(outputs, inputs(candidates, asked.episodes), sink)) return false;
+    auto read = inputs(candidates, asked.episodes);
+    const auto parts = merged_files(asked.sharing);
+    read.insert(read.end(), parts.begin(), parts.end());
+    if (!check_outputs(outputs, read, sink)) return false;
     if (!note_loaded(asked.sharing, inputs(candidates, {}), sink)) return false;
     asked.progress = episodes_progress();
     asked.limits = request.limits;

@@ -74,6 +74,10 @@ bool note_loaded(episodes::Sharing* sharing, std::vector<std::string> loaded, di
     return false;
 }
 
+std::vector<std::string> merged_files(const episodes::Sharing* sharing) {
+    return sharing == nullptr ? std::vector<std::string>{} : sharing->files();
+}
+
 bool is_shard(const episodes::Sharing* sharing) {
     return sharing != nullptr && !sharing->merges();
 }
@@ -110,7 +114,7 @@ std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& path
     }
     auto all = episodes::joined(std::move(parts), paths, sink);
     if (!all) return std::nullopt;
-    return episodes::Sharing::merge(std::move(*all));
+    return episodes::Sharing::merge(std::move(*all), paths);
 }
 
 std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output) {

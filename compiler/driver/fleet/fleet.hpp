@@ -33,6 +33,9 @@ std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
 /// where the sink now says that it is another.
 bool note_loaded(episodes::Sharing* sharing, std::vector<std::string> loaded, diag::Sink& sink);
 
+/// The parts that are merged; none, where none are.
+std::vector<std::string> merged_files(const episodes::Sharing* sharing);
+
 /// Whether this is one shard, which ends with its part.
 bool is_shard(const episodes::Sharing* sharing);
 bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink& sink);

@@ -2,6 +2,8 @@
 
 #include <charconv>
 
+#include "driver/output_file.hpp"
+
 namespace etlc::driver {
 
 namespace {
@@ -36,6 +38,7 @@ void add_shard_options(CLI::App& app, ShardRequest& request) {
 }
 
 std::string mistake_in_shard_call(const ShardRequest& request) {
+    if (request.part == kStandardOutput) return "--part names a file, not standard output";
     if ((request.shards == 0) == request.part.empty()) return "";
     return request.part.empty() ? "--shard needs --part, the file to write"
                                 : "--part goes with --shard";

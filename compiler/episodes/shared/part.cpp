@@ -57,7 +57,8 @@ std::string difference(const Part& a, const Part& b) {
         return fmt::format("is one of {} shards, the first one of {}", b.shards, a.shards);
     if (a.loaded != b.loaded)
         return "was made with another spec, or other targets or thresholds, than the first";
-    return "was made over other episodes than the first";
+    if (a.episodes != b.episodes) return "was made over other episodes than the first";
+    return "was made with other labels in the first episode";
 }
 
 /// `path`: of one of the parts.
@@ -97,8 +98,12 @@ std::uint32_t shard_of(const std::string& episode, std::uint32_t shards) {
 }
 
 std::string write(const Part& part) {
+    return as_file(packed(part));
+}
+
+std::string as_file(std::string_view body) {
     std::string bytes{kMagic};
-    bytes += packed(part);
+    bytes += body;
     Writer hash;
     hash(data::xxh64(bytes));
     return bytes + hash.bytes();
@@ -116,6 +121,8 @@ diag::Result<Part> parse_part(std::string_view bytes) {
     if (bytes.substr(bytes.size() - kHash) != hash.bytes()) return damaged;
     auto part = unpacked<Part>(bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHash));
     if (!part || part->shard == 0 || part->shard > part->shards || part->call.empty())
+        return damaged;
+    if (!part->results.empty() && part->results.rbegin()->first >= part->episodes.size())
         return damaged;
     return std::move(*part);
 }
@@ -149,9 +156,9 @@ std::optional<Part> joined(std::vector<Part> parts, const std::vector<std::strin
             if (all.results.emplace(place, std::move(bytes)).second) continue;
             sink.report(data::in_file(
                 {Code::incomplete_parts,
-                 fmt::format("has {}, which another shard has as well: the "
-                             "file has changed in between",
-                             all.episodes[std::min<std::size_t>(place, all.episodes.size() - 1)])},
+                 fmt::format("has {}, which another shard has as well: its file has changed "
+                             "in between",
+                             all.episodes[place])},
                 paths[i]));
             return std::nullopt;
         }

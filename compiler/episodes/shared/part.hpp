@@ -40,6 +40,8 @@ void fields(Archive& archive, Part& part) {
 std::uint32_t shard_of(const std::string& episode, std::uint32_t shards);
 
 std::string write(const Part& part);
+/// What `write` puts around the packed part.
+std::string as_file(std::string_view body);
 /// Failures are E1101 and E1102, and do not repeat the path.
 diag::Result<Part> read_part(const std::string& path);
 diag::Result<Part> parse_part(std::string_view bytes);

@@ -19,17 +19,24 @@ class Sharing {
 public:
     /// One shard: `part` says which, and of what call.
     static Sharing shard(Part part) { return {std::move(part), false}; }
-    /// All of them, as `joined` gives them.
-    static Sharing merge(Part all) { return {std::move(all), true}; }
+    /// All of them, as `joined` gives them, from these files.
+    static Sharing merge(Part all, std::vector<std::string> files) {
+        Sharing result(std::move(all), true);
+        result.files_ = std::move(files);
+        return result;
+    }
 
     bool merges() const { return merges_; }
     Part& part() { return part_; }
+    /// What is merged, which no result may be written over.
+    const std::vector<std::string>& files() const { return files_; }
 
 private:
     Sharing(Part part, bool merges) : part_(std::move(part)), merges_(merges) {}
 
     Part part_;
     bool merges_;
+    std::vector<std::string> files_;
 };
 
 /// As labelled_in of the first episode; where parts are merged, from them. Nothing where the sink

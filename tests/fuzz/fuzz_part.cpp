@@ -1,0 +1,46 @@
+// Parts of results: any bytes are a message, or a part that is the same after writing and reading
+// it again; what it says of episodes is read or refused. The bytes are read as a file, and once
+// more as the body of one, for few inputs have a checksum that is right.
+#include <string>
+
+#include "calibrate/scores.hpp"
+#include "calibrate/shift.hpp"
+#include "evaluate/episode_scores.hpp"
+#include "fuzz_target.hpp"
+
+namespace {
+
+using namespace etlc;
+
+template <class T>
+void read_result(const std::string& bytes) {
+    if (const auto result = episodes::unpacked<T>(bytes))
+        fuzz::require(episodes::packed(*result) == bytes, "writing a result changes nothing");
+}
+
+void read(const std::string& bytes) {
+    const auto part = episodes::parse_part(bytes);
+    if (!part) return fuzz::require_printable(part.failure().message);
+    const auto again = episodes::parse_part(episodes::write(*part));
+    fuzz::require(again && episodes::packed(*again) == episodes::packed(*part),
+                  "writing what was read changes nothing");
+    for (const auto& [place, result] : part->results) {
+        read_result<calibrate::Demonstration>(result);
+        read_result<calibrate::MonitorEpisode>(result);
+        read_result<evaluate::EpisodeResult>(result);
+    }
+    diag::Sink sink;
+    if (const auto all = episodes::joined({*part}, {"x"}, sink))
+        fuzz::require(all->results.size() == all->episodes.size(), "each episode has a result");
+    else
+        fuzz::require(sink.has_errors(), "what is not joined is reported");
+}
+
+}  // namespace
+
+int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+    const std::string text(fuzz::text(bytes, size));
+    read(text);
+    read(episodes::as_file(text));
+    return 0;
+}
