@@ -14,7 +14,7 @@ for preset in "${presets[@]}"; do
     fi
 done
 
-cmake/install_packages.sh build recordings test
+cmake/install_packages.sh build fleet recordings test
 . cmake/build.sh
 options=(-DETLC_BUILD_TESTS=ON)
 [ "${CI:-}" != true ] || options+=(-DETLC_WERROR=ON -DETLC_REQUIRE_TOOLS=ON)

@@ -9,6 +9,9 @@ install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)
 if(TARGET etlc_embed_worker)
   install(TARGETS etlc_embed_worker RUNTIME DESTINATION libexec/etlc)
 endif()
+if(TARGET etlc_mpi)
+  install(TARGETS etlc_mpi RUNTIME DESTINATION libexec/etlc)
+endif()
 install(TARGETS etlmon EXPORT etlmonTargets)
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon"
   DESTINATION "${CMAKE_INSTALL_INCLUDEDIR}"

@@ -363,7 +363,7 @@ int execute(int argc, char** argv) {
 int main(int argc, char** argv) {
     driver::prepare_process();
     try {
-        return execute(argc, argv);
+        return driver::go_on_in_ranks(argv) ? execute(argc, argv) : driver::kFailed;
     } catch (...) {
         return driver::say_what_failed();
     }

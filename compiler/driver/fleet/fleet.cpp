@@ -1,14 +1,18 @@
 #include "driver/fleet/fleet.hpp"
 
 #include <fmt/format.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <string_view>
 
+#include "data/files/child.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/traces/episodes.hpp"
 #include "driver/output_file.hpp"
+#include "driver/process.hpp"
 #include "driver/version.hpp"
 
 namespace etlc::driver {
@@ -92,6 +96,24 @@ bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink&
                fmt::format("shard {} of {}: {} of {}\n", part.shard, part.shards,
                            part.results.size(), diag::counted(part.episodes.size(), "episode"))) &&
            files.commit();
+}
+
+bool go_on_in_ranks(char** argv) {
+    const auto is_several = [](const char* name) {
+        const char* const ranks = std::getenv(name);
+        return ranks != nullptr && std::atoi(ranks) > 1;
+    };
+    const std::string_view command = argv[1] == nullptr ? "" : argv[1];
+    if (command != "calibrate" && command != "evaluate") return true;
+    if (std::getenv("ETLC_RANK") != nullptr) return true;
+    if (!is_several("OMPI_COMM_WORLD_SIZE") && !is_several("PMI_SIZE")) return true;
+    for (char** word = argv; *word != nullptr; ++word)
+        if (std::string_view(*word).starts_with("--shard")) return true;
+    ::execv(data::helper_path("etlc-mpi").c_str(), argv);
+    print_error(
+        "etlc: this is one of several MPI ranks, and etlc-mpi, which shares the call out among "
+        "them, cannot be run: install libopenmpi-dev and build etlc again\n");
+    return false;
 }
 
 std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& paths,

@@ -40,6 +40,10 @@ std::vector<std::string> merged_files(const episodes::Sharing* sharing);
 bool is_shard(const episodes::Sharing* sharing);
 bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink& sink);
 
+/// Where this process is one of several ranks of an MPI job, and the command is one that ranks
+/// share, goes on as etlc-mpi and does not return, unless it cannot be run: then false.
+bool go_on_in_ranks(char** argv);
+
 /// All parts of a call. Nothing where the sink now says why.
 std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& paths,
                                             diag::Sink& sink);

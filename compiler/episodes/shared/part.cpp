@@ -25,7 +25,7 @@ constexpr std::size_t kHash = 8;  ///< bytes, the last of the file: of all befor
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
 
 std::string ends_of(const std::string& path) {
-    constexpr std::uintmax_t kEnd = 1U << 16U;
+    constexpr std::uintmax_t kEnd = 1U << 12U;
     std::error_code error;
     const std::uintmax_t size = std::filesystem::file_size(path, error);
     std::ifstream file(path, std::ios::binary);

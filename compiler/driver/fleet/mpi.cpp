@@ -1,0 +1,215 @@
+// etlc-mpi calibrate|evaluate ...: the call, shared out among the ranks of an MPI job.
+// Takes: the arguments of `etlc`, which starts this where it finds itself in a job of several
+// ranks; besides them --parts FOLDER and --resume. Gives: what the call gives, byte for byte: ranks
+// run `etlc ... --shard I/N` as they become free, then the first runs `etlc merge`. Keeps true: a
+// shard that is done stays done, whatever becomes of the job; --resume runs only the others.
+#include <fcntl.h>
+#include <mpi.h>
+#include <spawn.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <string>
+#include <string_view>
+#include <system_error>
+#include <vector>
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// More than ranks, so that one that is done early takes over from one that is late.
+constexpr int kShardsPerRank = 8;
+
+struct Job {
+    std::vector<std::string> call;  ///< the arguments, from the command on
+    std::string parts = "etlc.parts";
+    bool resumes = false;
+    bool has_jobs = false;  ///< whether the call says how many threads
+    int rank = 0;
+    int shards = 0;
+};
+
+/// "" where there is no mistake in them.
+std::string read_arguments(int argc, char** argv, Job& job) {
+    constexpr std::string_view kParts = "--parts=";
+    for (int i = 1; i < argc; ++i) {
+        const std::string_view word = argv[i];
+        if (word == "--resume") {
+            job.resumes = true;
+        } else if (word == "--parts") {
+            if (++i == argc) return "--parts needs a folder";
+            job.parts = argv[i];
+        } else if (word.starts_with(kParts)) {
+            job.parts = word.substr(kParts.size());
+        } else {
+            job.has_jobs = job.has_jobs || word.starts_with("-j") || word.starts_with("--jobs");
+            job.call.emplace_back(word);
+        }
+    }
+    return job.parts.empty() ? "--parts needs a folder" : "";
+}
+
+fs::path etlc_path() {
+    std::error_code error;
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
+    const fs::path beside = folder / "etlc";
+    return fs::exists(beside, error) ? beside : folder.parent_path().parent_path() / "bin" / "etlc";
+}
+
+/// Runs etlc to its end. `is_heard`: what it prints is shown. Gives: its exit status; of one that a
+/// signal has ended, 128 and the signal.
+int run_etlc(const std::vector<std::string>& arguments, bool is_heard) {
+    std::string program = etlc_path().string();
+    std::vector<char*> words = {program.data()};
+    std::vector<std::string> copies = arguments;
+    for (std::string& copy : copies) words.push_back(copy.data());
+    words.push_back(nullptr);
+    posix_spawn_file_actions_t actions;
+    posix_spawn_file_actions_init(&actions);
+    if (!is_heard)
+        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    pid_t process = 0;
+    const int error =
+        posix_spawn(&process, program.c_str(), &actions, nullptr, words.data(), environ);
+    posix_spawn_file_actions_destroy(&actions);
+    if (error != 0) {
+        std::fprintf(stderr, "etlc-mpi: %s cannot be run: %s\n", program.c_str(),
+                     std::strerror(error));
+        return 1;
+    }
+    int status = 0;
+    while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
+    }
+    return WIFEXITED(status) ? WEXITSTATUS(status) : 128 + WTERMSIG(status);
+}
+
+std::string part_path(const Job& job, int shard) {
+    return (fs::path(job.parts) / (std::to_string(shard) + ".part")).string();
+}
+
+/// 0 where the shard's part is there.
+int run_shard(const Job& job, int shard) {
+    const std::string part = part_path(job, shard);
+    std::error_code error;
+    if (fs::exists(part, error)) return 0;  // of the job that is resumed: files appear whole
+    const std::string name = std::to_string(shard) + "/" + std::to_string(job.shards);
+    std::vector<std::string> call = job.call;
+    call.insert(call.end(), {"--shard", name, "--part", part});
+    if (!job.has_jobs) call.insert(call.end(), {"--jobs", "1"});
+    const int status = run_etlc(call, false);
+    if (status != 0)
+        std::fprintf(stderr, "etlc-mpi: rank %d: shard %s ended with status %d; --resume goes on\n",
+                     job.rank, name.c_str(), status);
+    return status;
+}
+
+/// Hands out 0, 1, 2, ... among the ranks.
+class Counter {
+public:
+    Counter() {
+        int rank = 0;
+        MPI_Comm_rank(MPI_COMM_WORLD, &rank);
+        const MPI_Aint size = rank == 0 ? sizeof(int) : 0;
+        MPI_Win_allocate(size, sizeof(int), MPI_INFO_NULL, MPI_COMM_WORLD, &memory_, &window_);
+        if (rank == 0) *memory_ = 0;
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+    Counter(const Counter&) = delete;
+    Counter& operator=(const Counter&) = delete;
+    ~Counter() { MPI_Win_free(&window_); }
+
+    /// The count, and adds `n` to it.
+    int take(int n = 1) {
+        int before = 0;
+        MPI_Win_lock(MPI_LOCK_EXCLUSIVE, 0, 0, window_);
+        MPI_Fetch_and_op(&n, &before, MPI_INT, 0, 0, MPI_SUM, window_);
+        MPI_Win_unlock(0, window_);
+        return before;
+    }
+
+private:
+    int* memory_ = nullptr;
+    MPI_Win window_{};
+};
+
+/// The greatest exit status of a shard, of any rank.
+int run_shards(const Job& job) {
+    int worst = 0;
+    {
+        Counter counter;
+        for (int next = counter.take(); next < job.shards; next = counter.take()) {
+            worst = std::max(worst, run_shard(job, next + 1));
+            if (worst != 0) counter.take(job.shards);  // nobody begins another
+        }
+        MPI_Barrier(MPI_COMM_WORLD);
+    }
+    int all = 0;
+    MPI_Allreduce(&worst, &all, 1, MPI_INT, MPI_MAX, MPI_COMM_WORLD);
+    return all;
+}
+
+/// By the first rank, before any shard begins. 0 where they may.
+int make_folder(const Job& job) {
+    std::error_code error;
+    const bool is_new = fs::create_directories(job.parts, error);
+    if (error) {
+        std::fprintf(stderr, "etlc-mpi: %s: cannot be made: %s\n", job.parts.c_str(),
+                     error.message().c_str());
+        return 1;
+    }
+    if (is_new || job.resumes || fs::is_empty(job.parts, error)) return 0;
+    std::fprintf(stderr,
+                 "etlc-mpi: %s: holds parts of another job; expected --resume, which goes on with "
+                 "them, or another folder, --parts FOLDER\n",
+                 job.parts.c_str());
+    return 2;
+}
+
+int merge(const Job& job) {
+    std::vector<std::string> call = {"merge"};
+    for (int shard = 1; shard <= job.shards; ++shard) call.push_back(part_path(job, shard));
+    const int status = run_etlc(call, true);
+    if (status != 0) return status;
+    std::error_code error;
+    for (std::size_t i = 1; i < call.size(); ++i) fs::remove(call[i], error);
+    fs::remove(job.parts, error);  // where nothing else lies in it
+    return 0;
+}
+
+int of_first_rank(int status) {
+    MPI_Bcast(&status, 1, MPI_INT, 0, MPI_COMM_WORLD);
+    return status;
+}
+
+int run(int argc, char** argv) {
+    Job job;
+    int ranks = 1;
+    MPI_Comm_rank(MPI_COMM_WORLD, &job.rank);
+    MPI_Comm_size(MPI_COMM_WORLD, &ranks);
+    job.shards = kShardsPerRank * ranks;
+    if (const std::string mistake = read_arguments(argc, argv, job); !mistake.empty()) {
+        if (job.rank == 0) std::fprintf(stderr, "etlc-mpi: %s\n", mistake.c_str());
+        return 2;
+    }
+    int status = of_first_rank(job.rank == 0 ? make_folder(job) : 0);
+    if (status == 0) status = run_shards(job);
+    if (status == 0) status = of_first_rank(job.rank == 0 ? merge(job) : 0);
+    return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    ::setenv("ETLC_RANK", "1", 1);  // so that the etlc that this runs is not of several ranks
+    MPI_Init(&argc, &argv);
+    const int status = run(argc, argv);
+    MPI_Finalize();
+    return status;
+}

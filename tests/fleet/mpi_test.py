@@ -1,0 +1,111 @@
+#!/usr/bin/env python3
+"""mpi_test.py ETLC MPIRUN: two ranks of an MPI job give what one process gives; a job that is
+killed leaves the parts that were done, and --resume goes on with them."""
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+
+import numpy as np
+
+ETLC = os.path.abspath(sys.argv[1])
+MPIRUN = [sys.argv[2], "--oversubscribe", "-n", "2", ETLC]
+SPEC = """
+spec fleet;
+input z : f32[4];
+input x : f32;
+target goal = [[0, 0, 0, 0], [1, 0, 0, 0]];
+predicate near = min l2(z, goal) <= calibrated(conformal, alpha = 0.2);
+truth near = x < 1;
+monitor arrives = F near;
+"""
+EPISODES, STEPS = 48, 6000
+os.environ.update(OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                  OMPI_MCA_btl="self,vader", OMPI_MCA_rmaps_base_oversubscribe="1")
+
+
+def make_episodes(folder, seed):
+    os.mkdir(folder)
+    numbers = np.random.default_rng(seed)
+    for number in range(EPISODES):
+        x = np.cumsum(numbers.normal(0, 0.1, STEPS)) + 1
+        z = np.stack([x] * 4, 1) / 2 + numbers.normal(0, 0.1, (STEPS, 4))
+        np.savetxt(f"{folder}/{number:02}.csv", np.column_stack([z, x]), "%.7g", ",",
+                   header="z[0],z[1],z[2],z[3],x", comments="")
+
+
+def call(*words, status=0):
+    done = subprocess.run(words, capture_output=True, text=True)
+    assert (done.returncode == 0) == (status == 0), (words, done.stdout, done.stderr)
+    return done.stdout if status == 0 else done.stderr
+
+
+def same(*words):
+    """What two ranks print and write is what one process does; no part is left."""
+    printed = call(ETLC, *words)
+    one = pathlib.Path("out.json").read_bytes()
+    os.remove("out.json")
+    assert call(*MPIRUN, *words) == printed
+    assert pathlib.Path("out.json").read_bytes() == one and not os.path.exists("etlc.parts")
+    return one
+
+
+def processes_with(word):
+    """Of this test, with this argument."""
+    found = []
+    for path in pathlib.Path("/proc").glob("[0-9]*/cmdline"):
+        try:
+            words = path.read_bytes().decode(errors="replace").split("\0")
+        except OSError:  # it has ended meanwhile
+            continue
+        of_test = any(os.path.abspath("kept") in one for one in words)
+        if of_test and word in words:
+            found.append(int(path.parent.name))
+    return found
+
+
+def killed_and_resumed(words, one):
+    job = subprocess.Popen([*MPIRUN, *words, "--parts", os.path.abspath("kept")],
+                           stderr=subprocess.DEVNULL)
+    parts = pathlib.Path("kept")
+    while not list(parts.glob("*.part")):
+        assert job.poll() is None, "the job ended before it was killed"
+        time.sleep(0.01)
+    for process in processes_with("--parts"):  # the ranks, and mpirun
+        os.kill(process, signal.SIGKILL)
+    assert job.wait() != 0 and not os.path.exists("out.json")
+    while processes_with("--part"):
+        time.sleep(0.01)  # what a rank had begun ends by itself
+    done = {path: path.stat().st_mtime_ns for path in parts.glob("*.part")}
+    assert 0 < len(done) < 16, len(done)
+    refused = call(*MPIRUN, *words, "--parts", "kept", status=1)
+    assert "kept: holds parts of another job" in refused, refused
+    assert {path: path.stat().st_mtime_ns for path in done} == done
+    call(*MPIRUN, *words, "--parts", "kept", "--resume")
+    assert pathlib.Path("out.json").read_bytes() == one and not parts.exists()
+
+
+def main():
+    pathlib.Path("fleet.etl").write_text(SPEC)
+    make_episodes("one", 1)
+    make_episodes("two", 2)
+    calibrate = ["calibrate", "fleet.etl", "--data", "one", "-o", "out.json"]
+    one = same(*calibrate)
+    os.rename("out.json", "thresholds.json")
+    same("evaluate", "fleet.etl", "--thresholds", "thresholds.json", "--data", "two", "--json",
+         "out.json")
+    os.remove("out.json")
+    killed_and_resumed(calibrate, one)
+    os.remove("out.json")
+    pathlib.Path("one/07.csv").write_text("z[0],z[1],z[2],z[3],x\n1,2,3,4,five\n")
+    refused = call(*MPIRUN, *calibrate, status=1)
+    assert "one/07.csv:2:9" in refused and not os.path.exists("out.json"), refused
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    main()
+    os.chdir("/")
