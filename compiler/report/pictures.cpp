@@ -6,7 +6,6 @@
 #include <filesystem>
 #include <optional>
 
-#include "check/encoders/encoded.hpp"
 #include "data/arrays/archive.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/files/file.hpp"
@@ -88,10 +87,6 @@ diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::ui
     }
     if (result.steps.empty()) result.why = "one picture is larger than there is room for";
     return result;
-}
-
-std::string address(const Picture& picture) {
-    return "data:image/png;base64," + base64(png(picture));
 }
 
 std::string sheet(const std::vector<Picture>& pictures, std::size_t stride) {
@@ -235,60 +230,6 @@ diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string
     if (paths.size() == 1 && data::is_video(paths[0]))
         return from_video(paths[0], length, most_bytes);
     return from_files(paths, length.steps, most_bytes);
-}
-
-namespace {
-
-/// The images of these rows, or the frames of a video, row by row.
-diag::Result<std::vector<Picture>> decoded_rows(const check::Model& model,
-                                                const check::Encoded& of) {
-    const std::string& spec = model.file.path();
-    const auto files = check::files_of(of, spec);
-    if (!files) return files.failure();
-    std::vector<std::string> paths;
-    for (const std::string& file : *files) paths.push_back(data::beside(spec, file));
-    std::vector<std::uint64_t> wanted = of.frames;
-    std::sort(wanted.begin(), wanted.end());
-    wanted.erase(std::unique(wanted.begin(), wanted.end()), wanted.end());
-    const auto source =
-        of.is_video ? data::open_video(paths[0], {.only = wanted}) : data::open_images(paths);
-    if (!source) return of_file(source.failure(), paths[0]);
-    std::vector<Picture> decoded;
-    data::Frame frame;
-    for (;;) {
-        const auto more = (*source)->next(frame);
-        if (!more)
-            return of_file(more.failure(), paths[std::min(decoded.size(), paths.size() - 1)]);
-        if (!*more) break;
-        decoded.push_back(shrunk(frame.rgb, frame.width, frame.height, 3, kMostPixels));
-    }
-    if (!of.is_video) return decoded;
-    std::vector<Picture> rows;
-    for (const std::uint64_t number : of.frames) {
-        const auto at = std::lower_bound(wanted.begin(), wanted.end(), number);
-        rows.push_back(decoded[static_cast<std::size_t>(at - wanted.begin())]);
-    }
-    return rows;
-}
-
-}  // namespace
-
-diag::Result<std::vector<std::string>> pictures_of(const check::Model& model,
-                                                   const check::Target& target,
-                                                   std::uint64_t most_bytes) {
-    std::vector<std::string> addresses(target.rows);
-    for (const check::EncodedRows& part : target.encoded) {
-        const auto pictures = decoded_rows(model, model.encoded[part.encoded]);
-        if (!pictures) return pictures.failure();
-        const std::size_t count = std::min<std::size_t>(part.count, pictures->size());
-        for (std::size_t i = 0; i < count; ++i) {
-            std::string text = address((*pictures)[i]);
-            if (text.size() > most_bytes) return addresses;
-            most_bytes -= text.size();
-            addresses[part.first + i] = std::move(text);
-        }
-    }
-    return addresses;
 }
 
 }  // namespace etlc::report

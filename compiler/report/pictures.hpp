@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "check/model/model.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::report {
@@ -42,11 +41,5 @@ struct Length {
 /// Failures do not name the episode: a file that is no picture, an array that holds none.
 diag::Result<Pictures> pictures_of(const FramesOption& option, const std::string& episode,
                                    const Length& length, std::uint64_t most_bytes);
-
-/// Of the rows of a target that are made of images, each a PNG as a data: address; empty texts
-/// where a row is of none, or has no room. A failure: what could not be decoded, with its path.
-diag::Result<std::vector<std::string>> pictures_of(const check::Model& model,
-                                                   const check::Target& target,
-                                                   std::uint64_t most_bytes);
 
 }  // namespace etlc::report

@@ -49,6 +49,10 @@ std::string png(const Picture& picture) {
            chunk("IDAT", up.size() < plain.size() ? up : plain) + chunk("IEND", "");
 }
 
+std::string address(const Picture& picture) {
+    return "data:image/png;base64," + base64(png(picture));
+}
+
 Picture shrunk(std::string_view pixels, std::uint32_t width, std::uint32_t height,
                std::uint32_t channels, std::uint32_t most) {
     const std::uint32_t factor = (std::max(width, height) + most - 1) / most;

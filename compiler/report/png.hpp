@@ -14,6 +14,8 @@ struct Picture {
 };
 
 std::string png(const Picture& picture);
+/// The same as a data: address.
+std::string address(const Picture& picture);
 
 /// No wider or higher than this, by the mean of the pixels that fall into one.
 Picture shrunk(std::string_view pixels, std::uint32_t width, std::uint32_t height,

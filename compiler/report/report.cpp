@@ -14,6 +14,7 @@
 #include "report/document.hpp"
 #include "report/page.hpp"
 #include "report/picture_of_trace.hpp"
+#include "report/target_pictures.hpp"
 
 namespace etlc::report {
 
@@ -202,30 +203,6 @@ bool check_pattern(const Request& request, diag::Sink& sink) {
     return false;
 }
 
-/// Of the targets that the distances which are drawn look at.
-std::map<Index, std::vector<std::string>> pictures_of_targets(const Scene& scene,
-                                                              std::uint64_t most_bytes,
-                                                              diag::Sink& sink) {
-    std::map<Index, std::vector<std::string>> found;
-    const check::Model& model = *scene.plan.model;
-    for (const Index p : scene.predicates) {
-        const Index index = declared_target(model, model.predicates[p]);
-        if (index == check::kNone || model.targets[index].encoded.empty()) continue;
-        if (found.find(index) != found.end()) continue;
-        auto pictures = pictures_of(model, model.targets[index], most_bytes);
-        if (!pictures) {
-            sink.report({diag::Code::frames_left_out, pictures.failure().message})
-                .note(fmt::format("target '{}' is shown without pictures",
-                                  model.targets[index].name));
-            continue;
-        }
-        for (const std::string& address : *pictures)
-            most_bytes -= std::min<std::uint64_t>(most_bytes, address.size());
-        found.emplace(index, std::move(*pictures));
-    }
-    return found;
-}
-
 }  // namespace
 
 std::optional<std::string> page(const Material& material, const Request& request,
@@ -251,7 +228,8 @@ std::optional<std::string> page(const Material& material, const Request& request
         return std::nullopt;
     }
     scene.planes = std::move(*drawn);
-    scene.target_pictures = pictures_of_targets(scene, request.megabytes * 1'000'000 / 10, sink);
+    scene.target_pictures = pictures_of_targets(*plan.model, scene.predicates,
+                                                request.megabytes * 1'000'000 / 10, sink);
 
     std::vector<evaluate::EpisodeRow> judged;
     std::string figures = "null";

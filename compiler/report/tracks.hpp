@@ -5,7 +5,6 @@
 #pragma once
 
 #include <cstdint>
-#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -17,6 +16,7 @@
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
 #include "report/plane.hpp"
+#include "report/target_pictures.hpp"
 
 namespace etlc::report {
 
@@ -30,8 +30,7 @@ struct Scene {
     const plan::Plan* truth_plan;    ///< of the ground truth; null with it
     const data::NamesInFile& names;
     std::vector<Plane> planes;  ///< of the points that are drawn
-    /// By declared target: a picture a row, a data: address or empty.
-    std::map<Index, std::vector<std::string>> target_pictures;
+    TargetPictures target_pictures;
 };
 
 /// A number a step. `of`: distance, robustness, lower, upper, x, y.
