@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "report/blob.hpp"
-#include "report/pictures.hpp"
+#include "report/pictures/pictures.hpp"
 #include "report/report.hpp"
 #include "report/tracks.hpp"
 

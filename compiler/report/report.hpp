@@ -15,7 +15,7 @@
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
 #include "pipeline/compile.hpp"
-#include "report/pictures.hpp"
+#include "report/pictures/pictures.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::report {

@@ -1,4 +1,4 @@
-#include "report/png.hpp"
+#include "report/pictures/png.hpp"
 
 #include <zlib.h>
 

@@ -1,4 +1,4 @@
-#include "report/target_pictures.hpp"
+#include "report/pictures/target_pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -10,7 +10,7 @@
 #include "data/files/paths.hpp"
 #include "data/frames/frames.hpp"
 #include "report/document.hpp"
-#include "report/png.hpp"
+#include "report/pictures/png.hpp"
 
 namespace etlc::report {
 

@@ -1,4 +1,4 @@
-#include "report/pictures.hpp"
+#include "report/pictures/pictures.hpp"
 
 #include <fmt/format.h>
 
@@ -14,7 +14,7 @@
 #include "data/quote.hpp"
 #include "data/traces/trace.hpp"
 #include "report/pack.hpp"
-#include "report/png.hpp"
+#include "report/pictures/png.hpp"
 
 namespace etlc::report {
 
