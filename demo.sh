@@ -49,6 +49,7 @@ show build/release/examples/dubins/dubins "$out/hundred_drives"
 title "The same drives as a page to look at, the worst first"
 show etlc report examples/dubins/dubins.etl --data "$out/hundred_drives" --frames camera \
     -o "$out/dubins.html"
+echo "Open $out/dubins.html in a browser."
 
 title "The paper's experiment: thresholds from labelled drives, by both of its methods"
 drives=$out/drives
