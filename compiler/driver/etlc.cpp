@@ -281,7 +281,6 @@ int merge_command(int argc, char** argv) {
     app.add_option("-o,--output", call.output.result,
                    "where the result goes (default: where the call says): thresholds, or JSON")
         ->type_name("FILE");
-    driver::add_diagnostics_options(app, call.warnings, call.diagnostics);
     if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     diag::Sink sink;
     auto sharing = driver::read_parts(paths, sink);

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
+#include "data/traces/trace.hpp"
 
 namespace etlc::driver {
 
@@ -18,7 +19,8 @@ namespace {
 namespace fs = std::filesystem;
 using diag::Code;
 
-std::string words(const std::string& path) {
+std::string words(const std::string& path, bool is_input) {
+    if (is_input && path == data::kStandardInput) return "standard input";
     return path == kStandardOutput ? "standard output" : path;
 }
 
@@ -32,10 +34,11 @@ struct Identity {
     auto operator<=>(const Identity&) const = default;
 };
 
-std::optional<Identity> identity(const std::string& path) {
+/// `standard`: the descriptor that "-" stands for.
+std::optional<Identity> identity(const std::string& path, int standard) {
     struct stat status {};
     const bool is_standard = path == kStandardOutput;
-    if ((is_standard ? ::fstat(STDOUT_FILENO, &status) : ::stat(path.c_str(), &status)) == 0) {
+    if ((is_standard ? ::fstat(standard, &status) : ::stat(path.c_str(), &status)) == 0) {
         if (!S_ISREG(status.st_mode)) return {};
         return Identity{status.st_dev, status.st_ino, {}};
     }
@@ -56,11 +59,12 @@ bool check_outputs(const std::vector<std::string>& outputs, const std::vector<st
     };
     std::map<Identity, Use> known;
     for (const std::string& path : inputs)
-        if (const auto file = identity(path)) known.try_emplace(*file, Use{path, true});
+        if (const auto file = identity(path, STDIN_FILENO))
+            known.try_emplace(*file, Use{path, true});
     bool sound = true;
     bool prints = false;
     for (const std::string& path : outputs) {
-        const auto file = path.empty() ? std::nullopt : identity(path);
+        const auto file = path.empty() ? std::nullopt : identity(path, STDOUT_FILENO);
         std::optional<Use> other;
         if (path == kStandardOutput && std::exchange(prints, true)) other = Use{path, false};
         if (file)
@@ -69,18 +73,18 @@ bool check_outputs(const std::vector<std::string>& outputs, const std::vector<st
         if (!other) continue;
         sound = false;
         const std::string same =
-            other->path == path ? "" : fmt::format(", as {}", words(other->path));
+            other->path == path ? "" : fmt::format(", as {}", words(other->path, other->is_input));
         sink.report(data::in_file(
             {Code::output_clash, other->is_input
                                      ? fmt::format("is read by this call{}: it would be lost", same)
                                      : fmt::format("is another output of this call{}", same)},
-            words(path)));
+            words(path, false)));
     }
     return sound;
 }
 
 bool OutputFiles::report(const diag::Failure& failure, const std::string& path) {
-    sink_.report(data::in_file(failure, words(path)));
+    sink_.report(data::in_file(failure, words(path, false)));
     return false;
 }
 

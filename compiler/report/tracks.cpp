@@ -198,8 +198,8 @@ void TrackReader::add_verdicts(Tracks& tracks) const {
             upper.values.push_back(verdict.upper);
             status.values.push_back(code_of(verdict));
         }
-        // A sliding monitor's bounds are its robustness; of others the page takes it for a bound
-        // that is not there.
+        // A bound that equals the robustness is left out, and drawn from it. A sliding monitor has
+        // no others.
         for (Numbers* bound : {&lower, &upper})
             if (!scene_.plan.monitors[m].sliding && !same_numbers(*bound, robustness))
                 tracks.numbers.push_back(std::move(*bound));

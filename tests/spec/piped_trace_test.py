@@ -33,6 +33,17 @@ def main():
     rest, _ = running.communicate()
     assert running.returncode == 0 and "".join(heard) + rest == of_file, (heard, rest, of_file)
 
+    explain = [ETLC, "explain", "t.etl", "--monitor", "n", "--trace"]
+    for words in ([], ["--step", "2"]):
+        with open("t.csv", encoding="utf-8") as trace:
+            piped = subprocess.run([*explain, "-", *words], stdin=trace, capture_output=True)
+        whole = subprocess.run([*explain, "t.csv", *words], capture_output=True)
+        assert piped.stdout == whole.stdout and whole.returncode == 0, (piped, whole)
+    with open("t.csv", encoding="utf-8") as trace:
+        lost = subprocess.run([ETLC, "run", "t.etl", "--trace", "-", "-o", "t.csv"], stdin=trace,
+                              capture_output=True, text=True)
+    assert lost.returncode == 1 and "as standard input: it would be lost" in lost.stderr, lost
+
     def refused(text, *words, status):
         done = subprocess.run([ETLC, "run", "t.etl", "--trace", "-", *words], input=text,
                               capture_output=True, text=True)

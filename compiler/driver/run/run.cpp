@@ -44,9 +44,7 @@ public:
     bool execute() {
         if (!check_names({plan_.model}, request_.names, sink_)) return false;
         std::vector<std::string> inputs = plan_.model->dependencies;
-        inputs.push_back(spec_.path());
-        if (request_.trace != data::kStandardInput)
-            inputs.push_back(data::trace_file(request_.trace));
+        inputs.insert(inputs.end(), {spec_.path(), data::trace_file(request_.trace)});
         if (!check_outputs({request_.output, request_.html, request_.svg}, inputs, sink_))
             return false;
         if (writes_rows() && !output_.begin(request_.output)) return false;

@@ -36,7 +36,7 @@ void fields(Archive& archive, Part& part) {
 
 /// Which shard reads an episode, 1 to `shards`: by the size of its file, its first and last 4 KiB
 /// and the group in it, so neither the name of a file nor the order of files matters. The end of an
-/// .npz file has a checksum of all of it.
+/// .npz file has checksums of its arrays.
 std::uint32_t shard_of(const std::string& episode, std::uint32_t shards);
 
 std::string write(const Part& part);

@@ -24,7 +24,6 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kEpisode = "{episode}";
-constexpr std::uint32_t kMostPixels = 96;  ///< of a side
 constexpr std::size_t kMostPictures = 120;
 constexpr std::uint64_t kLargestFile = 64U << 20U;
 
@@ -80,10 +79,10 @@ diag::Result<Pictures> from_files(const std::vector<std::string>& paths, std::ui
     if (!first) return first.failure();
     const std::size_t most = std::min<std::uint64_t>(kMostPictures, most_bytes / first->size());
     for (const std::uint64_t step : chosen_steps(steps, most)) {
-        auto address = address_of(paths[step]);
-        if (!address) return address.failure();
+        auto file = address_of(paths[step]);
+        if (!file) return file.failure();
         result.steps.push_back(step);
-        result.files.push_back(std::move(*address));
+        result.files.push_back(std::move(*file));
     }
     if (result.steps.empty()) result.why = "one picture is larger than there is room for";
     return result;

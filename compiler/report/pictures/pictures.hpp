@@ -1,8 +1,8 @@
 // What the camera saw, small enough for a page.
 // Takes: what --frames names, and an episode. Gives: pictures of some of its steps, evenly: one PNG
-// of all of them where they come from an array, else the files as they are. Keeps true: a picture
-// stands beside the step that it was taken at; where pictures and steps are not as many, there are
-// none. Images and video are decoded by etlc-embed (data/frames/frames.hpp).
+// of all of them where they come from an array or a video, else the files as they are. Keeps true:
+// a picture stands beside the step that it was taken at; where pictures and steps are not as many,
+// there are none.
 #pragma once
 
 #include <cstdint>

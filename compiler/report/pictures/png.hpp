@@ -17,6 +17,8 @@ std::string png(const Picture& picture);
 /// The same as a data: address.
 std::string address(const Picture& picture);
 
+inline constexpr std::uint32_t kMostPixels = 96;  ///< of a side of what the page shows
+
 /// No wider or higher than this, by the mean of the pixels that fall into one.
 Picture shrunk(std::string_view pixels, std::uint32_t width, std::uint32_t height,
                std::uint32_t channels, std::uint32_t most);

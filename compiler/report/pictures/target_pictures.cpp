@@ -16,8 +16,6 @@ namespace etlc::report {
 
 namespace {
 
-constexpr std::uint32_t kMostPixels = 96;  ///< of a side
-
 /// Decodes the images that one target is made of.
 class Rows {
 public:
