@@ -1,7 +1,7 @@
 // What was made of an episode as bytes, and back.
 // Takes: values whose type has a function `fields(archive, value)`, which names every member in
 // order, for both directions. Gives: their bytes, the same on every machine; or the values. Keeps
-// true: what was written reads back equal, bit for bit; bytes that are too few or too many are
+// true: what was written reads back equal, bit for bit; bytes that no value is written as are
 // noticed, and take no more memory than they have.
 #pragma once
 
@@ -91,7 +91,7 @@ public:
     void operator()(T&... values) {
         (get(values), ...);
     }
-    /// Whether all bytes have been read, and none was missing.
+    /// Whether all bytes have been read, none was missing, and a Writer could have written them.
     bool is_done() const { return good_ && rest_.empty(); }
 
 private:
@@ -99,10 +99,13 @@ private:
 
     template <class T>
     void get(T& value) {
-        if constexpr (is_number<T>)
-            value = from_bits<T>(number());
-        else
+        if constexpr (is_number<T>) {
+            const std::uint64_t bits = number();
+            value = from_bits<T>(bits);
+            good_ = good_ && bits_of(value) == bits;  // a bool of 2 is none
+        } else {
             fields(*this, value);
+        }
     }
     void get(std::string& text) {
         const std::size_t size = count();
@@ -117,13 +120,16 @@ private:
     }
     template <class T>
     void get(std::optional<T>& value) {
-        if (number() != 0) get(value.emplace());
+        bool has_value = false;
+        get(has_value);
+        if (has_value) get(value.emplace());
     }
     template <class Key, class Value>
     void get(std::map<Key, Value>& values) {
         for (std::size_t n = count(); n > 0 && good_; --n) {
             Key key{};
             get(key);
+            good_ = good_ && (values.empty() || values.rbegin()->first < key);  // as it is written
             get(values[key]);
         }
     }
