@@ -3,12 +3,11 @@
 #include <charconv>
 
 #include "driver/output_file.hpp"
+#include "episodes/shared/part.hpp"
 
 namespace etlc::driver {
 
 namespace {
-
-constexpr std::uint32_t kMostShards = 1'000'000;
 
 /// "3/64"
 bool read_shard(std::string_view text, ShardRequest& request) {
@@ -17,7 +16,7 @@ bool read_shard(std::string_view text, ShardRequest& request) {
     if (error != std::errc() || slash == end || *slash != '/') return false;
     const auto [rest, wrong] = std::from_chars(slash + 1, end, request.shards);
     return wrong == std::errc() && rest == end && request.shard >= 1 &&
-           request.shard <= request.shards && request.shards <= kMostShards;
+           request.shard <= request.shards && request.shards <= episodes::kMostShards;
 }
 
 }  // namespace

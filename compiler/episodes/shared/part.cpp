@@ -120,7 +120,8 @@ diag::Result<Part> parse_part(std::string_view bytes) {
     hash(data::xxh64(bytes.substr(0, bytes.size() - kHash)));
     if (bytes.substr(bytes.size() - kHash) != hash.bytes()) return damaged;
     auto part = unpacked<Part>(bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHash));
-    if (!part || part->shard == 0 || part->shard > part->shards || part->call.empty())
+    if (!part || part->shard == 0 || part->shard > part->shards || part->shards > kMostShards ||
+        part->call.empty())
         return damaged;
     if (!part->results.empty() && part->results.rbegin()->first >= part->episodes.size())
         return damaged;

@@ -17,6 +17,8 @@
 
 namespace etlc::episodes {
 
+inline constexpr std::uint32_t kMostShards = 1'000'000;
+
 struct Part {
     std::string etlc;               ///< version that wrote it
     std::vector<std::string> call;  ///< the arguments, from the command on, without the shard
