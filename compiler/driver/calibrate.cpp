@@ -8,7 +8,7 @@
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
-#include "driver/version.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
@@ -89,7 +89,7 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     calibration.episodes =
         find_shared_episodes(calibration.sharing, request.data, request.groups, sink);
     if (sink.has_errors()) return false;
-    calibration.version = kVersion;
+    calibration.version = library::kVersion;
     calibration.fitted = fitted_file(*model, file.path(), request.fitted);
     calibration.progress = episodes_progress();
     const std::string output =

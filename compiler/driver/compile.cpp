@@ -4,8 +4,9 @@
 
 #include <set>
 
-#include "driver/version.hpp"
 #include "emit/emit.hpp"
+#include "library/open.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "plan/stored.hpp"
 #include "source/escape.hpp"
@@ -14,10 +15,7 @@ namespace etlc::driver {
 
 std::optional<Compiled> compile(const source::File& file, const Request& request,
                                 diag::Sink& sink) {
-    ast::Spec spec = parse::parse(file, sink);
-    auto model = check::check(std::move(spec), file, request.check, sink);
-    if (!model || sink.has_errors()) return std::nullopt;
-    return pipeline::compile(std::move(*model), request, sink);
+    return library::compile(file, request.check, request, sink);
 }
 
 namespace {
@@ -27,8 +25,8 @@ std::optional<std::string> text_of(const Compiled& compiled, const Request& requ
     if (request.emit == "plan") return source::visible_lines(plan::print(compiled.plan));
     for (const emit::Backend& backend : emit::backends())
         if (backend.name == request.emit)
-            return backend.emit(compiled.plan, {request.name_space, kVersion, request.standalone,
-                                                request.targets_file});
+            return backend.emit(compiled.plan, {request.name_space, library::kVersion,
+                                                request.standalone, request.targets_file});
     return std::nullopt;
 }
 

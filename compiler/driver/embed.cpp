@@ -8,7 +8,7 @@
 
 #include "data/files/file.hpp"
 #include "driver/output_file.hpp"
-#include "driver/version.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
@@ -87,7 +87,7 @@ bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& si
     if (!model || !has_work(*model, !request.data.empty(), sink) || sink.refused()) return false;
 
     embed::Request asked = request.embed;
-    asked.version = kVersion;
+    asked.version = library::kVersion;
     auto embeddings = embed::describe_encoders(*model, asked, sink);
     if (!embeddings) return false;
     const double rate = model->step_seconds > 0 ? 1 / model->step_seconds : 0;

@@ -34,7 +34,8 @@
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/run/run.hpp"
-#include "driver/version.hpp"
+#include "library/open.hpp"
+#include "library/version.hpp"
 #include "report/page.hpp"
 
 namespace {
@@ -81,7 +82,7 @@ int with_specs(const Call& call, const std::vector<std::string>& paths, SpecWarn
     try {
         bool all_read = true;
         for (std::size_t i = 0; i < paths.size(); ++i)
-            all_read = driver::read_spec(paths[i], files[i], sinks[i]) && all_read;
+            all_read = library::read_spec(paths[i], files[i], sinks[i]) && all_read;
         if (all_read) work(files, sinks);
     } catch (const std::bad_alloc&) {
         report_lack();
@@ -137,7 +138,7 @@ int compile_command(int argc, char** argv) {
         "etlc report SPEC.etl --data FILE... -o PAGE.html",
         "etlc");
     app.footer(kExitStatus);
-    app.set_version_flag("--version", fmt::format("etlc {}", driver::kVersion));
+    app.set_version_flag("--version", fmt::format("etlc {}", library::kVersion));
     add_common_options(app, call);
     driver::add_compile_options(app, call.request, call.output, call.check_only);
     if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;

@@ -5,9 +5,9 @@
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
-#include "driver/version.hpp"
 #include "fit/fit.hpp"
 #include "fit/suggest/suggest.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
@@ -52,7 +52,7 @@ bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) 
 
     fit::Request asked = request.fit;
     if (!check_names({&*model}, asked.names, sink)) return false;
-    asked.version = kVersion;
+    asked.version = library::kVersion;
     asked.progress = episodes_progress();
     const std::string output =
         request.output.empty() ? fitted::default_path(file.path()) : request.output;

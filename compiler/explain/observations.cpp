@@ -44,6 +44,11 @@ Observations::Observations(const check::Model& model, check::Values values,
     for (Index a = 0; a < atoms_.size(); ++a)
         (atoms_[a].is_predicate ? of_predicates_ : of_inputs_)[atoms_[a].index] = a;
     columns_.resize(atoms_.size());
+    for (Index a = 0; a < atoms_.size(); ++a) {
+        if (!atoms_[a].is_predicate) continue;
+        columns_[a].distances = model.predicates[atoms_[a].index].distances();
+        columns_[a].nearest.resize(columns_[a].distances.size());
+    }
     for (const Index p : predicates) columns_[of_predicates_[p]].is_looked_at = true;
     for (const Index input : plan_.inputs)
         if (model.inputs[input].type == check::InputType::boolean)
@@ -64,16 +69,29 @@ void Observations::add(const plan::Evaluator& evaluator) {
         Column& column = columns_[a];
         if (atom.is_predicate) {
             column.measured.push_back(evaluator.distance(atom.index));
-            const std::vector<Index> distances = model_.predicates[atom.index].distances();
-            column.nearest.resize(distances.size());
-            for (std::size_t n = 0; n < distances.size(); ++n)
-                column.nearest[n].push_back(evaluator.measured(distances[n]).nearest);
+            for (std::size_t n = 0; n < column.distances.size(); ++n)
+                column.nearest[n].push_back(evaluator.measured(column.distances[n]).nearest);
             continue;
         }
         const float* flag = evaluator.input(atom.index);
         column.measured.push_back(flag == nullptr ? kMissing : *flag);
     }
     ++steps_;
+}
+
+void Observations::reserve(std::uint64_t steps) {
+    for (Column& column : columns_) {
+        column.measured.reserve(steps);
+        for (std::vector<std::uint32_t>& rows : column.nearest) rows.reserve(steps);
+    }
+}
+
+void Observations::clear() {
+    for (Column& column : columns_) {
+        column.measured.clear();
+        for (std::vector<std::uint32_t>& rows : column.nearest) rows.clear();
+    }
+    steps_ = 0;
 }
 
 bool Observations::is_missing(Sample sample) const {

@@ -47,6 +47,10 @@ public:
     /// It measures the predicates, and takes the bools.
     const plan::Plan& plan() const { return plan_; }
     void add(const plan::Evaluator& evaluator);
+    /// Room for so many steps, so that add() asks for no memory until then.
+    void reserve(std::uint64_t steps);
+    /// From here on there were no steps.
+    void clear();
     std::uint64_t steps() const { return steps_; }
 
     /// The distance or expression of a predicate; of a bool 0 or 1. NaN: missing.
@@ -67,6 +71,7 @@ public:
 private:
     struct Column {
         bool is_looked_at = false;
+        std::vector<Index> distances;  ///< of its predicate
         std::vector<float> measured;
         std::vector<std::vector<std::uint32_t>> nearest;  ///< per distance, per step
     };

@@ -2,9 +2,22 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <tuple>
 
 namespace etlc::explain {
+
+Report report(const Observations& observations, const ir::Program& program,
+              const Question& question, const etlmon::Verdict& verdict) {
+    Report result{observations, question, verdict.final(),
+                  explain(program, observations, question)};
+    const Status status = verdict.satisfied()  ? Status::satisfied
+                          : verdict.violated() ? Status::violated
+                                               : Status::unknown;
+    if (status != result.explanation.status)
+        throw std::logic_error("an explanation of another verdict than the monitor's");
+    return result;
+}
 
 std::vector<Interval> intervals(const Observations& observations,
                                 const std::vector<Sample>& samples) {

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "etlmon/temporal/verdict.hpp"
 #include "explain/explain.hpp"
 
 namespace etlc::explain {
@@ -16,6 +17,11 @@ struct Report {
     bool is_final = false;
     Explanation explanation;
 };
+
+/// Of the monitor's verdict, which is `verdict`. Throws std::logic_error where the explanation is
+/// of another one.
+Report report(const Observations& observations, const ir::Program& program,
+              const Question& question, const etlmon::Verdict& verdict);
 
 std::string text(const Report& report);
 std::string json(const Report& report);

@@ -38,7 +38,9 @@ const std::map<std::string, Names> kArrows = {
     {"calibrate", {"episodes", "pipeline"}},
     {"evaluate", {"episodes", "pipeline"}},
     {"report", {"explain", "fit", "evaluate"}},
-    {"driver", {"parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report"}},
+    {"library", {"parse", "explain", "pipeline"}},
+    {"driver",
+     {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.

@@ -44,6 +44,16 @@ void put_element(std::string& bytes, const check::Input& input, double value) {
     }
 }
 
+}  // namespace
+
+std::string encode_sample(const check::Input& input, const std::vector<double>& sample) {
+    std::string bytes;
+    for (const double value : sample) put_element(bytes, input, value);
+    return bytes;
+}
+
+namespace {
+
 void put_labels(std::string& bytes, const std::vector<Label>& labels) {
     put(bytes, static_cast<std::uint8_t>(labels.size()));
     for (const Label& label : labels) {
@@ -59,7 +69,7 @@ std::string encode(const check::Model& model, const reference::Trace& trace, con
             if (model.predicates[p].threshold.adaptation) put_labels(bytes, labels[step][p]);
         for (std::size_t n = 0; n < model.inputs.size(); ++n) {
             put(bytes, static_cast<std::uint8_t>(!trace[step][n].empty()));
-            for (const double value : trace[step][n]) put_element(bytes, model.inputs[n], value);
+            bytes += encode_sample(model.inputs[n], trace[step][n]);
         }
     }
     return bytes;

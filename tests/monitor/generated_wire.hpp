@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "adaptive.hpp"
 #include "check/model/model.hpp"
@@ -23,6 +24,9 @@ struct Request {
     Labels second_labels{};
 };
 using Answer = std::array<Observed, 3>;
+
+/// A sample's elements, as the class of its input has them.
+std::string encode_sample(const check::Input& input, const std::vector<double>& sample);
 
 std::string encode(const check::Model& model, const Request& request);
 

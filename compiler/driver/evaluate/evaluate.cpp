@@ -12,7 +12,7 @@
 #include "driver/options/names.hpp"
 #include "driver/output_file.hpp"
 #include "driver/progress.hpp"
-#include "driver/version.hpp"
+#include "library/version.hpp"
 #include "parse/parse.hpp"
 #include "source/escape.hpp"
 
@@ -73,7 +73,7 @@ public:
         calibration_.names = asked.names;
         calibration_.allow_overlap = asked.allow_overlap;
         calibration_.jobs = asked.jobs;
-        calibration_.version = kVersion;
+        calibration_.version = library::kVersion;
         calibration_.progress = asked.progress;
     }
 

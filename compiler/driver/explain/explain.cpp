@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <utility>
 
 #include "data/files/file.hpp"
@@ -41,10 +40,8 @@ public:
         const std::uint64_t last_frame = observations_.steps() - 1;
         const explain::Question question{plan_.monitors[chosen_].index, history.positions[*step],
                                          std::min(*step, last_frame)};
-        const etlmon::Verdict& verdict = history.verdicts[*step];
-        const explain::Report report{observations_, question, verdict.final(),
-                                     explain::explain(ir::lower(model_), observations_, question)};
-        hold_to(verdict, report.explanation);
+        const explain::Report report =
+            explain::report(observations_, ir::lower(model_), question, history.verdicts[*step]);
         return request_.format == ExplanationFormat::json
                    ? explain::json(report)
                    : source::visible_lines(explain::text(report));
@@ -146,14 +143,6 @@ private:
                                steps - 1);
         return fmt::format("found {:.6g} s, expected a time from 0 to {:.6g} s", *request_.at,
                            static_cast<double>(steps - 1) * model_.step_seconds);
-    }
-
-    static void hold_to(const etlmon::Verdict& verdict, const explain::Explanation& explanation) {
-        const explain::Status status = verdict.satisfied()  ? explain::Status::satisfied
-                                       : verdict.violated() ? explain::Status::violated
-                                                            : explain::Status::unknown;
-        if (status != explanation.status)
-            throw std::logic_error("an explanation of another verdict than the monitor's");
     }
 
     const plan::Plan& plan_;

@@ -13,7 +13,7 @@
 #include "data/traces/episodes.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
-#include "driver/version.hpp"
+#include "library/version.hpp"
 
 namespace etlc::driver {
 
@@ -47,7 +47,7 @@ std::optional<episodes::Sharing> sharing_of(const ShardRequest& request,
                                             std::vector<std::string> call) {
     if (request.shards == 0) return std::nullopt;
     episodes::Part part;
-    part.etlc = kVersion;
+    part.etlc = library::kVersion;
     part.call = without(call, {"--shard", "--part", "-j", "--jobs"});
     part.shard = request.shard;
     part.shards = request.shards;
@@ -125,11 +125,11 @@ std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& path
             sink.report(data::in_file(part.failure(), path));
             return std::nullopt;
         }
-        if (part->etlc != kVersion) {
-            sink.report(
-                data::in_file({Code::part_of_another,
-                               fmt::format("is of etlc {}; this is {}", part->etlc, kVersion)},
-                              path));
+        if (part->etlc != library::kVersion) {
+            sink.report(data::in_file(
+                {Code::part_of_another,
+                 fmt::format("is of etlc {}; this is {}", part->etlc, library::kVersion)},
+                path));
             return std::nullopt;
         }
         parts.push_back(std::move(*part));

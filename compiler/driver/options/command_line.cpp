@@ -5,13 +5,11 @@
 
 #include <sstream>
 
-#include "data/files/file.hpp"
 #include "diag/render.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
-#include "driver/version.hpp"
-#include "parse/parse.hpp"
+#include "library/version.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {
@@ -22,15 +20,6 @@ int conclude(const std::string& form, const source::File& file, const diag::Sink
     const bool told =
         print_error(json ? diag::render_json(file, sink) : diag::render_text(file, sink, colour));
     return sink.refused() || !told ? kFailed : kDone;
-}
-
-bool read_spec(const std::string& path, source::File& file, diag::Sink& sink) {
-    // Far more than parse/ takes, which refuses a large spec with its size and what to do about it.
-    constexpr std::size_t kMostRead = 64 * parse::kMaxSpecBytes;
-    auto text = data::read_file(path, kMostRead, diag::Code::unreadable_spec);
-    file = source::File(path, text ? std::move(*text) : "");
-    if (!text) sink.report(data::in_file(text.failure(), path));
-    return static_cast<bool>(text);
 }
 
 int complain(const CLI::App& app, const std::string& mistake) {

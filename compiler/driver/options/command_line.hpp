@@ -13,8 +13,6 @@ namespace etlc::driver {
 /// Prints the findings as `form` says, "text" or "json"; the exit status that they mean.
 int conclude(const std::string& form, const source::File& file, const diag::Sink& sink);
 
-bool read_spec(const std::string& path, source::File& file, diag::Sink& sink);
-
 /// Says what is wrong with the call; the exit status.
 int complain(const CLI::App& app, const std::string& mistake);
 

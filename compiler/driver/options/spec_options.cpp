@@ -1,14 +1,14 @@
 #include "driver/options/spec_options.hpp"
 
 #include "driver/options/options.hpp"
-#include "driver/options/settings.hpp"
+#include "library/settings.hpp"
 
 namespace etlc::driver {
 
 void add_set_option(CLI::App& app, std::vector<check::Setting>& settings) {
     const auto read = [&settings](const std::vector<std::string>& words) {
         std::string mistake;
-        auto parsed = parse_settings(words, mistake);
+        auto parsed = library::parse_settings(words, mistake);
         if (!parsed) throw CLI::ValidationError(mistake);
         settings = std::move(*parsed);
     };

@@ -32,6 +32,7 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     prepare_distances();
     inputs_.resize(model_.inputs.size());
     held_.resize(model_.inputs.size());
+    for (const Index i : plan.inputs) held_[i].values.reserve(model_.inputs[i].dimension);
     distances_.resize(model_.distances.size());
     enclosed_.resize(model_.distances.size());
     measured_.resize(model_.predicates.size());
@@ -41,8 +42,12 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
     flags_.resize(model_.inputs.size(), kAnything);
     streams_.resize(plan.streams.size());
     stream_states_.resize(plan.streams.size());
+    for (Slot slot = 0; slot < plan.streams.size(); ++slot)
+        stream_states_[slot].members = members_of(plan.streams[slot]);
     readings_.resize(plan.readings.size());
     reading_states_.resize(plan.readings.size());
+    for (std::size_t i = 0; i < plan.readings.size(); ++i)
+        prepare_reading(plan.readings[i], reading_states_[i]);
     verdicts_.resize(plan.monitors.size());
     starts_.resize(plan.monitors.size());
     restarts_.resize(plan.monitors.size());
@@ -50,9 +55,12 @@ Evaluator::Evaluator(const Plan& plan) : plan_(plan), model_(*plan.model) {
 }
 
 void Evaluator::reset() {
-    for (Held& held : held_) held = {};
+    for (Held& held : held_) {
+        held.values.clear();
+        held.age = 0;
+    }
     counts_.assign(model_.inputs.size(), {});
-    for (Slot slot = 0; slot < plan_.streams.size(); ++slot) reset_stream(slot);
+    for (StreamState& state : stream_states_) reset_stream(state);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         reset_reading(plan_.readings[i], reading_states_[i]);
     std::fill(measured_.begin(), measured_.end(), etlmon::Measured{etlmon::kMissing, 0});
@@ -97,7 +105,7 @@ void Evaluator::restart_those_due() {
         return begins_with != kNone && restarts_[begins_with];
     };
     for (Slot slot = 0; slot < plan_.streams.size(); ++slot)
-        if (restarts(plan_.streams[slot].begins_with)) reset_stream(slot);
+        if (restarts(plan_.streams[slot].begins_with)) reset_stream(stream_states_[slot]);
     for (std::size_t i = 0; i < plan_.readings.size(); ++i)
         if (restarts(plan_.readings[i].begins_with))
             reset_reading(plan_.readings[i], reading_states_[i]);
@@ -289,9 +297,8 @@ Value Evaluator::advance(const Stream& stream, StreamState& state) const {
     return kAnything;
 }
 
-void Evaluator::reset_stream(Slot slot) {
-    for (const Member& member : members_of(plan_.streams[slot]))
-        reset_member(member, stream_states_[slot]);
+void Evaluator::reset_stream(StreamState& state) {
+    for (const Member& member : state.members) reset_member(member, state);
 }
 
 void Evaluator::reset_member(const Member& member, StreamState& state) {

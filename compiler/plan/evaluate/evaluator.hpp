@@ -1,7 +1,7 @@
 // The plan, executed: what `etlc run` and calibration step.
 // Takes: a plan and one sample of every input a step. Gives: the verdicts and telemetry that the
-// generated class gives, from the same runtime code. Keeps true: constant memory, work per step
-// independent of history.
+// generated class gives, from the same runtime code. Keeps true: all memory is asked for when it is
+// made, work per step is independent of history.
 #pragma once
 
 #include <cstdint>
@@ -88,6 +88,7 @@ private:
         std::uint32_t age = 0;
     };
     struct StreamState {
+        std::vector<Member> members;  ///< what is kept, as it begins
         std::vector<Value> values;
         std::vector<etlmon::Since<Value>::Element> pairs;
         std::vector<etlmon::Handover<Value>::Element> flanks;
@@ -99,13 +100,15 @@ private:
         std::vector<Value> guards;
         std::vector<Key> weak;  ///< this step's keys of the table's lists
         std::vector<Key> strong;
+        std::vector<Value> first;  ///< of the registers of straight-line code
         std::optional<PendingEvaluator> pending;
     };
 
     void prepare_distances();
     static void reset_member(const Member& member, StreamState& state);
     void restart_those_due();
-    void reset_stream(Slot slot);
+    static void reset_stream(StreamState& state);
+    static void prepare_reading(const Reading& reading, ReadingState& state);
     static void reset_reading(const Reading& reading, ReadingState& state);
     void take_inputs(const std::vector<Sample>& samples);
     void measure_points();

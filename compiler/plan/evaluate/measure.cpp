@@ -52,8 +52,10 @@ void Evaluator::prepare_distances() {
     for (Index d : plan_.distances) {
         const check::Distance& distance = model_.distances[d];
         prepared_[d] = prepared_rows(model_, distance);
-        if (distance.full_weights() && distance.aggregation == check::Aggregation::min)
+        if (distance.full_weights() && distance.aggregation == check::Aggregation::min) {
             near_.try_emplace(d, distance, model_.targets[distance.target]);
+            near_values_.reserve(std::max(near_values_.capacity(), prepared_[d].size()));
+        }
         if (const NarrowSet* set = narrow_set(plan_, d)) {
             widened_[d] = widened_rows(*set);
         }

@@ -69,7 +69,9 @@ NearRows::NearRows(const check::Distance& distance, const check::Target& target)
       spread_(spread_of(distance.weights, target.dimension)),
       whitened_(target.values.size()),
       point_(target.dimension),
-      distances_(target.rows) {
+      distances_(target.rows),
+      errors_(target.rows),
+      near_(target.rows) {
     decompose(distance.weights);
     whiten_rows();
 }
@@ -140,16 +142,15 @@ const std::vector<std::uint32_t>& NearRows::of(const float* z, double margin) {
     measure(z);
     near_.resize(target_.rows);
     std::iota(near_.begin(), near_.end(), 0);
-    std::vector<double> errors(target_.rows);
     const auto keep_near = [&](const auto& apart) {
         double least = kInfinity;
         for (const std::uint32_t k : near_) {
-            errors[k] = error(k, apart(k), margin);
-            least = std::min(least, static_cast<double>(distances_[k]) + errors[k]);
+            errors_[k] = error(k, apart(k), margin);
+            least = std::min(least, static_cast<double>(distances_[k]) + errors_[k]);
         }
         // What is no number stays.
         std::erase_if(near_, [&](std::uint32_t k) {
-            return static_cast<double>(distances_[k]) - errors[k] > least;
+            return static_cast<double>(distances_[k]) - errors_[k] > least;
         });
     };
     keep_near([&](std::uint32_t k) { return std::pow(length_ + lengths_[k], 2); });

@@ -40,6 +40,7 @@ private:
     double whitened_length_ = 0;            ///< |L^T z|
     double length_ = 0;                     ///< |z|
     std::vector<float> distances_;          ///< per row; squares at first
+    std::vector<double> errors_;            ///< per row: how far its distance may be off
     std::vector<std::uint32_t> near_;
 };
 

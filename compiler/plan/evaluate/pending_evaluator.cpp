@@ -10,14 +10,26 @@ using etlmon::kTrue;
 
 PendingEvaluator::PendingEvaluator(const Pending& pending) : pending_(pending) {
     leaves_.resize(pending.parts.size());
-    parts_.assign(pending.parts.size(), Readings(pending.horizon + std::size_t{1}));
+    const std::size_t positions = pending.horizon + std::size_t{1};
+    for (auto& leaf : leaves_) leaf.reserve(positions);
+    parts_.assign(pending.parts.size(), Readings(positions));
+    if (!pending.is_fold) {
+        const Table& table = pending.table;
+        guards_.resize(positions * table.guards.size());
+        weak_.assign(table.weak.size() + 1, etlmon::kTop);
+        strong_.assign(table.strong.size() + 1, etlmon::kTop);
+        scratch_.resize(2 * table.ends.size());
+        values_.resize(table.guards.size() + table.ends.size());
+    }
     reset();
 }
 
 void PendingEvaluator::reset() {
     for (auto& leaf : leaves_) leaf.clear();
     if (pending_.is_fold) {
-        registers_ = {neutral(pending_.fold.max), neutral(!pending_.fold.max)};
+        registers_.resize(2);
+        registers_[0] = neutral(pending_.fold.max);
+        registers_[1] = neutral(!pending_.fold.max);
     } else {
         registers_.assign(pending_.table.ends.size(), kFalse);
         registers_[0] = kTrue;
@@ -94,23 +106,21 @@ etlmon::Reading PendingEvaluator::advance_machine(std::uint32_t step, std::uint3
                                                   const std::vector<Value>& streams) {
     const Table& table = pending_.table;
     const std::size_t width = table.guards.size();
-    Readings guards(count * width, etlmon::settled(kTrue));
+    std::fill(guards_.begin(), guards_.end(), etlmon::settled(kTrue));
     for (std::uint32_t p = 0; p < count; ++p)
         for (std::size_t g = 0; g < width; ++g)
             for (std::uint32_t part : table.guards[g])
-                guards[p * width + g] = min_of(guards[p * width + g], parts_[part][p]);
-    std::vector<Key> weak{etlmon::kTop};
-    std::vector<Key> strong{etlmon::kTop};
-    for (Slot slot : table.weak) weak.push_back(streams[slot].low);
-    for (Slot slot : table.strong) strong.push_back(streams[slot].high);
+                guards_[p * width + g] = min_of(guards_[p * width + g], parts_[part][p]);
+    std::transform(table.weak.begin(), table.weak.end(), weak_.begin() + 1,
+                   [&](Slot slot) { return streams[slot].low; });
+    std::transform(table.strong.begin(), table.strong.end(), strong_.begin() + 1,
+                   [&](Slot slot) { return streams[slot].high; });
     const std::size_t states = registers_.size();
-    Readings scratch(2 * states);
-    std::vector<Value> values(width + states);
     return etlmon::pending_machine(registers_.data(), static_cast<std::uint32_t>(states),
-                                   guards.data(), static_cast<std::uint32_t>(width), count,
+                                   guards_.data(), static_cast<std::uint32_t>(width), count,
                                    step >= pending_.horizon, table.transitions.data(),
-                                   table.ends.data(), table.owed.data(), weak.data(), strong.data(),
-                                   scratch.data(), values.data());
+                                   table.ends.data(), table.owed.data(), weak_.data(),
+                                   strong_.data(), scratch_.data(), values_.data());
 }
 
 }  // namespace etlc::plan

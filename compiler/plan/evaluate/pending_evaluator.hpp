@@ -34,6 +34,12 @@ private:
     std::vector<std::vector<Value>> leaves_;
     std::vector<Readings> parts_;   ///< per part: at the same positions
     std::vector<Value> registers_;  ///< where everything is settled
+    // Of a machine, room for a step: guards by position, keys of its lists, registers.
+    Readings guards_;
+    std::vector<Key> weak_;
+    std::vector<Key> strong_;
+    Readings scratch_;
+    std::vector<Value> values_;
 };
 
 }  // namespace etlc::plan

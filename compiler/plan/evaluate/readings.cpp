@@ -12,10 +12,16 @@ using etlmon::kFalse;
 using etlmon::kTop;
 using etlmon::kTrue;
 
-void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
-    state.registers.clear();
-    if (reading.kind == Reading::Kind::pending) {
+void Evaluator::prepare_reading(const Reading& reading, ReadingState& state) {
+    if (reading.kind == Reading::Kind::pending)
         state.pending.emplace(reading.pending);
+    else if (reading.kind != Reading::Kind::table)
+        for (const Member& member : members_of(reading)) state.first.push_back(member.first);
+}
+
+void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
+    if (reading.kind == Reading::Kind::pending) {
+        state.pending->reset();
     } else if (reading.kind == Reading::Kind::table) {
         const Table& table = reading.table;
         state.registers.assign(table.ends.size(), kFalse);
@@ -25,7 +31,7 @@ void Evaluator::reset_reading(const Reading& reading, ReadingState& state) {
         state.weak.assign(table.weak.size() + 1, kTop);
         state.strong.assign(table.strong.size() + 1, kTop);
     } else {
-        for (const Member& member : members_of(reading)) state.registers.push_back(member.first);
+        state.registers = state.first;
         state.next.assign(reading.straight.locals.size(), kFalse);
     }
 }

@@ -1,4 +1,4 @@
-#include "driver/options/settings.hpp"
+#include "library/settings.hpp"
 
 #include <fmt/format.h>
 
@@ -9,7 +9,7 @@
 
 #include "data/quote.hpp"
 
-namespace etlc::driver {
+namespace etlc::library {
 
 namespace {
 
@@ -74,4 +74,4 @@ std::optional<std::vector<check::Setting>> parse_settings(const std::vector<std:
     return settings;
 }
 
-}  // namespace etlc::driver
+}  // namespace etlc::library

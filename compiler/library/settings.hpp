@@ -9,10 +9,10 @@
 
 #include "check/check.hpp"
 
-namespace etlc::driver {
+namespace etlc::library {
 
 /// Nothing where a word is not NAME=VALUE, or sets a name again: `why` then says so.
 std::optional<std::vector<check::Setting>> parse_settings(const std::vector<std::string>& words,
                                                           std::string& why);
 
-}  // namespace etlc::driver
+}  // namespace etlc::library

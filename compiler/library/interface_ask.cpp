@@ -1,0 +1,102 @@
+// What a session says after a step, beside its verdicts.
+#include <cstring>
+
+#include "library/call.hpp"
+
+namespace etlc::library {
+
+namespace {
+
+etlc_status check_monitor(const Session& session, std::uint32_t monitor) {
+    const std::size_t count = session.plan().monitors.size();
+    return monitor < count ? etlc_status{ETLC_OK} : refuse_index("monitor", monitor, count);
+}
+
+etlc_status refuse_undecided(const Session& session, std::uint32_t monitor) {
+    return refuse(ETLC_UNDECIDED, "monitor '{}' has no verdict yet",
+                  session.plan().monitors[monitor].name);
+}
+
+}  // namespace
+
+}  // namespace etlc::library
+
+using namespace etlc;
+using namespace etlc::library;
+
+extern "C" {
+
+etlc_status etlc_steps(etlc_session session, uint64_t* steps) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (steps == nullptr) return refuse_null("steps");
+        *steps = opened.steps();
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_position(etlc_session session, uint32_t monitor, uint64_t* position) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (position == nullptr) return refuse_null("position");
+        if (const etlc_status status = check_monitor(opened, monitor); status != ETLC_OK)
+            return status;
+        if (!opened.verdict(monitor).decided()) return refuse_undecided(opened, monitor);
+        *position = opened.evaluator().position(monitor);
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_measure(etlc_session session, uint32_t predicate, etlc_measured* measured) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (measured == nullptr) return refuse_null("measured");
+        const std::size_t count = opened.model().predicates.size();
+        if (predicate >= count) return refuse_index("predicate", predicate, count);
+        const plan::Evaluator& evaluator = opened.evaluator();
+        *measured = {evaluator.distance(predicate), evaluator.threshold(predicate),
+                     evaluator.nearest(predicate)};
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_let(etlc_session session, uint32_t let, etlc_verdict* verdict) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (verdict == nullptr) return refuse_null("verdict");
+        const std::vector<etlmon::Verdict>& lets = opened.evaluator().lets();
+        if (lets.empty())
+            return refuse(ETLC_NOT_KEPT,
+                          "no let is kept: open a spec that has some with "
+                          "options.lets = 1");
+        if (let >= lets.size()) return refuse_index("let", let, lets.size());
+        std::memcpy(verdict, &lets[let], sizeof *verdict);
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_count(etlc_session session, uint32_t input, etlc_counts* counts) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (counts == nullptr) return refuse_null("counts");
+        const std::size_t inputs = opened.model().inputs.size();
+        if (input >= inputs) return refuse_index("input", input, inputs);
+        const plan::SampleCounts& of = opened.evaluator().sample_counts()[input];
+        *counts = {of.missing, of.out_of_range, of.held};
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format,
+                         const char** text) {
+    return with_session(session, [&](Session& opened) -> etlc_status {
+        if (text == nullptr) return refuse_null("text");
+        if (const etlc_status status = check_monitor(opened, monitor); status != ETLC_OK)
+            return status;
+        if (format > ETLC_JSON)
+            return refuse(ETLC_WRONG_VALUE, "format is {}, expected ETLC_TEXT or ETLC_JSON",
+                          format);
+        if (!opened.verdict(monitor).decided()) return refuse_undecided(opened, monitor);
+        if (const std::string why = opened.why_unexplained(); !why.empty())
+            return refuse(ETLC_NOT_KEPT, "{}", why);
+        *text = opened.explain(monitor, format == ETLC_JSON).c_str();
+        return ETLC_OK;
+    });
+}
+
+}  // extern "C"

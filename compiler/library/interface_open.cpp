@@ -1,0 +1,148 @@
+// etlc_open() and what goes with it.
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "diag/render.hpp"
+#include "library/call.hpp"
+#include "library/open.hpp"
+#include "library/settings.hpp"
+#include "library/version.hpp"
+
+namespace etlc::library {
+
+namespace {
+
+/// How the spec is compiled.
+struct Wish {
+    check::Options check;
+    pipeline::Options plan;
+};
+
+std::string text_of(const char* words) {
+    return words == nullptr ? "" : words;
+}
+
+etlc_status take_settings(const etlc_options& options, Wish& wish) {
+    if (options.setting_count > 0 && options.settings == nullptr)
+        return refuse_null("options.settings");
+    std::vector<std::string> words;
+    for (std::size_t i = 0; i < options.setting_count; ++i) {
+        if (options.settings[i] == nullptr) return refuse_null("an element of options.settings");
+        words.emplace_back(options.settings[i]);
+    }
+    std::string why;
+    auto settings = parse_settings(words, why);
+    if (!settings) return refuse(ETLC_WRONG_VALUE, "options.settings: {}", why);
+    wish.check.settings = std::move(*settings);
+    return ETLC_OK;
+}
+
+etlc_status take_choices(const etlc_options& options, Wish& wish) {
+    const auto beyond = [](const char* what, std::uint32_t found, std::uint32_t most) {
+        return refuse(ETLC_WRONG_VALUE, "options.{} is {}, expected a number from 0 to {}", what,
+                      found, most);
+    };
+    if (options.values > ETLC_BOOLEAN) return beyond("values", options.values, ETLC_BOOLEAN);
+    if (options.targets_as > ETLC_AS_I8)
+        return beyond("targets_as", options.targets_as, ETLC_AS_I8);
+    if (options.lets > 1) return beyond("lets", options.lets, 1);
+    if (options.reserved != 0) return beyond("reserved", options.reserved, 0);
+    if (options.values == ETLC_BOOLEAN) wish.plan.values = check::Values::boolean;
+    constexpr plan::Storage kStorages[] = {plan::Storage::f32, plan::Storage::f16,
+                                           plan::Storage::i8};
+    wish.plan.targets_as = kStorages[options.targets_as];
+    wish.check.lets = options.lets == 1;
+    plan::Limits& limits = wish.plan.limits;
+    if (options.max_state != 0) limits.state_bytes = options.max_state;
+    if (options.max_code != 0) limits.code_bytes = options.max_code;
+    if (options.max_work != 0) limits.operations = options.max_work;
+    // Observations are of so many steps, each of some bytes.
+    constexpr std::uint64_t kLongestHistory = std::uint64_t{1} << 40U;
+    if (options.history > kLongestHistory)
+        return refuse(ETLC_WRONG_VALUE, "options.history is {}, expected at most {} steps",
+                      options.history, kLongestHistory);
+    return ETLC_OK;
+}
+
+etlc_status take(const etlc_options& options, Wish& wish) {
+    if (options.path == nullptr && options.text == nullptr)
+        return refuse_null("options.path, and options.text with it,");
+    wish.check.thresholds_path = text_of(options.thresholds);
+    wish.check.fitted_path = text_of(options.fitted);
+    if (const etlc_status status = take_settings(options, wish); status != ETLC_OK) return status;
+    return take_choices(options, wish);
+}
+
+/// The session, or nothing where the sink says why not.
+std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, source::File& file,
+                              diag::Sink& sink) {
+    const std::string path = options.path == nullptr ? "spec.etl" : options.path;
+    if (options.text != nullptr)
+        file = source::File(path, options.text);
+    else if (!read_spec(path, file, sink))
+        return nullptr;
+    auto compiled = compile(file, wish.check, wish.plan, sink);
+    if (!compiled) return nullptr;
+    return std::make_unique<Session>(file, std::move(*compiled), sink, options.history);
+}
+
+etlc_status check_version(const etlc_options* options) {
+    if (options != nullptr && options->api_version != ETLC_API_VERSION)
+        return refuse(ETLC_WRONG_VERSION,
+                      "options.api_version is {}, this library is of version {}: begin with "
+                      "ETLC_OPTIONS, from the etlc.h of this library",
+                      options->api_version, ETLC_API_VERSION);
+    return check_struct(options, "options");
+}
+
+}  // namespace
+
+}  // namespace etlc::library
+
+using namespace etlc;
+using namespace etlc::library;
+
+extern "C" {
+
+const char* etlc_message(void) {
+    return Message::here().text();
+}
+
+const char* etlc_message_json(void) {
+    return Message::here().json();
+}
+
+const char* etlc_version(void) {
+    return kVersion;
+}
+
+etlc_status etlc_open(const etlc_options* options, etlc_session* session) {
+    return guarded([&]() -> etlc_status {
+        if (const etlc_status status = check_version(options); status != ETLC_OK) return status;
+        if (session == nullptr) return refuse_null("session");
+        *session = 0;
+        Wish wish;
+        if (const etlc_status status = take(*options, wish); status != ETLC_OK) return status;
+        source::File file;
+        diag::Sink sink;
+        auto opened = open(*options, wish, file, sink);
+        if (!opened) {
+            Message::here().take_diagnostics(diag::render_text(file, sink),
+                                             diag::render_json(file, sink));
+            return ETLC_REFUSED;
+        }
+        *session = hold(std::move(opened));
+        if (*session == 0) return refuse(ETLC_OUT_OF_MEMORY, "too many sessions are open");
+        return ETLC_OK;
+    });
+}
+
+etlc_status etlc_close(etlc_session session) {
+    return with_held(session, [](Held& held) -> etlc_status {
+        held.close();
+        return ETLC_OK;
+    });
+}
+
+}  // extern "C"

@@ -1,0 +1,21 @@
+#!/usr/bin/env bash
+# symbols_test.sh LIBRARY HEADER: the library has exactly the functions that have been promised,
+# each of the version that it was promised with, and the header declares all of them.
+set -euo pipefail
+library=$1 header=$2
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+
+found=$(nm --dynamic --defined-only --with-symbol-versions "$library" | awk '$2 == "T" {print $3}' |
+    sed 's/@@/ /' | LC_ALL=C sort)
+diff "$here/symbols.txt" <(echo "$found") || {
+    echo "FAILED: functions of the library; < was promised, > is there"
+    exit 1
+}
+declared=$(grep -oP '^ETLC_EXPORT .*?\K\betlc_[a-z_]+(?=\()' "$header" | LC_ALL=C sort)
+diff <(cut -d' ' -f1 "$here/symbols.txt") <(echo "$declared") || {
+    echo "FAILED: functions of the header; < was promised, > is declared"
+    exit 1
+}
+others=$(nm --dynamic --defined-only "$library" | awk '$2 != "A" {print $3}' | grep -v '^etlc_' ||
+    true)
+[ -z "$others" ] || { echo "FAILED: the library shows more than its functions: $others"; exit 1; }
