@@ -1,8 +1,7 @@
 /* libetlc: the monitors of a spec, stepped by a program that was not compiled with them.
  *
  * Takes: a spec, as text or as a file, with its thresholds and what is fitted. Gives: the verdicts
- * that the generated class gives, bit for bit, and what `etlc explain` and `etlc incident` say of
- * them. Keeps true:
+ * that the generated class gives, bit for bit, and what `etlc explain` says of them. Keeps true:
  * - A call that fails changes nothing, says so by its status, and etlc_message() says why. Nothing
  *   is printed, no exception and no abort leaves the library.
  * - Sessions know nothing of each other. A session is used by one thread at a time; a call of it
@@ -87,12 +86,11 @@ typedef struct etlc_options {
   uint64_t max_state;  /* limits of the plan; 0: those of etlc */
   uint64_t max_code;
   uint64_t max_work;
-  uint64_t history;     /* steps that etlc_explain() can look back at; 0: none are kept */
-  const char *recorder; /* "BEFORE,AFTER,INCIDENTS", as "2s,1s,4"; null: none is kept */
+  uint64_t history; /* steps that etlc_explain() can look back at; 0: none are kept */
 } etlc_options;
 
 #define ETLC_OPTIONS \
-  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 /* Compiles the spec, and gives a session before its first step. ETLC_REFUSED where it does not
  * compile. May be called by several threads at once. */
@@ -238,7 +236,7 @@ ETLC_EXPORT etlc_status etlc_run(etlc_session session, const etlc_column *column
 ETLC_EXPORT etlc_status etlc_finish(etlc_session session, etlc_verdict *verdicts,
                                     size_t verdict_count);
 
-/* A new episode. Thresholds that have moved stay where they are; incidents stay. */
+/* A new episode. Thresholds that have moved stay where they are. */
 ETLC_EXPORT etlc_status etlc_reset(etlc_session session);
 
 /* From the next step on, this monitor is about that step. It is one that restarts. */

@@ -1,0 +1,53 @@
+"""Monitors of Embedding Temporal Logic in Python.
+
+    import etlc
+
+    monitor = etlc.Monitor("dock.etl")
+    verdicts = monitor.step(z=embedding, charge=0.3)
+    if verdicts.returns.alarm:
+        print(verdicts.returns.robustness, verdicts.returns.bounds)
+
+The verdicts are those of the class that etlc generates, bit for bit. docs/python.md has an example
+of everything.
+"""
+
+from ._library import library as _native
+from .commands import Evaluation, Written, calibrate, evaluate, fit
+from .errors import (
+    BusyError,
+    ClosedError,
+    Diagnostic,
+    Error,
+    InputError,
+    NotKeptError,
+    SpecError,
+    UndecidedError,
+)
+from .monitor import Input, Measurement, Monitor
+from .verdicts import Episode, EpisodeVerdicts, Explanation, Verdict, Verdicts
+
+__version__: str = _native.etlc_version().decode()
+
+__all__ = [
+    "BusyError",
+    "ClosedError",
+    "Diagnostic",
+    "Episode",
+    "EpisodeVerdicts",
+    "Error",
+    "Evaluation",
+    "Explanation",
+    "Input",
+    "InputError",
+    "Measurement",
+    "Monitor",
+    "NotKeptError",
+    "SpecError",
+    "UndecidedError",
+    "Verdict",
+    "Verdicts",
+    "Written",
+    "calibrate",
+    "evaluate",
+    "fit",
+]

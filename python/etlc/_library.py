@@ -1,0 +1,158 @@
+"""libetlc.so by ctypes: its structs, its functions, and exceptions in place of its statuses."""
+
+from __future__ import annotations
+
+import ctypes
+import os
+from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32
+from ctypes import c_uint64, c_void_p
+from pathlib import Path
+from typing import Any
+
+from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
+from .errors import UndecidedError, diagnostics_of
+
+API_VERSION = 1
+
+F32, BOOL, F16, I8 = range(4)
+INPUTS, MONITORS, PREDICATES, LETS = range(4)
+SATISFIED, VIOLATED, DECIDED, FINAL = 1, 2, 4, 8
+ALARM = VIOLATED | DECIDED | FINAL
+FULFILLED = SATISFIED | DECIDED | FINAL
+
+
+class Options(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("api_version", c_uint32), ("path", c_char_p),
+        ("text", c_char_p), ("thresholds", c_char_p), ("fitted", c_char_p),
+        ("settings", POINTER(c_char_p)), ("setting_count", c_size_t), ("values", c_uint32),
+        ("targets_as", c_uint32), ("lets", c_uint32), ("reserved", c_uint32),
+        ("max_state", c_uint64), ("max_code", c_uint64), ("max_work", c_uint64),
+        ("history", c_uint64),
+    ]  # fmt: skip
+
+
+class Description(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("inputs", c_uint32), ("monitors", c_uint32),
+        ("predicates", c_uint32), ("lets", c_uint32), ("horizon", c_uint32),
+        ("step_seconds", c_double), ("state_bytes", c_uint64), ("spec_hash", c_uint64),
+        ("data_hash", c_uint64), ("thresholds_hash", c_uint64), ("name", c_char_p),
+        ("warnings", c_char_p),
+    ]  # fmt: skip
+
+
+class InputDescription(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("type", c_uint32), ("dimension", c_uint32),
+        ("hold", c_uint32), ("low", c_float), ("high", c_float), ("scale", c_float),
+        ("is_embedding", c_uint32), ("is_used", c_uint32), ("name", c_char_p),
+    ]  # fmt: skip
+
+
+class MonitorDescription(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("is_sliding", c_uint32), ("restarts", c_uint32),
+        ("horizon", c_uint32), ("name", c_char_p), ("formula", c_char_p),
+    ]  # fmt: skip
+
+
+class PredicateDescription(ctypes.Structure):
+    _fields_ = [
+        ("struct_size", c_uint32), ("is_measured", c_uint32), ("is_adaptive", c_uint32),
+        ("has_nearest", c_uint32), ("name", c_char_p), ("text", c_char_p),
+    ]  # fmt: skip
+
+
+class Sample(ctypes.Structure):
+    _fields_ = [("data", c_void_p), ("count", c_uint32), ("type", c_uint32)]
+
+
+class Column(ctypes.Structure):
+    _fields_ = [
+        ("data", c_void_p), ("present", c_void_p), ("stride", c_int64), ("count", c_uint32),
+        ("type", c_uint32),
+    ]  # fmt: skip
+
+
+class VerdictStruct(ctypes.Structure):
+    _fields_ = [
+        ("robustness", c_float), ("lower", c_float), ("upper", c_float), ("status", c_uint32),
+    ]  # fmt: skip
+
+
+class Measured(ctypes.Structure):
+    _fields_ = [("distance", c_float), ("threshold", c_float), ("nearest", c_uint32)]
+
+
+class Counts(ctypes.Structure):
+    _fields_ = [("missing", c_uint64), ("out_of_range", c_uint64), ("held", c_uint64)]
+
+
+_ARGUMENTS: dict[str, list[Any]] = {
+    "etlc_open": [POINTER(Options), POINTER(c_uint64)],
+    "etlc_close": [c_uint64],
+    "etlc_describe": [c_uint64, POINTER(Description)],
+    "etlc_describe_input": [c_uint64, c_uint32, POINTER(InputDescription)],
+    "etlc_describe_monitor": [c_uint64, c_uint32, POINTER(MonitorDescription)],
+    "etlc_describe_predicate": [c_uint64, c_uint32, POINTER(PredicateDescription)],
+    "etlc_describe_let": [c_uint64, c_uint32, POINTER(c_char_p)],
+    # Without types: a step passes objects that are already what the function takes.
+    "etlc_step": None,
+    "etlc_run": [c_uint64, c_void_p, c_size_t, c_uint64, c_void_p, c_size_t],
+    "etlc_finish": [c_uint64, c_void_p, c_size_t],
+    "etlc_reset": [c_uint64],
+    "etlc_restart": [c_uint64, c_uint32],
+    "etlc_observe": [c_uint64, c_uint32, c_float, c_uint32],
+    "etlc_steps": [c_uint64, POINTER(c_uint64)],
+    "etlc_position": [c_uint64, c_uint32, POINTER(c_uint64)],
+    "etlc_measure": [c_uint64, c_uint32, POINTER(Measured)],
+    "etlc_let": [c_uint64, c_uint32, c_void_p],
+    "etlc_count": [c_uint64, c_uint32, POINTER(Counts)],
+    "etlc_explain": [c_uint64, c_uint32, c_uint32, POINTER(c_char_p)],
+}
+
+NATIVE = Path(__file__).parent / "_native"
+
+
+def _load() -> ctypes.CDLL:
+    """The library: $ETLC_LIBRARY, the one in this package, or the system's."""
+    own = NATIVE / "lib" / "libetlc.so.1"
+    path = os.environ.get("ETLC_LIBRARY") or (str(own) if own.exists() else "libetlc.so.1")
+    try:
+        library = ctypes.CDLL(path)
+    except OSError as error:
+        raise ImportError(f"libetlc cannot be loaded: {error}") from None
+    for name, arguments in _ARGUMENTS.items():
+        function = getattr(library, name)
+        function.restype = c_int32
+        if arguments is not None:
+            function.argtypes = arguments
+    for name in ("etlc_message", "etlc_message_json", "etlc_version"):
+        getattr(library, name).restype = c_char_p
+    return library
+
+
+library = _load()
+
+_EXCEPTIONS: dict[int, type[Error]] = {
+    3: ClosedError, 4: BusyError, 6: InputError, 7: InputError, 8: InputError, 9: InputError,
+    10: NotKeptError, 11: UndecidedError, 12: ClosedError,
+}  # fmt: skip
+
+
+def raise_for(status: int) -> None:
+    """Raises what the status of the last call of this thread means."""
+    message = library.etlc_message().decode(errors="replace")
+    if status == 1:
+        raise SpecError(message, diagnostics_of(library.etlc_message_json()))
+    if status == 13:
+        raise MemoryError(message)
+    raise _EXCEPTIONS.get(status, Error)(message)
+
+
+def call(function: Any, *arguments: Any) -> None:
+    """Calls the function; raises an exception where it fails."""
+    status = function(*arguments)
+    if status != 0:
+        raise_for(status)

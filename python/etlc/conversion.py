@@ -1,0 +1,97 @@
+"""Samples as libetlc takes them: of its types and shapes, or refused.
+
+A number is rounded at most once, as `etlc run` rounds what it reads. What would lose more, or means
+something else, is refused: integers for float32 embeddings, floats for int8, numbers for bools.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from .errors import InputError
+
+
+def as_bool(name: str, value: Any) -> int:
+    """0 or 1."""
+    array = np.asarray(value)
+    if array.shape == () and (array.dtype == np.bool_ or array.dtype.kind in "iu"):
+        if array == 0 or array == 1:
+            return int(array)
+    raise InputError(f"input {name!r} is {value!r}, expected a bool")
+
+
+def as_number(name: str, value: Any) -> float:
+    """A scalar."""
+    array = np.asarray(value)
+    if array.shape == () and array.dtype.kind in "fiu":
+        return float(array)
+    raise InputError(f"input {name!r} is {_shown(array)}, expected a number")
+
+
+def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:
+    """An embedding, as elements of the type."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise InputError(f"input {name!r} is a masked array; one that is missing is None")
+    array = _array(name, value)
+    if array.shape != shape:
+        raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {shape}")
+    return _converted(name, array, dtype, isinstance(value, (list, tuple)))
+
+
+def as_rows(
+    name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]
+) -> tuple[np.ndarray | None, np.ndarray]:
+    """An input at every step: which steps have it (None: all), and rows of elements.
+
+    The elements of a row are contiguous and aligned; it is the caller's array where that allows it.
+    """
+    array = _array(name, value)
+    if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
+        expected = "(N,)" if shape == () else f"(N, {shape[0]})"
+        raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {expected}")
+    present = None
+    if isinstance(value, np.ma.MaskedArray):
+        mask = np.ma.getmaskarray(value).reshape(len(array), -1)
+        present = np.ascontiguousarray(~mask.any(axis=1)).view("u1")
+    is_list = isinstance(value, (list, tuple))
+    rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
+    is_packed = rows.ndim == 1 or rows.shape[1] == 1 or rows.strides[1] == dtype.itemsize
+    if not rows.flags.aligned or rows.strides[0] % dtype.itemsize != 0 or not is_packed:
+        rows = np.ascontiguousarray(rows)
+    return present, rows
+
+
+def _array(name: str, value: Any) -> np.ndarray:
+    try:
+        return np.asarray(value)
+    except (ValueError, TypeError, RuntimeError) as error:
+        raise InputError(f"input {name!r} is no array: {error}") from None
+
+
+def _converted(
+    name: str, array: np.ndarray, dtype: np.dtype, is_list: bool, present: np.ndarray | None = None
+) -> np.ndarray:
+    kind = array.dtype.kind
+    if dtype == np.uint8:
+        if kind == "b":
+            return array.view("u1")
+        least, most, expected = 0, 1, "bool"
+    elif dtype == np.int8:
+        least, most, expected = -128, 127, "int8"
+    else:
+        if kind == "f" or (kind in "iu" and is_list):
+            with np.errstate(over="ignore"):
+                return array.astype(dtype)
+        raise InputError(f"input {name!r} is {_shown(array)}, expected {dtype.name}")
+    there = array if present is None else array[present != 0]
+    if kind not in "iu" or (there.size > 0 and (there.min() < least or there.max() > most)):
+        raise InputError(f"input {name!r} is {_shown(array)}, expected {expected}")
+    return array.astype(dtype)
+
+
+def _shown(array: np.ndarray) -> str:
+    if array.shape == ():
+        return f"{array.item()!r}"
+    return f"an array of {array.dtype.name} and the shape {array.shape}"

@@ -1,0 +1,483 @@
+"""The monitors of a spec, stepped from Python."""
+
+from __future__ import annotations
+
+import ctypes
+import difflib
+import os
+from ctypes import byref, c_char_p, c_size_t, c_uint64
+from dataclasses import dataclass
+from typing import Any, Callable, Mapping
+
+import numpy as np
+
+from . import _library, conversion
+from ._library import BOOL, F16, F32, I8, call, library
+from .errors import Error, InputError
+from .verdicts import VERDICT_DTYPE, Episode, Explanation, Verdicts
+
+_DTYPES = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
+
+
+@dataclass(frozen=True)
+class Input:
+    """An input of the spec.
+
+    Attributes:
+        name: of the argument of `step`.
+        dtype: of its elements: float32, bool, float16 or int8.
+        shape: () of a scalar or bool, (D,) of an embedding.
+        hold: missing samples in a row that the last one stands for.
+        low, high: a scalar's range; others count as missing.
+        is_used: whether a monitor looks at it.
+    """
+
+    name: str
+    dtype: np.dtype
+    shape: tuple[int, ...]
+    hold: int
+    low: float
+    high: float
+    is_used: bool
+
+
+@dataclass(frozen=True)
+class Measurement:
+    """What a predicate came to at the last step.
+
+    Attributes:
+        distance: or the expression; NaN where it is unknown, or no monitor needs it.
+        threshold: what it is compared with.
+        nearest: the nearest row of the target, of a plain distance; else None.
+    """
+
+    distance: float
+    threshold: float
+    nearest: int | None
+
+
+class Monitor:
+    """The monitors of a spec. Used by one thread at a time.
+
+    Args:
+        spec: the path of the spec, a .etl file; with `text`, where files are looked for beside it.
+        text: the spec itself.
+        thresholds: a file; by default SPEC.thresholds.json beside the spec, where it exists.
+        fitted: a file; by default SPEC.fitted.npz beside the spec, where it exists.
+        settings: other values for constants: {"limit": 0.25, "deadline": "2s"}.
+        values: "robustness", or "boolean": truth values, and only what can still change a verdict.
+        targets_as: "f32", "f16" or "i8": how target sets are stored.
+        lets: keeps what lets say of each step, for `let`.
+        history: how many steps `why` and `explain` can look back at. Each takes some bytes a
+            predicate, and is measured once more.
+        max_state, max_code, max_work: limits of the plan, as the options of etlc.
+
+    Raises:
+        SpecError: the spec does not compile; its `diagnostics` say where.
+        InputError: an argument means nothing.
+
+    Example:
+        >>> monitor = etlc.Monitor("dock.etl")
+        >>> verdicts = monitor.step(z=embedding, charge=0.3)
+        >>> verdicts.returns.alarm
+        False
+    """
+
+    def __init__(
+        self,
+        spec: str | os.PathLike[str] | None = None,
+        *,
+        text: str | None = None,
+        thresholds: str | os.PathLike[str] | None = None,
+        fitted: str | os.PathLike[str] | None = None,
+        settings: Mapping[str, object] | None = None,
+        values: str = "robustness",
+        targets_as: str = "f32",
+        lets: bool = False,
+        history: int = 0,
+        max_state: int = 0,
+        max_code: int = 0,
+        max_work: int = 0,
+    ) -> None:
+        self._session = c_uint64(0)
+        words = [f"{name}={value}".encode() for name, value in (settings or {}).items()]
+        options = _library.Options(
+            struct_size=ctypes.sizeof(_library.Options),
+            api_version=_library.API_VERSION,
+            path=_path(spec),
+            text=_text(text),
+            thresholds=_path(thresholds),
+            fitted=_path(fitted),
+            settings=(c_char_p * len(words))(*words),
+            setting_count=len(words),
+            values=_choice("values", values, ("robustness", "boolean")),
+            targets_as=_choice("targets_as", targets_as, ("f32", "f16", "i8")),
+            lets=bool(lets),
+            max_state=_size("max_state", max_state),
+            max_code=_size("max_code", max_code),
+            max_work=_size("max_work", max_work),
+            history=_size("history", history),
+        )
+        call(library.etlc_open, byref(options), byref(self._session))
+        self._describe()
+        self._make_room()
+
+    def _describe(self) -> None:
+        spec = _described(_library.Description, library.etlc_describe, self._session)
+        #: Of the spec.
+        self.name: str = spec.name.decode()
+        #: Of a step, in seconds; 0: the spec says no rate.
+        self.step_seconds: float = spec.step_seconds
+        #: What etlc warned of; empty: nothing.
+        self.warnings: str = spec.warnings.decode()
+        #: The most steps that a sliding monitor is late by.
+        self.horizon: int = spec.horizon
+        #: XXH64 of the spec, its data and its thresholds, as in the generated class.
+        self.fingerprint: tuple[int, int, int] = (
+            spec.spec_hash, spec.data_hash, spec.thresholds_hash
+        )  # fmt: skip
+        inputs = [
+            _described(_library.InputDescription, library.etlc_describe_input, self._session, i)
+            for i in range(spec.inputs)
+        ]
+        self._types: list[int] = [one.type for one in inputs]
+        self._counts: list[int] = [one.dimension for one in inputs]
+        #: By name, in the order of the spec.
+        self.inputs: dict[str, Input] = {
+            one.name.decode(): Input(
+                one.name.decode(),
+                np.dtype(bool) if one.type == BOOL else _DTYPES[one.type],
+                (one.dimension,) if one.is_embedding else (),
+                one.hold, one.low, one.high, bool(one.is_used),
+            )
+            for one in inputs
+        }  # fmt: skip
+        monitors = [
+            _described(_library.MonitorDescription, library.etlc_describe_monitor, self._session, m)
+            for m in range(spec.monitors)
+        ]
+        #: Their names, in the order of the spec.
+        self.monitors: tuple[str, ...] = tuple(one.name.decode() for one in monitors)
+        #: By name of the monitor, as text.
+        self.formulas: dict[str, str] = {
+            one.name.decode(): one.formula.decode() for one in monitors
+        }
+        predicates = [
+            _described(
+                _library.PredicateDescription, library.etlc_describe_predicate, self._session, p
+            )
+            for p in range(spec.predicates)
+        ]
+        #: By name, as text: "min l2(z, goal) <= 0.25".
+        self.predicates: dict[str, str] = {
+            one.name.decode(): one.text.decode() for one in predicates
+        }
+        self._nearest = [bool(one.has_nearest) for one in predicates]
+        self._predicate_at = {one.name.decode(): p for p, one in enumerate(predicates)}
+        self._monitor_at = {name: m for m, name in enumerate(self.monitors)}
+        self._offsets = {name: 16 * m for m, name in enumerate(self.monitors)}
+        self._let_at = {}
+        for let in range(spec.lets):
+            name = c_char_p()
+            call(library.etlc_describe_let, self._session, let, byref(name))
+            self._let_at[(name.value or b"").decode()] = let
+
+    def _make_room(self) -> None:
+        """Where the samples of a step are put, and its verdicts."""
+        self._samples = (_library.Sample * len(self.inputs))()
+        self._elements: list[np.ndarray] = []
+        self._put: dict[str, Callable[[Any], None]] = {}
+        self._missing = set(self.inputs)
+        for at, one in enumerate(self.inputs.values()):
+            elements = np.zeros(self._counts[at], _DTYPES[self._types[at]])
+            self._elements.append(elements)
+            self._samples[at].count = self._counts[at]
+            self._samples[at].type = self._types[at]
+            place = elements.ctypes.data
+            put = self._scalar_put if one.shape == () else self._embedding_put
+            self._put[one.name] = put(one, elements, self._samples[at], place)
+        self._verdicts = (_library.VerdictStruct * len(self.monitors))()
+        self._said = 0  # how often verdicts were given
+        self._begin = 0  # of that, before the episode
+        # All that a step passes, as C has it.
+        self._call = (
+            library.etlc_step, self._session, self._samples, c_size_t(len(self.inputs)),
+            self._verdicts, c_size_t(len(self.monitors)), memoryview(self._verdicts).cast("B"),
+        )  # fmt: skip
+
+    def _scalar_put(
+        self, one: Input, elements: np.ndarray, sample: Any, place: int
+    ) -> Callable[[Any], None]:
+        name, missing = one.name, self._missing
+        as_element = conversion.as_bool if one.dtype == np.bool_ else conversion.as_number
+        fast = (bool,) if one.dtype == np.bool_ else (float, np.float32, np.float64)
+        view = memoryview(elements)
+
+        def put(value: Any) -> None:
+            if value.__class__ in fast:
+                view[0] = value
+            elif value is None:
+                self._mark_missing(name, sample)
+                return
+            else:
+                view[0] = as_element(name, value)
+            if name in missing:
+                missing.discard(name)
+                sample.data = place
+
+        return put
+
+    def _embedding_put(
+        self, one: Input, elements: np.ndarray, sample: Any, place: int
+    ) -> Callable[[Any], None]:
+        name, missing = one.name, self._missing
+        shape, dtype = one.shape, elements.dtype
+        view = memoryview(elements)
+
+        def put(value: Any) -> None:
+            if value.__class__ is np.ndarray and value.dtype == dtype and value.shape == shape:
+                view[:] = value
+            elif value is None:
+                self._mark_missing(name, sample)
+                return
+            else:
+                elements[:] = conversion.as_elements(name, value, dtype, shape)
+            if name in missing:
+                missing.discard(name)
+                sample.data = place
+
+        return put
+
+    def _mark_missing(self, name: str, sample: Any) -> None:
+        self._missing.add(name)
+        sample.data = None
+
+    def step(self, **samples: Any) -> Verdicts:
+        """One step.
+
+        Args:
+            **samples: by the name of the input: a number of a scalar, a bool, or an array of shape
+                (D,) of an embedding. One that is None or not given is missing, and so is one that
+                is not finite, or out of its range. Arrays of the input's own dtype are copied once;
+                float16 and float64 in place of float32 are rounded once; others are refused.
+
+        Returns:
+            What each monitor says.
+
+        Raises:
+            InputError: a name, shape or type that the spec does not know; no step was made.
+            ClosedError: the monitor is closed, or `finish` was called.
+        """
+        put = self._put
+        try:
+            for name, value in samples.items():
+                put[name](value)
+        except KeyError:
+            if name in put:
+                raise
+            raise InputError(self._no_such("input", name, tuple(self.inputs))) from None
+        if len(samples) != len(put):
+            for at, name in enumerate(put):
+                if name not in samples and name not in self._missing:
+                    self._mark_missing(name, self._samples[at])
+        function, session, given, inputs, verdicts, monitors, raw = self._call
+        status = function(session, given, inputs, verdicts, monitors)
+        if status != 0:
+            _library.raise_for(status)
+        self._said = said = self._said + 1
+        return Verdicts(self, raw.tobytes(), said)
+
+    def run(self, arrays: Mapping[str, Any] | None = None, **more: Any) -> Episode:
+        """A whole episode at once: `reset`, then a step for each row.
+
+        Args:
+            arrays: by the name of the input: an array of shape (N,) of a scalar or bool, (N, D) of
+                an embedding. What is NaN, masked (numpy.ma) or not given is missing. Arrays of the
+                input's own dtype are read where they lie, whatever their stride from row to row.
+            **more: the same, as arguments.
+
+        Returns:
+            What each monitor says at each step.
+
+        Raises:
+            InputError: as `step`; no step was made.
+        """
+        given = {**(arrays or {}), **more}
+        for name in given:
+            if name not in self.inputs:
+                raise InputError(self._no_such("input", name, tuple(self.inputs)))
+        columns = (_library.Column * len(self.inputs))()
+        kept: list[np.ndarray] = []
+        steps: int | None = None
+        for at, one in enumerate(self.inputs.values()):
+            value = given.get(one.name)
+            if value is None:
+                continue
+            present, rows = conversion.as_rows(one.name, value, self._elements[at].dtype, one.shape)
+            if steps is not None and steps != len(rows):
+                raise InputError(
+                    f"input {one.name!r} has {len(rows)} steps, others have {steps}"
+                )
+            steps = len(rows)
+            kept.append(rows)
+            column = columns[at]
+            column.data, column.stride = rows.ctypes.data, rows.strides[0]
+            column.count, column.type = self._counts[at], self._types[at]
+            if present is not None:
+                kept.append(present)
+                column.present = present.ctypes.data
+        if steps is None:
+            raise InputError("run() was given no input")
+        table = np.empty((steps, len(self.monitors)), VERDICT_DTYPE)
+        self.reset()
+        if steps > 0:
+            call(
+                library.etlc_run, self._session, ctypes.addressof(columns), len(columns), steps,
+                table.ctypes.data, table.size,
+            )  # fmt: skip
+        self._said += steps
+        return Episode(self.monitors, table)
+
+    def finish(self) -> Verdicts:
+        """The episode has ended: sliding monitors report one of the positions that are left.
+
+        Called `horizon` times it gives all of them. `reset` begins another episode.
+        """
+        call(library.etlc_finish, self._session, self._verdicts, len(self.monitors))
+        self._said += 1
+        self._begin += 1
+        return Verdicts(self, self._call[-1].tobytes(), self._said)
+
+    def reset(self) -> None:
+        """Begins a new episode. Thresholds that have moved stay where they are."""
+        call(library.etlc_reset, self._session)
+        self._said += 1
+        self._begin = self._said
+
+    def restart(self, monitor: str) -> None:
+        """From the next step on, this monitor is about that step. It is one that restarts."""
+        call(library.etlc_restart, self._session, self._at(self._monitor_at, "monitor", monitor))
+
+    def observe(self, predicate: str, distance: float, truth: bool) -> None:
+        """A label for an adaptive threshold.
+
+        Args:
+            predicate: its name.
+            distance: on a frame.
+            truth: whether it should have held there.
+        """
+        at = self._at(self._predicate_at, "predicate", predicate)
+        call(library.etlc_observe, self._session, at, distance, conversion.as_bool("truth", truth))
+
+    @property
+    def steps(self) -> int:
+        """Made since the monitor was opened or reset."""
+        return self._said - self._begin
+
+    def position(self, monitor: str) -> int:
+        """The step that the last verdict of a monitor is about."""
+        position = c_uint64()
+        at = self._at(self._monitor_at, "monitor", monitor)
+        call(library.etlc_position, self._session, at, byref(position))
+        return position.value
+
+    def measure(self, predicate: str) -> Measurement:
+        """What a predicate came to at the last step."""
+        at = self._at(self._predicate_at, "predicate", predicate)
+        measured = _library.Measured()
+        call(library.etlc_measure, self._session, at, byref(measured))
+        nearest = measured.nearest if self._nearest[at] else None
+        return Measurement(measured.distance, measured.threshold, nearest)
+
+    def let(self, name: str) -> float:
+        """The robustness of a let at the last step; NaN where a missing sample leaves it open."""
+        at = self._at(self._let_at, "let", name)
+        verdict = _library.VerdictStruct()
+        call(library.etlc_let, self._session, at, byref(verdict))
+        known = verdict.status & (_library.SATISFIED | _library.VIOLATED)
+        return verdict.robustness if known else float("nan")
+
+    def sample_counts(self, name: str) -> dict[str, int]:
+        """What became of the samples of an input: how many were missing, out_of_range, held."""
+        at = self._at({one: i for i, one in enumerate(self.inputs)}, "input", name)
+        counts = _library.Counts()
+        call(library.etlc_count, self._session, at, byref(counts))
+        return {
+            "missing": counts.missing, "out_of_range": counts.out_of_range, "held": counts.held
+        }  # fmt: skip
+
+    def explain(self, monitor: str) -> Explanation:
+        """Why the last verdict of a monitor is what it is, as `etlc explain` says it.
+
+        Raises:
+            NotKeptError: the monitor was opened without a history as long as the episode.
+            UndecidedError: there is no verdict yet.
+        """
+        import json
+
+        at = self._at(self._monitor_at, "monitor", monitor)
+        said = []
+        for form in (0, 1):
+            text = c_char_p()
+            call(library.etlc_explain, self._session, at, form, byref(text))
+            said.append((text.value or b"").decode())
+        return Explanation(said[0], json.loads(said[1]))
+
+    def close(self) -> None:
+        """Frees it. Every later call raises ClosedError, but for another close()."""
+        if self._session.value != 0:
+            session, self._session.value = self._session.value, 0
+            call(library.etlc_close, session)
+
+    def __enter__(self) -> Monitor:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def __del__(self) -> None:
+        try:
+            self.close()
+        except (Error, AttributeError, TypeError):  # in use, or the interpreter is going
+            pass
+
+    def __repr__(self) -> str:
+        return f"<etlc.Monitor {self.name}: {', '.join(self.monitors)}>"
+
+    def _at(self, places: Mapping[str, int], kind: str, name: str) -> int:
+        if name not in places:
+            raise InputError(self._no_such(kind, name, tuple(places)))
+        return places[name]
+
+    def _no_such(self, kind: str, name: str, names: tuple[str, ...]) -> str:
+        near = difflib.get_close_matches(str(name), names, 1)
+        hint = f"; did you mean {near[0]!r}?" if near else f", only {', '.join(names) or 'none'}"
+        return f"the spec has no {kind} {name!r}{hint}"
+
+
+def _path(path: str | os.PathLike[str] | None) -> bytes | None:
+    return None if path is None else os.fsencode(path)
+
+
+def _text(text: str | None) -> bytes | None:
+    if text is not None and "\0" in text:
+        raise InputError("the text of the spec has a NUL in it")
+    return None if text is None else text.encode()
+
+
+def _choice(name: str, value: str, choices: tuple[str, ...]) -> int:
+    if value not in choices:
+        raise InputError(f"{name} is {value!r}, expected {' or '.join(choices)}")
+    return choices.index(value)
+
+
+def _size(name: str, value: int) -> int:
+    if not isinstance(value, int) or not 0 <= value < 1 << 63:
+        raise InputError(f"{name} is {value!r}, expected a whole number from 0 on")
+    return value
+
+
+def _described(kind: Any, function: Any, *arguments: Any) -> Any:
+    description = kind(struct_size=ctypes.sizeof(kind))
+    call(function, *arguments, byref(description))
+    return description

@@ -1,0 +1,259 @@
+"""What monitors say: of one step, and of an episode."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from struct import Struct
+from typing import TYPE_CHECKING, Any, Iterator
+
+import numpy as np
+
+from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
+from .errors import InputError, NotKeptError
+
+if TYPE_CHECKING:
+    from .monitor import Monitor
+
+_VERDICT = Struct("=3fI")
+VERDICT_DTYPE = np.dtype(
+    [("robustness", "f4"), ("lower", "f4"), ("upper", "f4"), ("status", "u4")]
+)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why a verdict is what it is, as `etlc explain` says it.
+
+    Attributes:
+        text: for people.
+        data: for programs; docs/explanations.md lists the keys.
+    """
+
+    text: str
+    data: dict[str, Any]
+
+    def __str__(self) -> str:
+        return self.text
+
+
+class Verdict:
+    """What one monitor said after one step. It does not change with later steps.
+
+    Attributes:
+        name: of the monitor.
+        robustness: how far from the other answer, in the units of its predicates; pessimistic where
+            a sample is missing; NaN where nothing is decided.
+        lower, upper: what no continuation takes the robustness below, and above.
+    """
+
+    __slots__ = ("_monitor", "_said", "_status", "lower", "name", "robustness", "upper")
+
+    def __init__(self, monitor: Monitor, said: int, name: str, raw: bytes, at: int) -> None:
+        self._monitor = monitor
+        self._said = said
+        self.name = name
+        self.robustness: float
+        self.lower: float
+        self.upper: float
+        self.robustness, self.lower, self.upper, self._status = _VERDICT.unpack_from(raw, at)
+
+    @property
+    def bounds(self) -> tuple[float, float]:
+        """(lower, upper)."""
+        return self.lower, self.upper
+
+    @property
+    def alarm(self) -> bool:
+        """Violated for good: nothing that may come repairs it."""
+        return self._status & ALARM == ALARM
+
+    @property
+    def fulfilled(self) -> bool:
+        """Satisfied for good."""
+        return self._status & FULFILLED == FULFILLED
+
+    @property
+    def satisfied(self) -> bool:
+        """Were the episode to end now."""
+        return self._status & SATISFIED != 0
+
+    @property
+    def violated(self) -> bool:
+        """Were the episode to end now; until it is final this mostly means "not yet"."""
+        return self._status & VIOLATED != 0
+
+    @property
+    def decided(self) -> bool:
+        """False only before a sliding monitor has seen its horizon."""
+        return self._status & DECIDED != 0
+
+    @property
+    def unknown(self) -> bool:
+        """A missing sample leaves it open."""
+        return self.decided and not self.satisfied and not self.violated
+
+    @property
+    def final(self) -> bool:
+        """No continuation changes it between satisfied and violated."""
+        return self._status & FINAL != 0
+
+    @property
+    def status(self) -> str:
+        """"satisfied", "violated", "unknown" or "undecided"."""
+        if not self.decided:
+            return "undecided"
+        return "satisfied" if self.satisfied else "violated" if self.violated else "unknown"
+
+    @property
+    def why(self) -> Explanation:
+        """Why it is what it is. It is computed when it is asked for.
+
+        Raises:
+            NotKeptError: the monitor was opened without a history, or has stepped on since.
+            UndecidedError: there is no verdict.
+        """
+        if self._said != self._monitor._said:
+            raise NotKeptError(
+                "only the last verdict can be explained: the monitor has stepped on since"
+            )
+        return self._monitor.explain(self.name)
+
+    def __repr__(self) -> str:
+        text = f"<{self.name}: {self.status}{' for good' if self.final else ''}"
+        if self.decided:
+            text += f", {self.robustness:.6g} in [{self.lower:.6g}, {self.upper:.6g}]"
+        return text + ">"
+
+
+class Verdicts:
+    """What all monitors said after one step: `verdicts.NAME` or `verdicts["NAME"]`."""
+
+    __slots__ = ("_monitor", "_raw", "_said")
+
+    def __init__(self, monitor: Monitor, raw: bytes, said: int) -> None:
+        self._monitor = monitor
+        self._raw = raw
+        self._said = said
+
+    def __getitem__(self, name: str) -> Verdict:
+        at = self._monitor._offsets.get(name)
+        if at is None:
+            raise InputError(self._monitor._no_such("monitor", name, self._monitor.monitors))
+        return Verdict(self._monitor, self._said, name, self._raw, at)
+
+    def __getattr__(self, name: str) -> Verdict:
+        if name.startswith("_") or name not in self._monitor._offsets:
+            raise AttributeError(
+                self._monitor._no_such("monitor", name, self._monitor.monitors)
+            )
+        return self[name]
+
+    def __iter__(self) -> Iterator[Verdict]:
+        return (self[name] for name in self._monitor.monitors)
+
+    def __len__(self) -> int:
+        return len(self._monitor.monitors)
+
+    def __bool__(self) -> bool:
+        return True
+
+    @property
+    def alarms(self) -> list[Verdict]:
+        """Those that are violated for good, in the order of the spec."""
+        return [verdict for verdict in self if verdict.alarm]
+
+    def __repr__(self) -> str:
+        return f"Verdicts({', '.join(map(repr, self))})"
+
+
+class EpisodeVerdicts:
+    """What one monitor said at every step of an episode, as arrays of N steps.
+
+    Attributes:
+        name: of the monitor.
+        robustness, lower, upper: float32; NaN where nothing is decided.
+    """
+
+    def __init__(self, name: str, table: np.ndarray) -> None:
+        self.name = name
+        self.robustness: np.ndarray = table["robustness"]
+        self.lower: np.ndarray = table["lower"]
+        self.upper: np.ndarray = table["upper"]
+        self._status = table["status"]
+
+    @property
+    def bounds(self) -> tuple[np.ndarray, np.ndarray]:
+        """(lower, upper)."""
+        return self.lower, self.upper
+
+    @property
+    def alarm(self) -> np.ndarray:
+        """bool, per step: violated for good."""
+        return self._status & ALARM == ALARM
+
+    @property
+    def satisfied(self) -> np.ndarray:
+        """bool, per step."""
+        return self._status & SATISFIED != 0
+
+    @property
+    def violated(self) -> np.ndarray:
+        """bool, per step."""
+        return self._status & VIOLATED != 0
+
+    @property
+    def decided(self) -> np.ndarray:
+        """bool, per step."""
+        return self._status & DECIDED != 0
+
+    @property
+    def final(self) -> np.ndarray:
+        """bool, per step."""
+        return self._status & FINAL != 0
+
+    @property
+    def first_alarm(self) -> int | None:
+        """The first step with an alarm; None: there is none."""
+        alarms = self.alarm
+        return int(np.argmax(alarms)) if alarms.any() else None
+
+    def __len__(self) -> int:
+        return len(self._status)
+
+    def __repr__(self) -> str:
+        first = self.first_alarm
+        said = "no alarm" if first is None else f"first alarm at step {first}"
+        return f"<{self.name}: {len(self)} steps, {said}>"
+
+
+class Episode:
+    """What all monitors said of an episode: `episode.NAME` or `episode["NAME"]`.
+
+    Attributes:
+        table: a structured array (N steps, M monitors) with the fields robustness, lower, upper
+            and status.
+        monitors: their names, in the order of its columns.
+    """
+
+    def __init__(self, monitors: tuple[str, ...], table: np.ndarray) -> None:
+        self.monitors = monitors
+        self.table = table
+
+    def __getitem__(self, name: str) -> EpisodeVerdicts:
+        if name not in self.monitors:
+            raise InputError(f"there is no monitor {name!r}, only {', '.join(self.monitors)}")
+        return EpisodeVerdicts(name, self.table[:, self.monitors.index(name)])
+
+    def __getattr__(self, name: str) -> EpisodeVerdicts:
+        if name.startswith("_") or name not in self.monitors:
+            raise AttributeError(f"there is no monitor {name!r}")
+        return self[name]
+
+    def __iter__(self) -> Iterator[EpisodeVerdicts]:
+        return (self[name] for name in self.monitors)
+
+    def __len__(self) -> int:
+        return len(self.table)
+
+    def __repr__(self) -> str:
+        return f"Episode({', '.join(map(repr, self))})"

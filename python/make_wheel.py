@@ -1,0 +1,72 @@
+#!/usr/bin/python3
+"""Makes the wheel: the package, libetlc, the command, and the libraries that these load.
+
+make_wheel.py PYPROJECT LIBRARY COMMAND HDF5_READER FOLDER: the wheel goes into FOLDER.
+Needs setuptools and wheel, and patchelf, which makes each file look for libraries beside it.
+"""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+# Of every Linux that Python runs on: glibc, and the libraries of its compiler.
+THERE = re.compile(r"(ld-linux.*|lib(c|m|dl|rt|pthread|resolv|gcc_s|stdc\+\+))\.so[.\d]*$")
+
+
+def output_of(*words):
+    return subprocess.run(words, check=True, capture_output=True, text=True).stdout
+
+
+def libraries_of(program):
+    """What it loads, as paths by name."""
+    lines = (line.split() for line in output_of("ldd", program).splitlines())
+    found = {words[0]: words[2] for words in lines if len(words) > 2 and words[1] == "=>"}
+    lost = [name for name, path in found.items() if not path.startswith("/")]
+    if lost:
+        sys.exit(f"{program} needs {', '.join(lost)}, which is not there")
+    return {name: path for name, path in found.items() if not THERE.match(name)}
+
+
+def stage(folder, library, command, reader):
+    """What is not Python, below `folder`, with paths that hold wherever it is unpacked."""
+    places = {
+        library: (folder / "lib" / "libetlc.so.1", "$ORIGIN"),
+        command: (folder / "bin" / "etlc", "$ORIGIN/../lib"),
+        reader: (folder / "libexec" / "etlc" / Path(reader).name, "$ORIGIN/../../lib"),
+    }
+    for program in list(places):
+        for name, path in libraries_of(program).items():
+            places[path] = (folder / "lib" / name, "$ORIGIN")
+    for path, (place, run_path) in places.items():
+        place.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(path, place)
+        place.chmod(0o755)
+        subprocess.run(["strip", "--strip-unneeded", place], check=True)
+        subprocess.run(["patchelf", "--set-rpath", run_path, place], check=True)
+
+
+def main(pyproject, library, command, reader, folder):
+    here = Path(__file__).parent
+    with tempfile.TemporaryDirectory() as box:
+        source = Path(box)
+        shutil.copytree(here / "etlc", source / "etlc", ignore=shutil.ignore_patterns("__pyc*"))
+        stage(source / "etlc" / "_native", library, command, reader)
+        shutil.copy(pyproject, source)
+        shutil.copy(here / "setup.py", source)
+        dist = Path(folder)
+        for old in dist.glob("etlc-*.whl"):
+            old.unlink()
+        environment = {**os.environ, "SOURCE_DATE_EPOCH": "315619200"}  # the same bytes each time
+        subprocess.run(
+            [sys.executable, "setup.py", "--quiet", "bdist_wheel", "--dist-dir", dist.absolute()],
+            check=True, cwd=source, env=environment,
+        )  # fmt: skip
+        print(*dist.glob("etlc-*.whl"))
+
+
+if __name__ == "__main__":
+    main(*sys.argv[1:])
