@@ -39,6 +39,14 @@ cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
 compile
 expect "$("$box/build/robot")" "reached 0 limit 0.5"
 "$box/build/alone" || fail "the standalone monitor"
+expect "$("$box/build/opened" "$box/consumer/specs/reach.etl")" "reach: monitors: 1"
+if command -v pkg-config >"$box/log"; then
+    export PKG_CONFIG_PATH=$box/prefix/lib/pkgconfig
+    # shellcheck disable=SC2046 # several words
+    cc -std=c99 "$box/consumer/opened.c" $(pkg-config --cflags --libs etlc) -o "$box/opened"
+    expect "$(LD_LIBRARY_PATH=$box/prefix/lib "$box/opened" "$box/consumer/specs/reach.etl")" \
+        "reach: monitors: 1"
+fi
 expect "$("$box/build/stored")" "ready: reached 0"
 if grep 'include[ <"]*etlmon/' "$box/build/etlc/alone/guard.hpp"; then fail \
     "a standalone header includes the runtime"; fi

@@ -19,7 +19,8 @@ dpkg-deb -x "$deb" "$box/root"
 [[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] ||
     fail "etlc --version does not say $version"
 for file in include/etlmon/temporal/value.hpp share/cmake/etlc/etlcConfig.cmake \
-    share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright; do
+    share/cmake/etlc/EtlAddMonitor.cmake share/doc/etlc/copyright include/etlc.h \
+    lib/libetlc.so lib/libetlc.so.1 lib/pkgconfig/etlc.pc; do
     [ -f "$box/root/usr/$file" ] || fail "it lacks /usr/$file"
 done
 
@@ -34,3 +35,10 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
     fail "an .h5 trace cannot be read: $verdicts"
 [ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1,0" ] ||
     fail "the verdicts on an .h5 trace: $verdicts"
+
+# Python finds the package, and the package the library.
+said=$(LD_LIBRARY_PATH=$box/root/usr/lib PATH=$box/root/usr/bin:$PATH \
+    PYTHONPATH=$box/root/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
+    /usr/bin/python3 -c 'import etlc, sys; print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors,
+        etlc.commands.command_path())' "$box/t.etl") || fail "import etlc"
+[ "$said" = "$version ('m',) $box/root/usr/bin/etlc" ] || fail "the Python package says: $said"

@@ -118,9 +118,8 @@ std::string helper_path(std::string_view name) {
     const bool is_known = ::dladdr(reinterpret_cast<const void*>(&helper_path), &self) != 0;
     const bool is_library =
         is_known && std::string_view(self.dli_fname).find(".so") != std::string_view::npos;
-    const fs::path folder = is_library
-                                ? fs::canonical(self.dli_fname, error).parent_path()
-                                : fs::read_symlink("/proc/self/exe", error).parent_path();
+    const fs::path folder = is_library ? fs::canonical(self.dli_fname, error).parent_path()
+                                       : fs::read_symlink("/proc/self/exe", error).parent_path();
     const fs::path beside = folder / name;
     if (fs::exists(beside, error)) return beside.string();
     const fs::path installed = fs::path("libexec") / "etlc" / name;

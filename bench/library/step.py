@@ -1,0 +1,49 @@
+#!/usr/bin/python3
+"""A step from Python beside a step of the plan's own work.
+
+step.py SPEC.etl...: microseconds a step: `Monitor.step` with an alarm looked at, and `Monitor.run`,
+which makes the same steps in one call. PYTHONPATH and ETLC_LIBRARY lead to the package.
+"""
+
+import statistics
+import sys
+import time
+
+import numpy as np
+
+import etlc
+
+STEPS, ROUNDS = 20_000, 7
+
+
+def microseconds(work):
+    times = []
+    for _ in range(ROUNDS):
+        begin = time.perf_counter()
+        work()
+        times.append((time.perf_counter() - begin) / STEPS * 1e6)
+    return statistics.median(times)
+
+
+def main():
+    print(f"{'us a step':40} {'run':>8} {'step':>8} {'more':>8}")
+    for path in sys.argv[1:]:
+        monitor = etlc.Monitor(path)
+        random = np.random.default_rng(1)
+        arrays = {
+            name: random.random((STEPS, *one.shape)).astype(one.dtype)
+            for name, one in monitor.inputs.items()
+        }
+        rows = [dict(zip(arrays, row)) for row in zip(*arrays.values())]
+        first = monitor.monitors[0]
+
+        def steps():
+            monitor.reset()
+            for row in rows:
+                monitor.step(**row)[first].alarm
+
+        own, through = microseconds(lambda: monitor.run(arrays)), microseconds(steps)
+        print(f"{path:40} {own:8.2f} {through:8.2f} {through - own:8.2f}")
+
+
+main()

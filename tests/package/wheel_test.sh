@@ -1,0 +1,37 @@
+#!/usr/bin/env bash
+# wheel_test.sh BUILD_DIR CMAKE TEST PYTHON: makes the wheel, installs it with pip where nothing of
+# this build is in the path, and runs TEST, that of the package. All that it loads beside Python's
+# own and the C library is in the wheel.
+set -euo pipefail
+build_dir=$1 cmake=$2 test=$3 python=$4
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+
+fail() { echo "FAILED: $*"; exit 1; }
+
+"$cmake" --build "$build_dir" --target wheel >"$box/log" 2>&1 ||
+    { cat "$box/log"; fail "the wheel is not made"; }
+"$python" -m venv --system-site-packages "$box/venv"
+"$box/venv/bin/pip" install --quiet --no-index --no-deps "$build_dir"/dist/etlc-*.whl
+cd "$box"
+unset ETLC_LIBRARY ETLC_COMMAND PYTHONPATH LD_LIBRARY_PATH
+export PATH=$box/venv/bin:/usr/bin:/bin
+python3 "$test" "$(dirname "$test")/../spec" >"$box/log" 2>&1 ||
+    { cat "$box/log"; fail "the tests of the package"; }
+native=$(python3 -c 'import etlc; print(etlc._library.NATIVE)')
+[[ $native == "$box/venv/"* ]] || fail "another etlc is imported: $native"
+for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-hdf5; do
+    others=$(ldd "$native/$program" | awk '$2 == "=>" {print $3}' | grep -v "^$native/" |
+        grep -vE '/(lib(c|m|gcc_s|stdc\+\+|resolv))\.so[.0-9]*$' || true)
+    [ -z "$others" ] || fail "$program loads from outside of the wheel: $others"
+done
+
+# An .h5 target is read by a program of the wheel.
+data=$(cd "$(dirname "$test")" && pwd)/../unit/data
+cat >t.etl <<'SPEC'
+spec t;
+input gripper : f32;
+monitor m = F (gripper > 0.5);
+SPEC
+"$native/bin/etlc" run t.etl --trace "$data/trace.h5" | tail -1 | grep -qx \
+    "6,m,0.25,0.25,inf,satisfied,1,0" || fail "the verdicts on an .h5 trace"
