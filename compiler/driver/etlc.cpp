@@ -10,6 +10,7 @@
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
 #include "driver/calibrate.hpp"
+#include "driver/codes/explain_code.hpp"
 #include "driver/compile.hpp"
 #include "driver/embed.hpp"
 #include "driver/evaluate/evaluate.hpp"
@@ -135,7 +136,8 @@ int compile_command(int argc, char** argv) {
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
         "etlc crossvalidate SPEC.etl... --data FILE..., etlc merge PART...,\n"
         "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
-        "etlc report SPEC.etl --data FILE... -o PAGE.html",
+        "etlc report SPEC.etl --data FILE... -o PAGE.html\n"
+        "etlc --explain CODE",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", library::kVersion));
@@ -355,6 +357,9 @@ int execute(int argc, char** argv) {
     if (command == "fit") return fit_command(argc - 1, argv + 1);
     if (command == "merge") return merge_command(argc - 1, argv + 1);
     if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
+    // With a spec it is an option of the class that is made.
+    if (command == "--explain" && argc == 3 && driver::is_code(argv[2]))
+        return driver::explain_code_command(argv[2]);
     return compile_command(argc, argv);
 }
 

@@ -2,7 +2,7 @@
 """The examples of a page print what stands below them.
 
 page_test.py PAGE c CC FLAG... | page_test.py PAGE python
-With ETLC_UPDATE in the environment the page is written anew.
+With ETLC_UPDATE in the environment the page gets what they print.
 """
 
 import contextlib

@@ -478,7 +478,9 @@ monitor arrives = F near;
         judged = etlc.evaluate(path / "reach.etl", [path / "others"], by_episode=True)
         self.assertIn("near", judged.report)
         self.assertIn("near", json.dumps(judged.data))
-        other = etlc.calibrate(path / "reach.etl", path / "data", output=path / "other.json", jobs=1)
+        other = etlc.calibrate(
+            path / "reach.etl", path / "data", output=path / "other.json", jobs=1
+        )
         self.assertEqual(other.path.read_text(), made.path.read_text())
 
     def test_fits(self):

@@ -39,6 +39,7 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
 # Python finds the package, and the package the library.
 said=$(LD_LIBRARY_PATH=$box/root/usr/lib PATH=$box/root/usr/bin:$PATH \
     PYTHONPATH=$box/root/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
-    /usr/bin/python3 -c 'import etlc, sys; print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors,
-        etlc.commands.command_path())' "$box/t.etl") || fail "import etlc"
+    /usr/bin/python3 -c 'import etlc, sys
+print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors, etlc.commands.command_path())
+' "$box/t.etl") || fail "import etlc"
 [ "$said" = "$version ('m',) $box/root/usr/bin/etlc" ] || fail "the Python package says: $said"

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "diag/diag.hpp"
+#include "driver/codes/explain_code.hpp"
 #include "golden.hpp"
 
 namespace etlc::testing {
@@ -25,7 +26,8 @@ std::string_view group_title(std::string_view code) {
         {"E07", "Limits"},
         {"E08", "Traces and episodes"},
         {"E09", "Output and memory"},
-        {"E10", "Images, video and encoders"}};
+        {"E10", "Images, video and encoders"},
+        {"E11", "Parts of a result"}};
     const auto found = titles.find(code.substr(0, 3));
     return found == titles.end() ? std::string_view("Others") : found->second;
 }
@@ -36,7 +38,7 @@ std::string table() {
 Every error and warning of `etlc` has a code.
 This table is made from compiler/diag/codes.def; a test keeps the two equal, and `ETLC_UPDATE=1`
 rewrites it.
-tests/spec/error holds at least one example of each code, with the exact message.
+`etlc --explain E0204` prints what is here of a code, and an example of its message.
 
 | exit status | |
 | --- | --- |
@@ -91,6 +93,15 @@ TEST(Diagnostics, NamesAreUnique) {
     std::set<std::string_view> names;
     for (const diag::CodeInfo& info : diag::all_codes())
         EXPECT_TRUE(names.insert(info.name).second) << info.name;
+}
+
+TEST(Diagnostics, EveryCodeIsExplainedWithAnExample) {
+    for (const diag::CodeInfo& info : diag::all_codes()) {
+        const std::string text = driver::explain_code(info.code);
+        EXPECT_NE(text.find(info.summary), std::string::npos) << info.code;
+        EXPECT_NE(text.find(fmt::format("[{}]", info.code)), std::string::npos) << text;
+    }
+    EXPECT_EQ(driver::explain_code("E0000"), "");
 }
 
 }  // namespace
