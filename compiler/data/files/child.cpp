@@ -1,6 +1,5 @@
 #include "data/files/child.hpp"
 
-#include <dlfcn.h>
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
@@ -113,19 +112,10 @@ private:
 std::string helper_path(std::string_view name) {
     namespace fs = std::filesystem;
     std::error_code error;
-    // Of the program or, where a program of another kind has loaded libetlc, of that.
-    Dl_info self{};
-    const bool is_known = ::dladdr(reinterpret_cast<const void*>(&helper_path), &self) != 0;
-    const bool is_library =
-        is_known && std::string_view(self.dli_fname).find(".so") != std::string_view::npos;
-    const fs::path folder = is_library ? fs::canonical(self.dli_fname, error).parent_path()
-                                       : fs::read_symlink("/proc/self/exe", error).parent_path();
+    const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
     const fs::path beside = folder / name;
     if (fs::exists(beside, error)) return beside.string();
-    const fs::path installed = fs::path("libexec") / "etlc" / name;
-    const fs::path multiarch = folder.parent_path().parent_path() / installed;
-    if (is_library && fs::exists(multiarch, error)) return multiarch.string();
-    return (folder.parent_path() / installed).string();
+    return (folder.parent_path() / "libexec" / "etlc" / name).string();
 }
 
 std::unique_ptr<Child> Child::start(const std::string& program,
