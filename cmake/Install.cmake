@@ -14,6 +14,7 @@ if(TARGET etlc_mpi)
 endif()
 install(TARGETS etlmon EXPORT etlmonTargets)
 install(TARGETS libetlc EXPORT etlcTargets)
+file(RELATIVE_PATH ETLC_PREFIX_FROM_PC "/usr/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/usr")
 configure_file("${CMAKE_CURRENT_LIST_DIR}/etlc.pc.in" "${PROJECT_BINARY_DIR}/etlc.pc" @ONLY)
 install(FILES "${PROJECT_BINARY_DIR}/etlc.pc" DESTINATION "${CMAKE_INSTALL_LIBDIR}/pkgconfig")
 install(DIRECTORY "${PROJECT_SOURCE_DIR}/runtime/include/etlmon"

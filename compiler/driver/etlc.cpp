@@ -136,7 +136,7 @@ int compile_command(int argc, char** argv) {
         "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
         "etlc crossvalidate SPEC.etl... --data FILE..., etlc merge PART...,\n"
         "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
-        "etlc report SPEC.etl --data FILE... -o PAGE.html\n"
+        "etlc report SPEC.etl --data FILE... -o PAGE.html,\n"
         "etlc --explain CODE",
         "etlc");
     app.footer(kExitStatus);

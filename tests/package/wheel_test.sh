@@ -26,7 +26,7 @@ for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-hdf5; do
     [ -z "$others" ] || fail "$program loads from outside of the wheel: $others"
 done
 
-# An .h5 target is read by a program of the wheel.
+# An .h5 trace is read by another program of the wheel.
 data=$(cd "$(dirname "$test")" && pwd)/../unit/data
 cat >t.etl <<'SPEC'
 spec t;

@@ -38,7 +38,7 @@ std::string table() {
 Every error and warning of `etlc` has a code.
 This table is made from compiler/diag/codes.def; a test keeps the two equal, and `ETLC_UPDATE=1`
 rewrites it.
-`etlc --explain E0204` prints what is here of a code, and an example of its message.
+`etlc --explain E0204` says what a code means, with an example of its message.
 
 | exit status | |
 | --- | --- |
