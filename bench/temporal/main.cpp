@@ -57,18 +57,22 @@ constexpr Column kColumns[] = {
     {"plain", "ns", "plain_ns", 7, 2},
     {"ready", "ns", "ready_ns", 7, 2},
     {"ready/", "plain", "ready_to_plain", 6, 2},
-    {"why/", "ready", "why_to_ready", 6, 2},
+    {"judge", "ns", "judged_ns", 7, 2},
+    {"why/", "judge", "why_to_judged", 6, 2},
     {"step", "ns", "robustness_ns", 7, 2},
     {"step/", "plain", "robustness_to_plain", 6, 2},
     {"verd/", "step", "verdict_to_robustness", 6, 2},
+    {"why/", "verd", "why_step_to_verdict", 6, 2},
     {"rescan/", "step", "rescan_to_robustness", 8, 1},
     {"| called", "plain", "plain_called_ns", 9, 2},
     {"ready", "ns", "ready_called_ns", 7, 2},
     {"ready/", "plain", "ready_called_to_plain", 6, 2},
-    {"why/", "ready", "why_to_ready_called", 6, 2},
+    {"judge", "ns", "judged_called_ns", 7, 2},
+    {"why/", "judge", "why_to_judged_called", 6, 2},
     {"step", "ns", "robustness_called_ns", 7, 2},
     {"step/", "plain", "robustness_called_to_plain", 6, 2},
     {"verdict", "ns", "verdict_called_ns", 8, 2},
+    {"why/", "verd", "why_step_to_verdict_called", 6, 2},
     {"+-", "%", "spread_percent", 3, 0},
     {"copilot/", "step", "copilot_to_robustness_called", 9, 1},
     {"| worst", "ns", "worst_step_ns", 8, 0},
@@ -94,18 +98,22 @@ void print(const json& row) {
 }
 
 json measured(const Row& row, bench::Effort effort) {
-    std::vector<Routine> routines{row.judge.loop, row.judge.call,   row.rho.loop,
-                                  row.rho.call,   row.verdict.loop, row.verdict.call};
+    std::vector<Routine> routines{row.judge.loop,   row.judge.call,  row.judged.loop,
+                                  row.judged.call,  row.rho.loop,    row.rho.call,
+                                  row.verdict.loop, row.verdict.call};
     std::size_t next = routines.size();
     for (const std::optional<Routine>& more :
-         {row.why.loop, row.why.call, row.plain.loop, row.plain.call, row.rescan, row.copilot})
+         {row.why.loop, row.why.call, row.why_step.loop, row.why_step.call, row.plain.loop,
+          row.plain.call, row.rescan, row.copilot})
         if (more) routines.push_back(*more);
     const std::vector<Series> series = bench::measure(routines, effort);
-    const bench::Ways<Series> ready{series[0], series[1]}, rho{series[2], series[3]},
-        verdict{series[4], series[5]};
+    const bench::Ways<Series> ready{series[0], series[1]}, judged{series[2], series[3]},
+        rho{series[4], series[5]}, verdict{series[6], series[7]};
     json result{{"formula", row.title},
                 {"ready_ns", ready.loop.median()},
                 {"ready_called_ns", ready.call.median()},
+                {"judged_ns", judged.loop.median()},
+                {"judged_called_ns", judged.call.median()},
                 {"robustness_ns", rho.loop.median()},
                 {"robustness_called_ns", rho.call.median()},
                 {"verdict_ns", verdict.loop.median()},
@@ -116,11 +124,14 @@ json measured(const Row& row, bench::Effort effort) {
                 {"operations", row.operations},
                 {"worst_step_ns", row.worst()}};
     if (row.why.loop) {
-        const bench::Ways<Series> why{series[next], series[next + 1]};
-        next += 2;
-        result["why_to_ready"] = bench::ratio(why.loop, ready.loop);
+        const bench::Ways<Series> why{series[next], series[next + 1]},
+            step{series[next + 2], series[next + 3]};
+        next += 4;
+        result["why_to_judged"] = bench::ratio(why.loop, judged.loop);
         result["why_called_ns"] = why.call.median();
-        result["why_to_ready_called"] = bench::ratio(why.call, ready.call);
+        result["why_to_judged_called"] = bench::ratio(why.call, judged.call);
+        result["why_step_to_verdict"] = bench::ratio(step.loop, verdict.loop);
+        result["why_step_to_verdict_called"] = bench::ratio(step.call, verdict.call);
         result["why_state_bytes"] = row.why_state_bytes;
     }
     if (row.plain.loop) {

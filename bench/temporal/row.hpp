@@ -42,8 +42,11 @@ struct Row {
     std::optional<Routine> copilot;  ///< Copilot's monitor, called
     /// The monitor on predicates that are ready; its user reads `robustness` alone.
     Ways<Routine> judge;
-    /// The same of a class that was made with --explain.
+    /// The same; its user reads all of the verdict, as one does who acts on `alarm()`.
+    Ways<Routine> judged;
+    /// The latter of a class that was made with --explain.
     Ways<std::optional<Routine>> why;
+    Ways<std::optional<Routine>> why_step;  ///< its whole step, all of the verdict
     std::size_t why_state_bytes = 0;
     Ways<Routine> rho;              ///< the monitor's whole step
     Ways<Routine> verdict;          ///< the same; its user reads all of the verdict
@@ -74,6 +77,20 @@ template <class Case, bool kCalled, class Monitor>
     }
 }
 
+/// The same, all of every verdict.
+template <class Case, bool kCalled, class Monitor>
+[[gnu::noinline]] void judge_verdict(Monitor& monitor,
+                                     const std::vector<typename Monitor::Atoms>& atoms,
+                                     std::size_t from, etlmon::Verdict* __restrict out) {
+    for (std::size_t i = 0; i < kChunk; ++i) {
+        Case::visit(monitor.judge(atoms[from + i]),
+                    [&](std::size_t m, const etlmon::Verdict& verdict) {
+                        out[i * Case::kMonitors + m] = verdict;
+                    });
+        if (kCalled) settle_memory();
+    }
+}
+
 /// The monitor's user: a chunk of steps, robustness alone.
 template <class Case, bool kCalled>
 [[gnu::noinline]] void read_robustness(typename Case::Monitor& monitor, const Signals& signals,
@@ -88,11 +105,11 @@ template <class Case, bool kCalled>
 }
 
 /// A chunk of steps, all of every verdict.
-template <class Case, bool kCalled>
-[[gnu::noinline]] void read_verdict(typename Case::Monitor& monitor, const Signals& signals,
-                                    std::size_t from, etlmon::Verdict* __restrict out) {
+template <class Case, bool kCalled, class Monitor, class Inputs>
+[[gnu::noinline]] void read_verdict(Monitor& monitor, const Signals& signals, std::size_t from,
+                                    etlmon::Verdict* __restrict out) {
     for (std::size_t i = 0; i < kChunk; ++i) {
-        Case::visit(monitor.step(Case::inputs(signals, from + i)),
+        Case::visit(monitor.step(Case::template inputs<Inputs>(signals, from + i)),
                     [&](std::size_t m, const etlmon::Verdict& verdict) {
                         out[i * Case::kMonitors + m] = verdict;
                     });
@@ -185,16 +202,26 @@ double slowest_step() {
                                        [&] { Case::visit(monitor->step(inputs), keep); }});
 }
 
-/// judge() alone, on predicates that are ready.
+/// judge() alone, on predicates that are ready: for its robustness, and for whole verdicts.
 template <class Case, class Monitor, class Inputs>
-Ways<Routine> judging(const std::string& name, const Signals& signals) {
+struct Judging {
+    Ways<Routine> robustness, verdict;
+
+    explicit Judging(const std::string& name, const Signals& signals)
+        : Judging(name, std::make_shared<const Atoms>(measured<Case, Monitor, Inputs>(signals))) {}
+
+private:
     using Atoms = std::vector<typename Monitor::Atoms>;
-    const auto atoms = std::make_shared<const Atoms>(measured<Case, Monitor, Inputs>(signals));
-    return {routine<float, Monitor>(name, Case::kMonitors, atoms,
-                                    judge_robustness<Case, false, Monitor>),
-            routine<float, Monitor>(name + ", called", Case::kMonitors, atoms,
-                                    judge_robustness<Case, true, Monitor>)};
-}
+    Judging(const std::string& name, const std::shared_ptr<const Atoms>& atoms)
+        : robustness{routine<float, Monitor>(name, Case::kMonitors, atoms,
+                                             judge_robustness<Case, false, Monitor>),
+                     routine<float, Monitor>(name + ", called", Case::kMonitors, atoms,
+                                             judge_robustness<Case, true, Monitor>)},
+          verdict{routine<etlmon::Verdict, Monitor>(name + ", verdict", Case::kMonitors, atoms,
+                                                    judge_verdict<Case, false, Monitor>),
+                  routine<etlmon::Verdict, Monitor>(name + ", verdict, called", Case::kMonitors,
+                                                    atoms, judge_verdict<Case, true, Monitor>)} {}
+};
 
 template <class Case>
 Row row() {
@@ -223,18 +250,28 @@ Row row() {
     const auto monitored = [&](auto result_type, const char* name, auto chunk) {
         return routine<decltype(result_type), Monitor>(name, kMonitors, signals, chunk);
     };
-    result.judge = judging<Case, Monitor, decltype(Case::inputs(*signals, 0))>("ready", *signals);
+    using Inputs = decltype(Case::inputs(*signals, 0));
+    const Judging<Case, Monitor, Inputs> judging("ready", *signals);
+    result.judge = judging.robustness;
+    result.judged = judging.verdict;
     if constexpr (Explained<Monitor>::kExists) {
         using Why = Explained<Monitor>;
-        const auto why =
-            judging<Case, typename Why::Monitor, typename Why::Inputs>("why", *signals);
-        result.why = {why.loop, why.call};
+        const Judging<Case, typename Why::Monitor, typename Why::Inputs> why("why", *signals);
+        result.why = {why.verdict.loop, why.verdict.call};
+        result.why_step = {
+            routine<etlmon::Verdict, typename Why::Monitor>(
+                "why, step", kMonitors, signals,
+                read_verdict<Case, false, typename Why::Monitor, typename Why::Inputs>),
+            routine<etlmon::Verdict, typename Why::Monitor>(
+                "why, step, called", kMonitors, signals,
+                read_verdict<Case, true, typename Why::Monitor, typename Why::Inputs>)};
         result.why_state_bytes = Why::Monitor::kStateBytes;
     }
     result.rho = {monitored(float{}, "robustness", read_robustness<Case, false>),
                   monitored(float{}, "robustness, called", read_robustness<Case, true>)};
-    result.verdict = {monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false>),
-                      monitored(etlmon::Verdict{}, "verdict, called", read_verdict<Case, true>)};
+    result.verdict = {
+        monitored(etlmon::Verdict{}, "verdict", read_verdict<Case, false, Monitor, Inputs>),
+        monitored(etlmon::Verdict{}, "verdict, called", read_verdict<Case, true, Monitor, Inputs>)};
     result.worst = slowest_step<Case>;
     return result;
 }

@@ -82,9 +82,12 @@ std::vector<Member> own_members(const Context& context) {
         result.push_back({"uint32_t", "finishes", "calls of finish()", "finishes = 0;", ""});
     result.push_back({"uint32_t", "incomplete", "steps on which something was unknown; saturates",
                       "incomplete = 0;", ""});
-    if (context.explains && !context.sampled.places.empty())
+    if (context.explains && !context.sampled.places.empty()) {
+        result.push_back({"uint32_t", "measured", "index of the step for measure(); saturates",
+                          "measured = 0;", ""});
         result.push_back({fmt::format("etlmon::Deciding<{}>", plan.monitors.size()), "deciding",
                           "the values that decide the verdicts", "deciding.reset();", ""});
+    }
     if (plan.recorder)
         result.push_back({"Recorder", "recorder", "the last steps, and incidents",
                           "recorder.end_episode();", ""});
@@ -152,9 +155,9 @@ void print_types(Printer& out, const Context& context) {
     if (context.on_demand) return;
     print_doc(out, "What a step says about each predicate.");
     out.open("struct Atoms {");
-    for (const auto& [p, name] : context.names.predicate_atom) out.line("etlmon::Value {};", name);
-    for (const auto& [i, name] : context.names.flag_atom) out.line("etlmon::Value {};", name);
-    print_codes_field(out, context);
+    for (const auto& [p, name] : context.names.predicate_atom)
+        out.line("{} {};", words.value, name);
+    for (const auto& [i, name] : context.names.flag_atom) out.line("{} {};", words.value, name);
     if (context.plan.recorder) out.line("{} row_;  // of the recorder", recorder_row(context));
     out.close("};");
     out.line();

@@ -105,10 +105,8 @@ std::string Context::value(plan::Slot slot) const {
     const std::string now = on_demand ? "" : "now.";
     if (stream.op == StreamOp::constant) return literal(stream.value);
     const bool is_predicate = stream.op == StreamOp::predicate;
-    if (is_predicate || stream.op == StreamOp::flag) {
-        if (explains) return names.sourced_atoms[sampled.place_of(is_predicate, stream.index)];
+    if (is_predicate || stream.op == StreamOp::flag)
         return now + (is_predicate ? names.predicate_atom : names.flag_atom).at(stream.index);
-    }
     const bool is_register = stream.op == StreamOp::running || stream.op == StreamOp::since;
     return is_register ? names.streams[slot].member : names.streams[slot].local;
 }

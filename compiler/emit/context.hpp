@@ -142,16 +142,16 @@ void print_recorded_flag(Printer& out, const Context& context, check::Index inpu
 void print_record(Printer& out, const Context& context, const std::string& verdicts);
 
 // Explanations, where values know their sample; nothing else prints anything then.
-/// The field of Atoms that says which samples they are.
-void print_codes_field(Printer& out, const Context& context);
-/// Which sample of a predicate whose distance or expression is `delta` this step has, and of a
-/// bool.
-void print_code(Printer& out, const Context& context, check::Index predicate,
-                const std::string& delta);
-void print_flag_code(Printer& out, const Context& context, check::Index input,
-                     const std::string& flag);
-/// At the beginning of judge(): this step's values with their samples.
-void print_sourced_atoms(Printer& out, const Context& context);
+/// At the beginning of measure(): what the samples of this step have in common.
+void print_rank(Printer& out, const Context& context);
+/// At its end: the step is counted.
+void print_step_measured(Printer& out, const Context& context);
+/// The value of a predicate, with the sample that it has at this step: whose distance or
+/// expression is `delta`. And of a bool.
+std::string sourced(const Context& context, check::Index predicate, const std::string& value,
+                    const std::string& delta);
+std::string sourced_flag(const Context& context, check::Index input, const std::string& value,
+                         const std::string& flag);
 /// why_NAME(), and what they share.
 void print_why(Printer& out, const Context& context);
 void print_why_of(Printer& out, const Context& context);

@@ -160,7 +160,6 @@ void print_judge(Printer& out, const Context& context) {
     out.line("using etlmon::max_of;");
     out.line("using etlmon::min_of;");
     out.gap();
-    print_sourced_atoms(out, context);
     print_streams(out, context);
     print_readings(out, context);
     out.gap();

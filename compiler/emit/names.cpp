@@ -88,7 +88,6 @@ public:
 
     Names name_all() {
         name_atoms();
-        name_sourced_atoms();
         name_measurements();
         name_nearest();
         name_streams();
@@ -121,14 +120,6 @@ private:
             if (!on_demand_)
                 for (Scope* scope : {&judge_, &measure_}) scope->claim(names_.predicate_unseen[p]);
             names_.predicate_local[p] = local(measure_, predicate_name(predicate) + "_delta");
-        }
-    }
-
-    void name_sourced_atoms() {
-        if (!plan::value_type(plan_.values).sourced) return;
-        for (const plan::Samples::Place& place : plan::samples(plan_).places) {
-            const auto& atoms = place.is_predicate ? names_.predicate_atom : names_.flag_atom;
-            names_.sourced_atoms.push_back(local(judge_, atoms.at(place.index) + "_now"));
         }
     }
 

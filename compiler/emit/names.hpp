@@ -51,9 +51,7 @@ struct Names {
     std::map<check::Index, std::string> predicate_atom;
     /// Function of a class of robustness: all that the predicate can be.
     std::map<check::Index, std::string> predicate_unseen;
-    std::map<check::Index, std::string> flag_atom;  ///< as predicate_atom
-    /// In judge() of a class that explains: this step's values with their samples.
-    std::vector<std::string> sourced_atoms;
+    std::map<check::Index, std::string> flag_atom;         ///< as predicate_atom
     std::map<check::Index, std::string> predicate_member;  ///< telemetry, of named predicates
     /// Of named predicates that are more than a distance: for each distance that they read, the
     /// nearest row, and the function that gives it.

@@ -136,7 +136,7 @@ private:
 
     /// Where the number of the step is asked for, from the start of the trace or of a monitor.
     void count_steps() {
-        plan_.counts_steps = plan_.has_sliding || value_type(plan_.values).sourced;
+        plan_.counts_steps = plan_.has_sliding;
         const auto count = [&](std::uint32_t from) {
             (from == kNone ? plan_.counts_steps : plan_.monitors[from].counts_steps) = true;
         };

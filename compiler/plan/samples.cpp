@@ -39,11 +39,10 @@ void leave_out_rows(std::vector<Samples::Place>& places) {
 
 }  // namespace
 
-std::size_t Samples::place_of(bool is_predicate, Index index) const {
-    const auto place = std::find_if(places.begin(), places.end(), [&](const Place& of) {
+const Samples::Place& Samples::place_of(bool is_predicate, Index index) const {
+    return *std::find_if(places.begin(), places.end(), [&](const Place& of) {
         return of.is_predicate == is_predicate && of.index == index;
     });
-    return static_cast<std::size_t>(place - places.begin());
 }
 
 Samples samples(const Plan& plan) {
@@ -64,7 +63,8 @@ Samples samples(const Plan& plan) {
 }
 
 std::uint64_t bytes_of(const Samples& samples, std::size_t monitors) {
-    return samples.places.empty() ? 0 : monitors * sizeof(etlmon::SourcedKey);
+    constexpr std::uint64_t kStep = 4;  // which one measure() is at
+    return samples.places.empty() ? 0 : kStep + monitors * sizeof(etlmon::SourcedKey);
 }
 
 }  // namespace etlc::plan

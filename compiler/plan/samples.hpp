@@ -29,7 +29,7 @@ struct Samples {
     std::vector<Place> places;  ///< in the order in which the spec first says them
     std::uint32_t codes = 0;    ///< of all
 
-    std::size_t place_of(bool is_predicate, Index index) const;
+    const Place& place_of(bool is_predicate, Index index) const;
 };
 
 /// Of a plan in values that know their sample.

@@ -153,11 +153,10 @@ private:
                                       ? context_.names.distance_local.at(predicate.expression.index)
                                   : is_contrast ? "apart"
                                                 : delta;
-        print_wrapped(
-            out_, fmt::format("now.{} = etlmon::{}({}, {}, {});", atom, robustness_name(predicate),
-                              known, threshold, missing_value(p)));
+        const std::string value = fmt::format("etlmon::{}({}, {}, {})", robustness_name(predicate),
+                                              known, threshold, missing_value(p));
+        print_wrapped(out_, fmt::format("now.{} = {};", atom, sourced(context_, p, value, delta)));
         out_.line(missed(fmt::format("etlmon::is_nan({})", delta)));
-        print_code(out_, context_, p, delta);
         print_recorded(out_, context_, p, delta);
         if (is_contrast) out_.close();
     }
@@ -253,8 +252,10 @@ void print_measure(Printer& out, const Context& context) {
               fmt::format("measure({}const Inputs& in)", reads_inputs ? "" : "[[maybe_unused]] "));
     out.line("Atoms now;");
     out.line("bool missing = false;");
+    print_rank(out, context);
     MeasurePrinter(out, context).print();
     out.line();
+    print_step_measured(out, context);
     print_wrapped(out, "if (missing && incomplete != UINT32_MAX) ++incomplete;");
     out.line("return now;");
     out.close();

@@ -59,25 +59,34 @@ std::string held_flag(const std::string& word) {
     return fmt::format("{0} != nullptr ? etlmon::Flag(*{0} != 0) : etlmon::Flag()", word);
 }
 
+/// What else truth_of and value_of take: what a bool counts as where it is missing.
+std::string missing_flag(const Context& context, Index i) {
+    const check::Input& input = context.model.inputs[i];
+    return input.missing ? ", " + context.atom_literal(plan::missing_value(input)) : "";
+}
+
+void print_flag_atom(Printer& out, const Context& context, Index i, const std::string& flag) {
+    const std::string value = fmt::format("etlmon::value_of({}{})", flag, missing_flag(context, i));
+    print_wrapped(out, fmt::format("now.{} = {};", context.names.flag_atom.at(i),
+                                   sourced_flag(context, i, value, flag)));
+}
+
 void print_flag(Printer& out, const Context& context, Index i) {
     const check::Input& input = context.model.inputs[i];
-    const std::string missing =
-        input.missing ? ", " + context.atom_literal(plan::missing_value(input)) : "";
     const std::string& local = context.names.input_local.at(i);
     if (on_demand(context, i)) {
         out.open(
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(fmt::format("!in.{}.present()", input.name)));
         print_recorded_flag(out, context, i, "in." + input.name);
-        out.line("return etlmon::truth_of(in.{}{});", input.name, missing);
+        out.line("return etlmon::truth_of(in.{}{});", input.name, missing_flag(context, i));
         out.close("});");
         return;
     }
     if (input.hold == 0) {
-        out.line("now.{} = etlmon::value_of(in.{}{});", context.names.flag_atom.at(i), input.name,
-                 missing);
-        out.line(missed(fmt::format("!in.{}.present()", input.name)));
-        print_flag_code(out, context, i, "in." + input.name);
+        const std::string flag = "in." + input.name;
+        print_flag_atom(out, context, i, flag);
+        out.line(missed(fmt::format("!{}.present()", flag)));
         return print_recorded_flag(out, context, i, "in." + input.name);
     }
     const std::string& word = context.names.input_buffer.at(i);
@@ -90,15 +99,13 @@ void print_flag(Printer& out, const Context& context, Index i) {
             fmt::format("const etlmon::Lazy {}([&]() noexcept {{", context.names.flag_atom.at(i)));
         out.line(missed(local + " == nullptr"));
         print_recorded_flag(out, context, i, held_flag(local));
-        print_wrapped(out,
-                      fmt::format("return etlmon::truth_of({}{});", held_flag(local), missing));
+        print_wrapped(out, fmt::format("return etlmon::truth_of({}{});", held_flag(local),
+                                       missing_flag(context, i)));
         out.close("});");
         return;
     }
-    print_wrapped(out, fmt::format("now.{} = etlmon::value_of({}{});",
-                                   context.names.flag_atom.at(i), held_flag(local), missing));
+    print_flag_atom(out, context, i, held_flag(local));
     out.line(missed(local + " == nullptr"));
-    print_flag_code(out, context, i, held_flag(local));
     print_recorded_flag(out, context, i, held_flag(local));
 }
 

@@ -37,46 +37,36 @@ std::string threshold(const Context& context, const Place& place) {
 
 }  // namespace
 
-void print_codes_field(Printer& out, const Context& context) {
-    if (is_used(context))
-        out.line("uint32_t codes_[{}];  // which samples they are", context.sampled.places.size());
+void print_rank(Printer& out, const Context& context) {
+    if (!is_used(context)) return;
+    print_comment(out, "//",
+                  "of this step's samples; of equal values the earlier one is farther from 0");
+    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(measured);",
+                                   context.sampled.codes));
 }
 
-void print_code(Printer& out, const Context& context, Index predicate, const std::string& delta) {
-    if (!is_used(context)) return;
-    const std::size_t at = context.sampled.place_of(true, predicate);
-    const Place& place = context.sampled.places[at];
+void print_step_measured(Printer& out, const Context& context) {
+    if (is_used(context)) print_wrapped(out, counted("measured"));
+}
+
+std::string sourced(const Context& context, Index predicate, const std::string& value,
+                    const std::string& delta) {
+    if (!is_used(context)) return value;
+    const Place& place = context.sampled.place_of(true, predicate);
     constexpr std::string_view kDelta = ".delta";
     const std::string row =
         place.rows == 0 ? ""
                         : fmt::format(", {}.nearest, {}",
                                       delta.substr(0, delta.size() - kDelta.size()), place.rows);
-    print_wrapped(out, fmt::format("now.codes_[{}] = etlmon::code_of({}, {}{});", at, place.first,
-                                   delta, row));
+    return fmt::format("etlmon::sourced({}, rank - etlmon::code_of({}, {}{}))", value, place.first,
+                       delta, row);
 }
 
-void print_flag_code(Printer& out, const Context& context, Index input, const std::string& flag) {
-    if (!is_used(context)) return;
-    const std::size_t at = context.sampled.place_of(false, input);
-    print_wrapped(out, fmt::format("now.codes_[{}] = etlmon::code_of({}, {});", at,
-                                   context.sampled.places[at].first, flag));
-}
-
-void print_sourced_atoms(Printer& out, const Context& context) {
-    if (!is_used(context)) return;
-    const std::vector<Place>& places = context.sampled.places;
-    print_comment(out, "//",
-                  "this step's samples; of equal values that of the earlier one is farther from 0");
-    print_wrapped(out, fmt::format("const uint32_t rank = etlmon::Ranks<{}>::first(position);",
-                                   context.sampled.codes));
-    for (std::size_t i = 0; i < places.size(); ++i) {
-        const auto& atoms =
-            places[i].is_predicate ? context.names.predicate_atom : context.names.flag_atom;
-        print_wrapped(out,
-                      fmt::format("const Value {} = etlmon::sourced(now.{}, rank - "
-                                  "now.codes_[{}]);",
-                                  context.names.sourced_atoms[i], atoms.at(places[i].index), i));
-    }
+std::string sourced_flag(const Context& context, Index input, const std::string& value,
+                         const std::string& flag) {
+    if (!is_used(context)) return value;
+    return fmt::format("etlmon::sourced({}, rank - etlmon::code_of({}, {}))", value,
+                       context.sampled.place_of(false, input).first, flag);
 }
 
 void print_why(Printer& out, const Context& context) {
@@ -98,7 +88,7 @@ void print_why_of(Printer& out, const Context& context) {
     print_doc(out, "Of monitor m.");
     out.open("etlmon::Sample why(uint32_t m) const noexcept {");
     out.line("using Kind = etlmon::Place::Kind;");
-    out.line("// name, comparison, threshold, first of its codes_, rows that they tell apart");
+    out.line("// name, comparison, threshold, first of its codes, rows that they tell apart");
     out.open("static constexpr etlmon::Place places[] = {");
     for (std::size_t i = 0; i < places.size(); ++i)
         out.line("{{{}, Kind::{}, {}, {}, {}}}{}", source::json_string(shown(context, places[i])),
