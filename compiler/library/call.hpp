@@ -50,15 +50,20 @@ inline etlc_status refuse_index(const char* what, std::uint64_t found, std::uint
     return refuse(ETLC_NO_SUCH, "there is no {} {}: the spec has {} of them", what, found, count);
 }
 
+/// `found`: what the caller says is the size of a struct.
+inline etlc_status check_size(std::uint32_t found, std::size_t expected, const char* what) {
+    if (found == expected) return ETLC_OK;
+    return refuse(ETLC_WRONG_VERSION,
+                  "struct_size of {} is {}, expected {}: set it to the sizeof of the struct, from "
+                  "the etlc.h of this library",
+                  what, found, expected);
+}
+
 /// A struct that the caller made, of the size that this version knows.
 template <class Struct>
 etlc_status check_struct(const Struct* given, const char* what) {
     if (given == nullptr) return refuse_null(what);
-    if (given->struct_size == sizeof(Struct)) return ETLC_OK;
-    return refuse(ETLC_WRONG_VERSION,
-                  "struct_size of {} is {}, expected {}: set it to the sizeof of the struct, from "
-                  "the etlc.h of this library",
-                  what, given->struct_size, sizeof(Struct));
+    return check_size(given->struct_size, sizeof(Struct), what);
 }
 
 }  // namespace etlc::library

@@ -26,7 +26,7 @@ extern "C" {
 #endif
 
 /* Of this header. A library takes programs of its own version and of those before. */
-#define ETLC_API_VERSION 1u
+#define ETLC_API_VERSION 2u
 
 /* ---- errors --------------------------------------------------------------------------------- */
 
@@ -87,10 +87,13 @@ typedef struct etlc_options {
   uint64_t max_code;
   uint64_t max_work;
   uint64_t history; /* steps that etlc_explain() can look back at; 0: none are kept */
+  /* From version 2 on. BEFORE,AFTER,INCIDENTS: the steps around each alarm that etlc_incident()
+   * has, and how many alarms, as "2s,1s,4" or "40,20,4"; null: none are kept. */
+  const char *recorder;
 } etlc_options;
 
 #define ETLC_OPTIONS \
-  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
+  {sizeof(etlc_options), ETLC_API_VERSION, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0}
 
 /* Compiles the spec, and gives a session before its first step. ETLC_REFUSED where it does not
  * compile. May be called by several threads at once. */
@@ -284,6 +287,26 @@ enum { ETLC_TEXT = 0, ETLC_JSON = 1 };
  * long as the episode. */
 ETLC_EXPORT etlc_status etlc_explain(etlc_session session, uint32_t monitor, uint32_t format,
                                      const char **text);
+
+/* ---- incidents ------------------------------------------------------------------------------ */
+
+/* Of a spec that was opened with a recorder. An incident is an alarm that began, the steps before
+ * it and those after it; the steps of one that is complete do not change. etlc_reset() completes
+ * those that wait for steps, and keeps all. `lost`: alarms that began while there was no room for
+ * another, which the bytes say too. */
+ETLC_EXPORT etlc_status etlc_incidents(etlc_session session, uint32_t *complete, uint32_t *lost);
+
+/* The bytes of complete incident `incident`, for a file that `etlc incident` reads: those that the
+ * generated class writes. Good until the next call of this or etlc_close(). With ETLC_BOOLEAN all
+ * predicates are measured, where the class notes which ones no verdict asked for. */
+ETLC_EXPORT etlc_status etlc_incident(etlc_session session, uint32_t incident, const void **bytes,
+                                      size_t *size);
+
+/* Completes those that wait for steps, with the steps that there are. */
+ETLC_EXPORT etlc_status etlc_close_incidents(etlc_session session);
+
+/* Makes room for new ones. */
+ETLC_EXPORT etlc_status etlc_forget_incidents(etlc_session session);
 
 #ifdef __cplusplus
 }

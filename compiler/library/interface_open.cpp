@@ -1,4 +1,6 @@
 // etlc_open() and what goes with it.
+#include <cstddef>
+#include <cstring>
 #include <optional>
 #include <string>
 #include <vector>
@@ -6,6 +8,7 @@
 #include "diag/render.hpp"
 #include "library/call.hpp"
 #include "library/open.hpp"
+#include "library/recorder.hpp"
 #include "library/settings.hpp"
 #include "library/version.hpp"
 
@@ -36,6 +39,14 @@ etlc_status take_settings(const etlc_options& options, Wish& wish) {
     if (!settings) return refuse(ETLC_WRONG_VALUE, "options.settings: {}", why);
     wish.check.settings = std::move(*settings);
     return ETLC_OK;
+}
+
+etlc_status take_recorder(const etlc_options& options, Wish& wish) {
+    if (options.recorder == nullptr) return ETLC_OK;
+    std::string why;
+    wish.plan.recorder = parse_recorder(options.recorder, why);
+    return wish.plan.recorder ? etlc_status{ETLC_OK}
+                              : refuse(ETLC_WRONG_VALUE, "options.recorder: {}", why);
 }
 
 etlc_status take_choices(const etlc_options& options, Wish& wish) {
@@ -71,6 +82,7 @@ etlc_status take(const etlc_options& options, Wish& wish) {
     wish.check.thresholds_path = text_of(options.thresholds);
     wish.check.fitted_path = text_of(options.fitted);
     if (const etlc_status status = take_settings(options, wish); status != ETLC_OK) return status;
+    if (const etlc_status status = take_recorder(options, wish); status != ETLC_OK) return status;
     return take_choices(options, wish);
 }
 
@@ -87,13 +99,24 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
     return std::make_unique<Session>(file, std::move(*compiled), sink, options.history);
 }
 
-etlc_status check_version(const etlc_options* options) {
-    if (options != nullptr && options->api_version != ETLC_API_VERSION)
+/// The options of each version of etlc.h: they only grow.
+constexpr std::uint32_t kSizes[ETLC_API_VERSION + 1] = {0, offsetof(etlc_options, recorder),
+                                                        sizeof(etlc_options)};
+
+/// The caller's options, as those of this version.
+etlc_status take_version(const etlc_options* options, etlc_options& own) {
+    if (options == nullptr) return refuse_null("options");
+    const std::uint32_t version = options->api_version;
+    if (version == 0 || version > ETLC_API_VERSION)
         return refuse(ETLC_WRONG_VERSION,
                       "options.api_version is {}, this library is of version {}: begin with "
                       "ETLC_OPTIONS, from the etlc.h of this library",
-                      options->api_version, ETLC_API_VERSION);
-    return check_struct(options, "options");
+                      version, ETLC_API_VERSION);
+    if (const etlc_status status = check_size(options->struct_size, kSizes[version], "options");
+        status != ETLC_OK)
+        return status;
+    std::memcpy(&own, options, kSizes[version]);
+    return ETLC_OK;
 }
 
 }  // namespace
@@ -119,14 +142,15 @@ const char* etlc_version(void) {
 
 etlc_status etlc_open(const etlc_options* options, etlc_session* session) {
     return guarded([&]() -> etlc_status {
-        if (const etlc_status status = check_version(options); status != ETLC_OK) return status;
+        etlc_options own = ETLC_OPTIONS;
+        if (const etlc_status status = take_version(options, own); status != ETLC_OK) return status;
         if (session == nullptr) return refuse_null("session");
         *session = 0;
         Wish wish;
-        if (const etlc_status status = take(*options, wish); status != ETLC_OK) return status;
+        if (const etlc_status status = take(own, wish); status != ETLC_OK) return status;
         source::File file;
         diag::Sink sink;
-        auto opened = open(*options, wish, file, sink);
+        auto opened = open(own, wish, file, sink);
         if (!opened) {
             Message::here().take_diagnostics(diag::render_text(file, sink),
                                              diag::render_json(file, sink));

@@ -208,7 +208,7 @@ etlc_status etlc_restart(etlc_session session, uint32_t monitor) {
                           "monitor '{}' does not restart: write 'restartable monitor {}' in the "
                           "spec",
                           monitors[monitor].name, monitors[monitor].name);
-        opened.evaluator().restart(monitor);
+        opened.restart(monitor);
         return ETLC_OK;
     });
 }

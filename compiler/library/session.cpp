@@ -33,6 +33,7 @@ Session::Session(source::File file, pipeline::Compiled compiled, const diag::Sin
     for (const Index predicate : plan().predicates) is_measured_[predicate] = true;
     for (Index input = 0; input < samples_.size(); ++input)
         samples_[input].values.reserve(model().inputs[input].dimension);
+    if (plan().recorder) recorder_.emplace(plan());
     if (history == 0) return;
     observations_.emplace(model(), plan().values, plan().predicates, plan().inputs);
     observations_->reserve(history);
@@ -41,6 +42,7 @@ Session::Session(source::File file, pipeline::Compiled compiled, const diag::Sin
 
 const std::vector<etlmon::Verdict>& Session::step() {
     verdicts_ = evaluator_.step(samples_);
+    if (recorder_) recorder_->step(evaluator_, verdicts_);
     if (observations_ && steps_ < history_) {
         atoms_->step(samples_);
         observations_->add(*atoms_);
@@ -51,11 +53,19 @@ const std::vector<etlmon::Verdict>& Session::step() {
 
 const std::vector<etlmon::Verdict>& Session::finish() {
     is_ended_ = true;
-    return verdicts_ = evaluator_.finish();
+    verdicts_ = evaluator_.finish();
+    if (recorder_) recorder_->finish(verdicts_);
+    return verdicts_;
+}
+
+void Session::restart(std::size_t monitor) {
+    evaluator_.restart(monitor);
+    if (recorder_) recorder_->restart(monitor);
 }
 
 void Session::reset() {
     evaluator_.reset();
+    if (recorder_) recorder_->end_episode();
     if (observations_) {
         atoms_->reset();
         observations_->clear();

@@ -16,6 +16,7 @@
 #include "library/etlc.h"
 #include "library/open.hpp"
 #include "plan/evaluate/evaluator.hpp"
+#include "plan/evaluate/flight_recorder.hpp"
 #include "source/source.hpp"
 
 namespace etlc::library {
@@ -52,7 +53,11 @@ public:
     const std::vector<etlmon::Verdict>& step();
     const std::vector<etlmon::Verdict>& finish();
     void reset();
+    void restart(std::size_t monitor);
     void observe(Index predicate, float distance, bool truth);
+
+    /// Null: the spec was opened without one.
+    plan::FlightRecorder* recorder() { return recorder_ ? &*recorder_ : nullptr; }
 
     /// Why there is no explanation of the last verdict; empty where there is one.
     std::string why_unexplained() const;
@@ -72,6 +77,7 @@ private:
     std::uint64_t steps_ = 0;
     bool is_ended_ = false;
     std::vector<etlmon::Verdict> verdicts_;  ///< the last ones
+    std::optional<plan::FlightRecorder> recorder_;
 
     /// What happened so far, and who measures it: monitors measure only what they need.
     std::uint64_t history_;

@@ -12,7 +12,7 @@ of everything.
 """
 
 from ._library import library as _native
-from .commands import Evaluation, Written, calibrate, evaluate, fit
+from .commands import Evaluation, Written, calibrate, evaluate, fit, incident
 from .errors import (
     BusyError,
     ClosedError,
@@ -50,4 +50,5 @@ __all__ = [
     "calibrate",
     "evaluate",
     "fit",
+    "incident",
 ]

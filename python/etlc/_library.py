@@ -12,7 +12,7 @@ from typing import Any
 from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
 from .errors import UndecidedError, diagnostics_of
 
-API_VERSION = 1
+API_VERSION = 2
 
 F32, BOOL, F16, I8 = range(4)
 INPUTS, MONITORS, PREDICATES, LETS = range(4)
@@ -28,7 +28,7 @@ class Options(ctypes.Structure):
         ("settings", POINTER(c_char_p)), ("setting_count", c_size_t), ("values", c_uint32),
         ("targets_as", c_uint32), ("lets", c_uint32), ("reserved", c_uint32),
         ("max_state", c_uint64), ("max_code", c_uint64), ("max_work", c_uint64),
-        ("history", c_uint64),
+        ("history", c_uint64), ("recorder", c_char_p),
     ]  # fmt: skip
 
 
@@ -109,6 +109,10 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "etlc_measure": [c_uint64, c_uint32, POINTER(Measured)],
     "etlc_let": [c_uint64, c_uint32, c_void_p],
     "etlc_count": [c_uint64, c_uint32, POINTER(Counts)],
+    "etlc_incidents": [c_uint64, POINTER(c_uint32), POINTER(c_uint32)],
+    "etlc_incident": [c_uint64, c_uint32, POINTER(c_void_p), POINTER(c_size_t)],
+    "etlc_close_incidents": [c_uint64],
+    "etlc_forget_incidents": [c_uint64],
     "etlc_explain": [c_uint64, c_uint32, c_uint32, POINTER(c_char_p)],
 }
 

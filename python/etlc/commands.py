@@ -1,4 +1,4 @@
-"""`etlc calibrate`, `etlc evaluate` and `etlc fit`: the commands themselves, run as a process."""
+"""`etlc calibrate`, `fit`, `evaluate` and `incident`: the commands themselves, as a process."""
 
 from __future__ import annotations
 
@@ -171,6 +171,41 @@ def evaluate(
     return Evaluation(found, ran.stdout, tuple(diagnostics_of(ran.stderr)))
 
 
+def incident(
+    spec: str | os.PathLike[str],
+    data: bytes | str | os.PathLike[str],
+    *,
+    form: str = "table",
+    thresholds: str | os.PathLike[str] | None = None,
+    fitted: str | os.PathLike[str] | None = None,
+    settings: Mapping[str, object] | None = None,
+) -> str:
+    """Reads what the flight recorder of a monitor kept: the steps around an alarm.
+
+    Args:
+        spec: the path of the spec.
+        data: one of `Monitor.incidents`, or the path of a file.
+        form: "table", "csv", "trace" or "spec" (docs/data.md).
+        thresholds, fitted, settings: what the monitor was opened with.
+
+    Raises:
+        SpecError: it is damaged, or of another spec.
+    """
+    import tempfile
+
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "incident"
+        if isinstance(data, bytes):
+            path.write_bytes(data)
+        else:
+            path = Path(data)
+        ran = _run(
+            "incident", [path], None, settings, None,
+            {"--spec": spec, "--format": form, "--thresholds": thresholds, "--fitted": fitted},
+        )  # fmt: skip
+    return ran.stdout
+
+
 def _paths(paths: Paths) -> list[str]:
     one = isinstance(paths, (str, os.PathLike))
     return [os.fspath(path) for path in ([paths] if one else paths)]  # type: ignore[list-item]
@@ -185,7 +220,7 @@ def _output(
 def _run(
     name: str,
     specs: Iterable[str | os.PathLike[str]],
-    data: Paths,
+    data: Paths | None,
     settings: Mapping[str, object] | None,
     names: Mapping[str, str] | None,
     options: Mapping[str, object],
@@ -197,7 +232,7 @@ def _run(
     for option, value in options.items():
         if value is not None:
             words += [option, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
-    words += [*flags, "--data", *_paths(data)]
+    words += [*flags, *(["--data", *_paths(data)] if data is not None else [])]
     try:
         ran = subprocess.run(words, capture_output=True, text=True, check=False)
     except OSError as error:

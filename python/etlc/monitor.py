@@ -5,7 +5,7 @@ from __future__ import annotations
 import ctypes
 import difflib
 import os
-from ctypes import byref, c_char_p, c_size_t, c_uint64
+from ctypes import byref, c_char_p, c_size_t, c_uint32, c_uint64, c_void_p
 from dataclasses import dataclass
 from typing import Any, Callable, Mapping
 
@@ -70,6 +70,8 @@ class Monitor:
         lets: keeps what lets say of each step, for `let`.
         history: how many steps `why` and `explain` can look back at. Each takes some bytes a
             predicate, and is measured once more.
+        recorder: keeps the steps around each alarm, for `incidents`: steps before it, steps after
+            it, and how many alarms, as (40, 20, 4) or, of a spec with a rate, "2s,1s,4".
         max_state, max_code, max_work: limits of the plan, as the options of etlc.
 
     Raises:
@@ -95,6 +97,7 @@ class Monitor:
         targets_as: str = "f32",
         lets: bool = False,
         history: int = 0,
+        recorder: str | tuple[int | str, int | str, int] | None = None,
         max_state: int = 0,
         max_code: int = 0,
         max_work: int = 0,
@@ -117,6 +120,7 @@ class Monitor:
             max_code=_size("max_code", max_code),
             max_work=_size("max_work", max_work),
             history=_size("history", history),
+            recorder=_recorder(recorder),
         )
         call(library.etlc_open, byref(options), byref(self._session))
         self._describe()
@@ -406,6 +410,41 @@ class Monitor:
             "missing": counts.missing, "out_of_range": counts.out_of_range, "held": counts.held
         }  # fmt: skip
 
+    @property
+    def incidents(self) -> tuple[bytes, ...]:
+        """The alarms that began, each with the steps around it, as `etlc incident` reads them.
+
+        One is complete some steps after its alarm, or with the end of the episode (`reset`,
+        `close_incidents`); its steps do not change from then on.
+
+        Raises:
+            NotKeptError: the monitor was opened without a recorder.
+        """
+        incidents = []
+        for n in range(self._incident_counts()[0]):
+            data, size = c_void_p(), c_size_t()
+            call(library.etlc_incident, self._session, n, byref(data), byref(size))
+            incidents.append(ctypes.string_at(data, size.value))
+        return tuple(incidents)
+
+    @property
+    def lost_incidents(self) -> int:
+        """Alarms that began while there was no room for another incident."""
+        return self._incident_counts()[1]
+
+    def close_incidents(self) -> None:
+        """Completes the incidents that wait for steps, with the steps that there are."""
+        call(library.etlc_close_incidents, self._session)
+
+    def forget_incidents(self) -> None:
+        """Makes room for new ones."""
+        call(library.etlc_forget_incidents, self._session)
+
+    def _incident_counts(self) -> tuple[int, int]:
+        complete, lost = c_uint32(), c_uint32()
+        call(library.etlc_incidents, self._session, byref(complete), byref(lost))
+        return complete.value, lost.value
+
     def explain(self, monitor: str) -> Explanation:
         """Why the last verdict of a monitor is what it is, as `etlc explain` says it.
 
@@ -461,7 +500,7 @@ def _path(path: str | os.PathLike[str] | None) -> bytes | None:
 
 def _text(text: str | None) -> bytes | None:
     if text is not None and "\0" in text:
-        raise InputError("the text of the spec has a NUL in it")
+        raise InputError("a text has a NUL in it")
     return None if text is None else text.encode()
 
 
@@ -469,6 +508,12 @@ def _choice(name: str, value: str, choices: tuple[str, ...]) -> int:
     if value not in choices:
         raise InputError(f"{name} is {value!r}, expected {' or '.join(choices)}")
     return choices.index(value)
+
+
+def _recorder(given: str | tuple[int | str, int | str, int] | None) -> bytes | None:
+    if given is None or isinstance(given, str):
+        return _text(given)
+    return ",".join(map(str, given)).encode()
 
 
 def _size(name: str, value: int) -> int:

@@ -96,6 +96,21 @@ etlc_sample sample_of(const Input& input, bool is_there) {
     return {is_there ? data : nullptr, input.is.dimension, input.is.type};
 }
 
+unsigned long incidents = 0;
+
+/// The bytes of all incidents.
+bool take_incidents(etlc_session session) {
+    uint32_t complete = 0, lost = 0;
+    if (!check(etlc_incidents(session, &complete, &lost))) return false;
+    incidents += complete;
+    for (uint32_t n = 0; n < complete; ++n) {
+        const void* bytes = nullptr;
+        size_t size = 0;
+        if (!check(etlc_incident(session, n, &bytes, &size))) return false;
+    }
+    return check(etlc_close_incidents(session)) && check(etlc_forget_incidents(session));
+}
+
 /// All that a program does with it after opening. False where a call failed.
 bool use(etlc_session session, std::mt19937& random) {
     etlc_description spec{};
@@ -144,7 +159,7 @@ bool use(etlc_session session, std::mt19937& random) {
                                       verdicts.size()));
         for (uint32_t n = 0; n <= spec.horizon && good; ++n)
             good = check(etlc_finish(session, verdicts.data(), spec.monitors));
-        good = good && check(etlc_reset(session));
+        good = good && check(etlc_reset(session)) && take_incidents(session);
     }
     watching = false;
     return good;
@@ -154,6 +169,7 @@ bool opens_and_uses(const std::string& text, bool has_lets, std::mt19937& random
     etlc_options options = ETLC_OPTIONS;
     options.text = text.c_str();
     options.history = 100;
+    options.recorder = "5,3,4";
     options.lets = has_lets ? 1 : 0;
     options.max_state = options.max_code = options.max_work = uint64_t{64} << 20U;
     etlc_session session = 0;
@@ -176,6 +192,6 @@ int main() {
     watching = true;  // the counting works
     free(malloc(1));
     watching = false;
-    printf("%lu allocations\n", allocations - 1);
-    return allocations == 1 ? 0 : 1;
+    printf("%lu allocations, %lu incidents\n", allocations - 1, incidents);
+    return allocations == 1 && incidents > 0 ? 0 : 1;
 }

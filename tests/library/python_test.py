@@ -315,6 +315,55 @@ class Explaining(unittest.TestCase):
             etlc.Monitor(text=DOCK, history=1).step(**samples()).calm.why
 
 
+class Recording(unittest.TestCase):
+    def alarm(self, dock):
+        for _ in range(4):
+            dock.step(**samples(charge=0.0, z=np.array([9, 0, 0], "f4")))
+
+    def test_keeps_incidents(self):
+        with tempfile.TemporaryDirectory() as folder:
+            spec = Path(folder) / "dock.etl"
+            spec.write_text(DOCK)
+            dock = etlc.Monitor(spec, recorder="0.2s,1,2")
+            self.alarm(dock)
+            self.assertEqual(dock.incidents, ())
+            dock.close_incidents()
+            (first,) = dock.incidents
+            self.assertTrue(first.startswith(b"\x89ETLINC\n"))
+            table = etlc.incident(spec, first)
+            self.assertIn("alarm of returns at step 2 (0.2 s)", table)
+            path = Path(folder) / "incident0"
+            path.write_bytes(first)
+            self.assertEqual(etlc.incident(spec, path), table)
+            self.assertIn("distance_at_bay", etlc.incident(spec, first, form="csv"))
+            with self.assertRaisesRegex(etlc.SpecError, "was changed"):
+                etlc.incident(spec, first[:100] + b"?" + first[101:])
+            dock.reset()
+            self.assertEqual(dock.incidents, (first,))
+            for _ in range(2):
+                self.alarm(dock)
+                dock.reset()
+            self.assertEqual((len(dock.incidents), dock.lost_incidents), (2, 1))
+            dock.forget_incidents()
+            self.assertEqual((dock.incidents, dock.lost_incidents), ((), 0))
+
+    def test_takes_numbers_of_steps(self):
+        dock = etlc.Monitor(text=DOCK, recorder=(2, 1, 1))
+        self.alarm(dock)
+        dock.reset()
+        self.assertEqual(len(dock.incidents), 1)
+
+    def test_needs_a_recorder(self):
+        dock = etlc.Monitor(text=DOCK)
+        for call in (lambda: dock.incidents, lambda: dock.lost_incidents, dock.close_incidents,
+                     dock.forget_incidents):  # fmt: skip
+            with self.assertRaisesRegex(etlc.NotKeptError, "no incident is kept"):
+                call()
+        for wrong in ("2s", (1, 2), (1, 2, 0), (1.5, 2, 1), "1\0,2,3"):
+            with self.assertRaisesRegex(etlc.InputError, "BEFORE,AFTER,INCIDENTS|NUL"):
+                etlc.Monitor(text=DOCK, recorder=wrong)
+
+
 class Refusing(unittest.TestCase):
     def test_specs_that_do_not_compile(self):
         with self.assertRaises(etlc.SpecError) as caught:

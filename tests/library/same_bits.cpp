@@ -1,5 +1,9 @@
 // same_bits FOLDER: random specs, stepped through libetlc and by generated classes: every verdict
-// has the same bits. Leaves in FOLDER the specs, traces and verdicts, for same_bits_test.py.
+// has the same bits. Leaves in FOLDER the specs, traces and verdicts, for same_bits_test.py:
+// of spec N its text, N.etl; the elements of an input at all steps, one trace after the other, and
+// a byte a step that says whether they are there, N.INPUT and N.INPUT.present; the verdicts,
+// N.verdicts; the steps of each trace, N.episodes; names and numbers of monitors that restart,
+// N.restarts.
 #include <etlc.h>
 #include <fmt/format.h>
 
@@ -51,6 +55,10 @@ public:
         options.max_state = options.max_code = options.max_work = std::uint64_t{64} << 20U;
         is_open_ = is_ok(etlc_open(&options, &session_));
         std::ofstream(stem_.string() + ".etl") << text;
+        std::ofstream restarts = file(".restarts");
+        for (std::size_t m = 0; m < model.monitors.size(); ++m)
+            if (model.monitors[m].restarts != check::Restarts::never)
+                restarts << model.monitors[m].name << " " << m << "\n";
         for (const check::Input& input : model.inputs) {
             elements_.push_back(file("." + input.name));
             present_.push_back(file("." + input.name + ".present"));

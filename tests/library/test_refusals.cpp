@@ -32,6 +32,8 @@ std::vector<Call> calls() {
     static const char* text = nullptr;
     static std::uint32_t index = 0;
     static std::uint64_t number = 0;
+    static const void* bytes = nullptr;
+    static std::size_t size = 0;
     static const Seen seen;
     static const std::vector<etlc_sample> samples = seen.samples();
     static const etlc_column columns[6] = {};
@@ -60,6 +62,10 @@ std::vector<Call> calls() {
         {"let", [](etlc_session s) { return etlc_let(s, 0, verdicts); }},
         {"count", [](etlc_session s) { return etlc_count(s, 0, &counts); }},
         {"explain", [](etlc_session s) { return etlc_explain(s, 0, ETLC_TEXT, &text); }},
+        {"incidents", [](etlc_session s) { return etlc_incidents(s, &index, &index); }},
+        {"incident", [](etlc_session s) { return etlc_incident(s, 0, &bytes, &size); }},
+        {"close_incidents", [](etlc_session s) { return etlc_close_incidents(s); }},
+        {"forget_incidents", [](etlc_session s) { return etlc_forget_incidents(s); }},
     };
 }
 
@@ -133,6 +139,17 @@ TEST(Refusals, NullPointers) {
     expect_refused(etlc_let(dock, 0, nullptr), ETLC_NULL_POINTER, "verdict");
     expect_refused(etlc_count(dock, 0, nullptr), ETLC_NULL_POINTER, "counts");
     expect_refused(etlc_explain(dock, 0, ETLC_TEXT, nullptr), ETLC_NULL_POINTER, "text");
+    etlc_options recording = options;
+    recording.recorder = "2,1,1";
+    const Opened recorded(recording);
+    const void* bytes = nullptr;
+    std::size_t size = 0;
+    expect_refused(etlc_incidents(recorded, nullptr, &index), ETLC_NULL_POINTER, "complete");
+    expect_refused(etlc_incidents(recorded, &index, nullptr), ETLC_NULL_POINTER, "lost");
+    expect_refused(etlc_incident(recorded, 0, nullptr, &size), ETLC_NULL_POINTER, "bytes");
+    expect_refused(etlc_incident(recorded, 0, &bytes, nullptr), ETLC_NULL_POINTER, "size");
+    expect_refused(etlc_incident(recorded, 0, &bytes, &size), ETLC_NO_SUCH,
+                   "no incident 0: 0 of them are complete");
 }
 
 TEST(Refusals, OtherVersions) {
@@ -141,8 +158,13 @@ TEST(Refusals, OtherVersions) {
     options.struct_size -= 8;
     expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION, "struct_size of options");
     options = options_of(kDock);
-    options.api_version = ETLC_API_VERSION + 1;
-    expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION, "options.api_version is 2");
+    for (const std::uint32_t version : {0U, ETLC_API_VERSION + 1}) {
+        options.api_version = version;
+        expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION,
+                       "options.api_version is " + std::to_string(version));
+    }
+    options.api_version = 1;  // whose options are shorter
+    expect_refused(etlc_open(&options, &none), ETLC_WRONG_VERSION, "struct_size of options");
     const Opened dock(options_of(kDock));
     etlc_description spec{};
     etlc_input input{};
@@ -170,6 +192,11 @@ TEST(Refusals, SpecsThatDoNotCompile) {
     options = ETLC_OPTIONS;
     options.path = "/there/is/no/such.etl";
     expect_refused(etlc_open(&options, &none), ETLC_REFUSED, "/there/is/no/such.etl: error: ");
+    options = options_of("spec t; input x : f32; monitor m = F x > 1;");
+    options.recorder = "2s,1s,4";
+    expect_refused(etlc_open(&options, &none), ETLC_REFUSED, "has no rate or period");
+    options.recorder = "2000000,1,1";
+    expect_refused(etlc_open(&options, &none), ETLC_REFUSED, "a recorder of 1 incidents of");
     options = options_of(kDock);
     options.max_state = 8;
     expect_refused(etlc_open(&options, &none), ETLC_REFUSED, "8 bytes");
@@ -191,6 +218,10 @@ TEST(Refusals, OptionsThatMeanNothing) {
     refused([](etlc_options& o) { o.lets = 2; }, "options.lets is 2");
     refused([](etlc_options& o) { o.reserved = 1; }, "options.reserved is 1");
     refused([](etlc_options& o) { o.history = ~std::uint64_t{0}; }, "options.history");
+    for (const char* const recorder : {"", "2s", "2s,1s", "2s,1s,0", "2s,1s,-1", "-1,1,1", "1,1,x",
+                                       "0.5,1,1", "1 h,1,1", "nan,1,1", "1,1,1,1"})
+        refused([recorder](etlc_options& o) { o.recorder = recorder; },
+                "expected BEFORE,AFTER,INCIDENTS");
     const char* const setting = "nonsense";
     refused(
         [&](etlc_options& o) {

@@ -27,8 +27,9 @@ void write_text(const std::filesystem::path& path, const std::string& text) {
 
 }  // namespace
 
-GeneratedProgram::GeneratedProgram(const std::string& name)
-    : folder_(std::filesystem::path(ETLC_BINARY_DIR) / "tests/monitor/generated" / name) {
+GeneratedProgram::GeneratedProgram(const std::string& name, Classes classes)
+    : folder_(std::filesystem::path(ETLC_BINARY_DIR) / "tests/monitor/generated" / name),
+      classes_(std::move(classes)) {
     std::filesystem::remove_all(folder_);
     std::filesystem::create_directories(folder_);
 }
@@ -50,8 +51,8 @@ bool GeneratedProgram::add(const check::Model& model, check::Values values,
     const char* of_values = values == check::Values::boolean   ? "--values boolean"
                             : values == check::Values::sourced ? "--explain"
                                                                : "";
-    return command(fmt::format("'{}' {}.etl -o {}.hpp {} {}", ETLC_COMMAND, model.name, model.name,
-                               kLimits, of_values));
+    return command(fmt::format("'{}' {}.etl -o {}.hpp {} {} {}", ETLC_COMMAND, model.name,
+                               model.name, kLimits, of_values, classes_.options));
 }
 
 bool GeneratedProgram::compile(const Build& build) {
@@ -59,12 +60,13 @@ bool GeneratedProgram::compile(const Build& build) {
     std::string parts[2];
     std::vector<std::string> names;
     for (std::size_t n = 0; n < models_.size(); ++n) {
-        parts[n % 2] += adaptor_source(models_[n], explain_[n]);
+        parts[n % 2] += adaptor_source(models_[n], explain_[n], classes_.session);
         names.push_back(models_[n].name);
     }
     parts[1] = fmt::format("#include \"{}.hpp\"\n", names[0]) + parts[1];
     for (int n = 0; n < 2; ++n)
-        write_text(folder_ / fmt::format("part{}.cpp", n), "#include \"harness.hpp\"\n" + parts[n]);
+        write_text(folder_ / fmt::format("part{}.cpp", n),
+                   "#include \"harness.hpp\"\n#include \"incidents.hpp\"\n" + parts[n]);
     write_text(folder_ / "main.cpp", main_source(names));
     return command(
         fmt::format("{0} {1} {2} {3} -I. -I'{4}/runtime/include' -I'{4}/tests/monitor/driver' "
@@ -74,16 +76,22 @@ bool GeneratedProgram::compile(const Build& build) {
                     build.counts_malloc ? "-DHARNESS_COUNTS_MALLOC" : "", ETLC_SOURCE_DIR));
 }
 
-GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& requests,
-                                               const std::string& arguments) {
+std::optional<std::string> GeneratedProgram::answers(const std::vector<Request>& requests,
+                                                     const std::string& arguments) {
     std::string bytes;
     for (const Request& request : requests) bytes += encode(models_[request.spec], request);
     write_text(folder_ / "requests.bin", bytes);
-    Result result;
     if (!command(fmt::format("{} ./program {} < requests.bin > answers.bin", emulator_, arguments)))
-        return result;
-    const std::string answers = read_text((folder_ / "answers.bin").string());
-    Decoder decoder(answers);
+        return std::nullopt;
+    return read_text((folder_ / "answers.bin").string());
+}
+
+GeneratedProgram::Result GeneratedProgram::run(const std::vector<Request>& requests,
+                                               const std::string& arguments) {
+    Result result;
+    const auto written = answers(requests, arguments);
+    if (!written) return result;
+    Decoder decoder(*written);
     for (const Request& request : requests)
         result.answers.push_back(
             decoder.answer(models_[request.spec], explain_[request.spec], request));

@@ -6,6 +6,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -34,10 +35,16 @@ inline const Build kClangFastMath{"ClangFastMath", "clang++", "-O3 -ffast-math",
 inline const Build kAarch64{"Aarch64", "aarch64-linux-gnu-g++", "-O2 -static", false,
                             "qemu-aarch64"};
 
+/// How the classes of a program are made, and who steps them.
+struct Classes {
+    std::string options{};                    ///< more of etlc
+    std::string session{"harness::Session"};  ///< or another of driver/
+};
+
 class GeneratedProgram {
 public:
     /// Makes an empty folder of that name below the build folder.
-    explicit GeneratedProgram(const std::string& name);
+    explicit GeneratedProgram(const std::string& name, Classes classes = {});
 
     /// Has `etlc` write SPEC.hpp. Specs of one program have different names. False where that
     /// failed.
@@ -52,11 +59,18 @@ public:
     };
     Result run(const std::vector<Request>& requests, const std::string& arguments = "");
 
+    /// What the program writes, as the session says it.
+    std::optional<std::string> answers(const std::vector<Request>& requests,
+                                       const std::string& arguments = "");
+
+    /// Where SPEC.etl is, and its thresholds beside it.
+    const std::filesystem::path& folder() const { return folder_; }
     const check::Model& model(std::size_t spec) const { return models_[spec]; }
     std::size_t size() const { return models_.size(); }
 
 private:
     std::filesystem::path folder_;
+    Classes classes_;
     std::vector<check::Model> models_;
     std::vector<bool> explain_;  ///< by model
     std::string emulator_;

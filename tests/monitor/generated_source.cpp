@@ -104,7 +104,7 @@ std::string explaining(const check::Model& model, bool explains) {
 
 }  // namespace
 
-std::string adaptor_source(const check::Model& model, bool explains) {
+std::string adaptor_source(const check::Model& model, bool explains, const std::string& session) {
     const std::string aliases = fmt::format(
         "  using Monitor = {0}::Monitor;\n"
         "  using Inputs = {0}::Inputs;\n"
@@ -116,10 +116,8 @@ std::string adaptor_source(const check::Model& model, bool explains) {
                aliases + members(model) + buffers(model) + feeding(model) + labelling(model) +
                    restarting(model) + reporting(model) + explaining(model, explains) +
                    finishing(model)) +
-           fmt::format(
-               "void answer_{0}();\nvoid answer_{0}() {{ harness::Session<{0}_spec>::answer(); "
-               "}}\n",
-               model.name);
+           fmt::format("void answer_{0}();\nvoid answer_{0}() {{ {1}<{0}_spec>::answer(); }}\n",
+                       model.name, session);
 }
 
 std::string main_source(const std::vector<std::string>& specs) {

@@ -10,8 +10,9 @@
 
 namespace etlc::tests {
 
-/// Defines `void answer_SPEC()` for the class in "SPEC.hpp", which may say why.
-std::string adaptor_source(const check::Model& model, bool explains);
+/// Defines `void answer_SPEC()` for the class in "SPEC.hpp", which may say why. `session`: who
+/// answers, harness::Session or another of driver/.
+std::string adaptor_source(const check::Model& model, bool explains, const std::string& session);
 
 /// Defines main, which serves the specs in this order.
 std::string main_source(const std::vector<std::string>& specs);

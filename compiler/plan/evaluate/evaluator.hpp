@@ -53,6 +53,8 @@ public:
     float distance(Index predicate) const { return measured_[predicate].delta; }
     /// Row of the nearest target; plain distances only.
     std::uint32_t nearest(Index predicate) const { return measured_[predicate].nearest; }
+    /// The same of any predicate, for each of its distances.
+    std::uint32_t nearest(Index predicate, Index distance) const;
     std::uint32_t missing_steps() const { return missing_steps_; }
     /// By index of the model's inputs; those that no monitor depends on are not counted.
     const std::vector<SampleCounts>& sample_counts() const { return counts_; }
@@ -159,6 +161,8 @@ private:
     std::vector<etlmon::Enclosed> enclosed_;
     /// Per predicate: where the difference turns that narrow targets leave open.
     std::vector<std::vector<Cut>> contrast_cuts_;
+    /// Per predicate: the nearest rows of its two distances, where it has such cuts.
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> contrast_rows_;
     std::vector<etlmon::Measured> measured_;
     std::vector<float> scratch_;
     std::vector<float> thresholds_;        ///< per predicate

@@ -1,6 +1,7 @@
 // The measuring half of the evaluator: distances and expressions of one step, through the runtime's
 // own kernels.
 #include <algorithm>
+#include <cmath>
 #include <set>
 
 #include "etlmon/distance/contrast.hpp"
@@ -64,6 +65,7 @@ void Evaluator::prepare_distances() {
     scratch_.resize(scratch);
     for (const check::Predicate& predicate : model_.predicates)
         contrast_cuts_.push_back(contrast_cuts(plan_, predicate));
+    contrast_rows_.resize(model_.predicates.size());
 }
 
 void Evaluator::measure_points() {
@@ -112,12 +114,25 @@ etlmon::Measured Evaluator::measure_wide(Index d, const float* z) {
 /// Two distances known within bounds; where that leaves the comparison open, on float32.
 etlmon::Enclosed Evaluator::measure_contrast(const check::Predicate& predicate) {
     const auto [a, b] = *contrast(predicate);
+    const Index p = static_cast<Index>(&predicate - model_.predicates.data());
     const etlmon::Enclosed known = etlmon::difference(enclosed_[a], enclosed_[b]);
-    if (!doubtful(known, contrast_cuts_[&predicate - model_.predicates.data()])) return known;
-    const auto exactly = [&](Index d) {
-        return etlmon::exactly(measure_wide(d, point_at_[model_.distances[d].point]));
+    contrast_rows_[p] = {distances_[a].nearest, distances_[b].nearest};
+    if (!doubtful(known, contrast_cuts_[p])) return known;
+    const auto wide = [&](Index d) {
+        return measure_wide(d, point_at_[model_.distances[d].point]);
     };
-    return etlmon::difference(exactly(a), exactly(b));
+    const etlmon::Measured left = wide(a), right = wide(b);
+    contrast_rows_[p] = {left.nearest, right.nearest};
+    return etlmon::difference(etlmon::exactly(left), etlmon::exactly(right));
+}
+
+std::uint32_t Evaluator::nearest(Index p, Index distance) const {
+    const check::Predicate& predicate = model_.predicates[p];
+    if (predicate.plain_distance()) return measured_[p].nearest;
+    if (contrast_cuts_[p].empty() || std::isnan(measured_[p].delta))
+        return distances_[distance].nearest;
+    return distance == contrast(predicate)->first ? contrast_rows_[p].first
+                                                  : contrast_rows_[p].second;
 }
 
 /// On narrow rows where there are some; where these leave a comparison open, or there are none, on

@@ -27,10 +27,33 @@ constexpr uint32_t kIncidentVersion = 1;
 constexpr uint32_t kIncidentHeadBytes = 96;
 constexpr uint32_t kIncidentChecksumBytes = 8;
 
+/// What a row of any size is told of a step: Self has its `words` and `bytes`.
+template <class Self>
+struct RowCalls {
+  /// A distance, an expression or a threshold; every NaN is recorded alike.
+  void figure(uint32_t at, const float& x) noexcept {
+    self().words[1 + at] = is_nan(x) ? detail::kMissingBits : detail::observe(x);
+  }
+  /// A distance and the row of the nearest target.
+  void figures(uint32_t at, const float& delta, uint32_t nearest) noexcept {
+    figure(at, delta);
+    this->nearest(at + 1, nearest);
+  }
+  /// That row alone, beside an expression.
+  void nearest(uint32_t at, uint32_t row) noexcept { self().words[1 + at] = row; }
+  void flag(uint32_t at, const Flag& x) noexcept {
+    self().bytes[at] =
+        x.present() ? (x.value() ? kRecordedTrue : kRecordedFalse) : kRecordedMissing;
+  }
+
+ private:
+  Self& self() noexcept { return static_cast<Self&>(*this); }
+};
+
 /// What is recorded of a step: its number, a word for each figure of a predicate, a byte for each
 /// bool and each verdict.
 template <uint32_t Figures, uint32_t Bools, uint32_t Monitors>
-struct RecorderRow {
+struct RecorderRow : RowCalls<RecorderRow<Figures, Bools, Monitors>> {
   static constexpr uint32_t kWords = 1 + Figures;
   static constexpr uint32_t kBytes = Bools + Monitors;
   static constexpr uint32_t kPaddedBytes = (kBytes + 3) / 4 * 4;
@@ -45,21 +68,6 @@ struct RecorderRow {
     words[0] = 0;
     for (uint32_t i = 1; i < kWords; ++i) words[i] = kUnaskedBits;
     for (uint32_t i = 0; i < kPaddedBytes; ++i) bytes[i] = i < Bools ? kRecordedUnasked : 0;
-  }
-
-  /// A distance, an expression or a threshold; every NaN is recorded alike.
-  void figure(uint32_t at, const float& x) noexcept {
-    words[1 + at] = is_nan(x) ? detail::kMissingBits : detail::observe(x);
-  }
-  /// A distance and the row of the nearest target.
-  void figures(uint32_t at, const float& delta, uint32_t nearest) noexcept {
-    figure(at, delta);
-    this->nearest(at + 1, nearest);
-  }
-  /// That row alone, beside an expression.
-  void nearest(uint32_t at, uint32_t row) noexcept { words[1 + at] = row; }
-  void flag(uint32_t at, const Flag& x) noexcept {
-    bytes[at] = x.present() ? (x.value() ? kRecordedTrue : kRecordedFalse) : kRecordedMissing;
   }
 };
 
@@ -112,43 +120,73 @@ class IncidentWriter {
 
 }  // namespace detail
 
-/// A ring of the last Before steps and this one, and a log of the steps that incidents hold. A row
-/// leaves the ring for the log if an incident holds it; incidents that overlap share its rows. The
-/// first Incidents alarms are kept; later ones are counted as lost, until forget().
-template <class Row, uint32_t Before, uint32_t After, uint32_t Incidents>
-class Recorder {
-  static constexpr uint32_t kRing = Before + 1;
-  static constexpr uint32_t kLog = Incidents * (Before + 1 + After);
-  static constexpr uint32_t kAlarmWords = (Row::kMonitors + 31) / 32;
+/// An incident in the log.
+struct RecordedIncident {
+  uint32_t first;     ///< row in the log
+  uint32_t length;    ///< in rows
+  uint32_t alarm_at;  ///< row of the alarm, counted from the first
+  uint32_t episode;
+};
+
+/// Where a recorder of fixed sizes keeps its rows.
+template <class RowOf, uint32_t Before, uint32_t After, uint32_t Incidents>
+struct RecorderArrays {
+  using Row = RowOf;
+  using Statuses = uint32_t[Row::kMonitors];
+
+  static constexpr uint32_t before() noexcept { return Before; }
+  static constexpr uint32_t after() noexcept { return After; }
+  static constexpr uint32_t most_incidents() noexcept { return Incidents; }
+  static constexpr uint32_t bools() noexcept { return Row::kBools; }
+  static constexpr uint32_t monitors() noexcept { return Row::kMonitors; }
+  static constexpr uint32_t row_words() noexcept { return Row::kWords; }
+
+  uint32_t alarms[(Row::kMonitors + 31) / 32];
+  RecordedIncident incidents[Incidents];
+  Row ring[Before + 1];
+  Row log[Incidents * (Before + 1 + After)];
+};
+
+/// A ring of the last `before` steps and this one, and a log of the steps that incidents hold. A
+/// row leaves the ring for the log if an incident holds it; incidents that overlap share its rows.
+/// The first `most_incidents` alarms are kept; later ones are counted as lost, until forget().
+template <class Storage>
+class RecorderIn {
+  using Row = typename Storage::Row;
   static constexpr uint32_t kAlarm = Verdict::kViolated | Verdict::kFinal;
 
  public:
-  Recorder() noexcept { end_episode(); }
+  RecorderIn() noexcept { end_episode(); }
+  /// In storage whose sizes are known at run time.
+  explicit RecorderIn(Storage&& storage) noexcept : kept_(static_cast<Storage&&>(storage)) {
+    end_episode();
+  }
 
   /// After each step. `statuses`: of the verdicts, in the order of the spec. An alarm begins where
   /// a verdict is one that was none at the step before.
-  void record(const Row& row, const uint32_t (&statuses)[Row::kMonitors]) noexcept {
-    if (count_ == kRing) take_oldest();
-    Row& here = ring_[in_ring(count_)];
+  void record(const Row& row, const typename Storage::Statuses& statuses) noexcept {
+    if (count_ == ring_rows()) take_oldest();
+    Row& here = kept_.ring[in_ring(count_)];
     ++count_;
     here = row;
     here.words[0] = step_;
     if (step_ != UINT32_MAX) ++step_;
     bool begins = false;
-    for (uint32_t m = 0; m < Row::kMonitors; ++m) {
-      uint32_t& alarms = alarms_[m / 32];
+    for (uint32_t m = 0; m < kept_.monitors(); ++m) {
+      uint32_t& alarms = kept_.alarms[m / 32];
       const uint32_t bit = uint32_t{1} << (m % 32);
       const bool alarm = (statuses[m] & kAlarm) == kAlarm;
       const bool first = alarm && (alarms & bit) == 0;
       alarms = alarm ? alarms | bit : alarms & ~bit;
-      here.bytes[Row::kBools + m] = static_cast<uint8_t>(statuses[m] | (first ? kAlarmBegins : 0u));
+      here.bytes[kept_.bools() + m] =
+          static_cast<uint8_t>(statuses[m] | (first ? kAlarmBegins : 0u));
       begins = begins || first;
     }
     if (begins) begin_incident();
   }
 
   /// Monitor m restarted: its next alarm is another one.
-  void restart(uint32_t m) noexcept { alarms_[m / 32] &= ~(uint32_t{1} << (m % 32)); }
+  void restart(uint32_t m) noexcept { kept_.alarms[m / 32] &= ~(uint32_t{1} << (m % 32)); }
 
   /// A new episode: no step before it counts.
   void end_episode() noexcept {
@@ -156,15 +194,16 @@ class Recorder {
     oldest_ = count_ = 0;
     if (step_ != 0 && episode_ != UINT32_MAX) ++episode_;
     step_ = 0;
-    for (uint32_t i = 0; i < kAlarmWords; ++i) alarms_[i] = 0;
+    for (uint32_t i = 0; i < (kept_.monitors() + 31) / 32; ++i) kept_.alarms[i] = 0;
   }
 
   /// Completes the incidents that wait for steps, with those that there are.
   void close() noexcept {
-    for (uint32_t i = 0; i < count_ && owed_ > 0; ++i, --owed_) log_[logged_++] = ring_[in_ring(i)];
+    for (uint32_t i = 0; i < count_ && owed_ > 0; ++i, --owed_)
+      kept_.log[logged_++] = kept_.ring[in_ring(i)];
     owed_ = 0;
     for (uint32_t n = complete(); n < begun_; ++n)
-      incidents_[n].length = logged_ - incidents_[n].first;
+      kept_.incidents[n].length = logged_ - kept_.incidents[n].first;
   }
 
   /// Room for new incidents.
@@ -173,7 +212,7 @@ class Recorder {
   /// How many are complete: their steps after the alarm, and Before more, are over.
   uint32_t complete() const noexcept {
     uint32_t n = 0;
-    while (n < begun_ && incidents_[n].first + incidents_[n].length <= logged_) ++n;
+    while (n < begun_ && kept_.incidents[n].first + kept_.incidents[n].length <= logged_) ++n;
     return n;
   }
   uint32_t lost() const noexcept { return lost_; }
@@ -183,7 +222,7 @@ class Recorder {
   template <class Sink>
   bool write(uint32_t n, const IncidentOrigin& origin, Sink&& sink) const {
     if (n >= complete()) return false;
-    const Incident& incident = incidents_[n];
+    const RecordedIncident& incident = kept_.incidents[n];
     detail::IncidentWriter<Sink> out(sink);
     for (const uint8_t byte : kIncidentMagic) out.byte(byte);
     out.word(kIncidentVersion);
@@ -192,12 +231,22 @@ class Recorder {
     out.long_word(origin.data);
     out.long_word(origin.thresholds);
     out.long_word(origin.columns);
-    const uint32_t figures[] = {Row::kWords,       Row::kBytes, Before, After,
-                                incident.episode,  n,           lost_,  incident.length,
-                                incident.alarm_at, 0,           0,      0};
+    const uint32_t row_bytes = kept_.bools() + kept_.monitors();
+    const uint32_t figures[] = {kept_.row_words(),
+                                row_bytes,
+                                kept_.before(),
+                                kept_.after(),
+                                incident.episode,
+                                n,
+                                lost_,
+                                incident.length,
+                                incident.alarm_at,
+                                0,
+                                0,
+                                0};
     for (const uint32_t figure : figures) out.word(figure);
     for (uint32_t i = 0; i < incident.length; ++i) {
-      const Row& row = log_[incident.first + i];
+      const Row& row = kept_.log[incident.first + i];
       for (const uint32_t word : row.words) out.word(word);
       for (const uint8_t byte : row.bytes) out.byte(byte);
     }
@@ -206,41 +255,37 @@ class Recorder {
   }
 
  private:
-  struct Incident {
-    uint32_t first;     ///< row in the log
-    uint32_t length;    ///< in rows
-    uint32_t alarm_at;  ///< row of the alarm, counted from the first
-    uint32_t episode;
-  };
+  uint32_t ring_rows() const noexcept { return kept_.before() + 1; }
 
-  static constexpr uint32_t file_bytes(uint32_t rows) noexcept {
-    const uint32_t bytes = kIncidentHeadBytes + rows * static_cast<uint32_t>(sizeof(Row));
+  uint32_t file_bytes(uint32_t rows) const noexcept {
+    const uint32_t row = 4 * kept_.row_words() + (kept_.bools() + kept_.monitors() + 3) / 4 * 4;
+    const uint32_t bytes = kIncidentHeadBytes + rows * row;
     return (bytes + 31) / 32 * 32 + kIncidentChecksumBytes;
   }
 
   uint32_t in_ring(uint32_t i) const noexcept {
     const uint32_t at = oldest_ + i;
-    return at < kRing ? at : at - kRing;
+    return at < ring_rows() ? at : at - ring_rows();
   }
 
   /// The oldest row makes room, and goes to the log where an incident holds it.
   void take_oldest() noexcept {
     if (owed_ > 0) {
-      log_[logged_++] = ring_[oldest_];
+      kept_.log[logged_++] = kept_.ring[oldest_];
       --owed_;
     }
     oldest_ = in_ring(1);
     --count_;
   }
 
-  /// At the newest row: all rows of the ring, and After to come, go to the log.
+  /// At the newest row: all rows of the ring, and `after` to come, go to the log.
   void begin_incident() noexcept {
-    if (begun_ == Incidents) {
+    if (begun_ == kept_.most_incidents()) {
       if (lost_ != UINT32_MAX) ++lost_;
       return;
     }
-    incidents_[begun_++] = {logged_, count_ + After, count_ - 1, episode_};
-    owed_ = count_ + After;
+    kept_.incidents[begun_++] = {logged_, count_ + kept_.after(), count_ - 1, episode_};
+    owed_ = count_ + kept_.after();
   }
 
   uint32_t oldest_ = 0;   ///< in the ring
@@ -251,11 +296,11 @@ class Recorder {
   uint32_t lost_ = 0;     ///< alarms without one; saturates
   uint32_t step_ = 0;     ///< of the episode; saturates
   uint32_t episode_ = 0;  ///< saturates
-  uint32_t alarms_[kAlarmWords];
-  Incident incidents_[Incidents];
-  Row ring_[kRing];
-  Row log_[kLog];
+  Storage kept_;
 };
+
+template <class Row, uint32_t Before, uint32_t After, uint32_t Incidents>
+using Recorder = RecorderIn<RecorderArrays<Row, Before, After, Incidents>>;
 
 }  // namespace ETLMON_BUILD
 }  // namespace etlmon

@@ -1,0 +1,53 @@
+// What a flight recorder holds after two episodes.
+// Takes: a request of harness.hpp. Gives, in place of its answer: how many incidents are complete
+// and how many were lost after each trace, finished and reset, then of each incident its size and
+// its bytes. What was kept before the request is forgotten.
+#pragma once
+
+#include "harness.hpp"
+
+namespace harness {
+
+template <class Spec>
+class Incidents {
+ public:
+  static void answer() {
+    static typename Spec::Monitor monitor;
+    Spec::restart(monitor);  // adaptive thresholds are those of the request before
+    monitor.forget_incidents();
+    const uint32_t calls = read<uint32_t>();
+    for (int trace = 0; trace < 2; ++trace) {
+      const uint32_t steps = read<uint32_t>();
+      read<uint32_t>();  // bytes
+      for (uint32_t n = 0; n < steps; ++n) step(monitor, n);
+      for (uint32_t n = 0; n < calls; ++n) Spec::finish(monitor);
+      monitor.reset();
+      write(monitor.incidents());
+      write(monitor.lost_incidents());
+    }
+    for (uint32_t n = 0; n < monitor.incidents(); ++n) give(monitor, n);
+  }
+
+ private:
+  static void step(typename Spec::Monitor& monitor, uint32_t n) {
+    typename Spec::Inputs inputs{};
+    typename Spec::Buffers buffers{};
+    Spec::labels(monitor);
+    Spec::feed(inputs, buffers);
+    Spec::restart_before(monitor, n);
+    monitor.step(inputs);
+  }
+
+  static void give(const typename Spec::Monitor& monitor, uint32_t n) {
+    static uint8_t bytes[Spec::Monitor::kIncidentBytes];
+    uint32_t size = 0;
+    monitor.write_incident(n, [&](const uint8_t* some, size_t count) {
+      memcpy(bytes + size, some, count);
+      size += static_cast<uint32_t>(count);
+    });
+    write(size);
+    write_bytes(bytes, size);
+  }
+};
+
+}  // namespace harness
