@@ -1,0 +1,38 @@
+// The topics of the node, over DDS and without ROS: what rclcpp would do, for a system that has
+// CycloneDDS alone. ROS 2 nodes of the same domain see them as /embedding, /diagnostics and
+// /patrol/verdicts.
+// Takes: a domain. Gives: embeddings that came, and publishes statuses. Keeps true: a call of DDS
+// that fails throws with its words.
+#pragma once
+
+#include <dds/dds.h>
+
+#include <functional>
+#include <vector>
+
+#include "monitor_node.hpp"
+
+namespace patrol_node {
+
+class RosTopics {
+public:
+    explicit RosTopics(std::uint32_t domain);
+    ~RosTopics() { dds_delete(participant_); }
+    RosTopics(const RosTopics&) = delete;
+    RosTopics& operator=(const RosTopics&) = delete;
+
+    /// Hands on every embedding that came since the last call, the oldest first.
+    void take(const std::function<void(const float* elements, std::size_t count)>& each);
+
+    void publish_diagnostics(const std::vector<Status>& statuses);
+    /// A late subscriber gets the last ones too.
+    void publish_verdicts(const std::vector<Status>& statuses);
+
+private:
+    dds_entity_t participant_;
+    dds_entity_t embeddings_;
+    dds_entity_t diagnostics_;
+    dds_entity_t verdicts_;
+};
+
+}  // namespace patrol_node
