@@ -1,6 +1,6 @@
 # etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
 #                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
-#                  [EXPLAIN] [LETS] [STANDALONE] [SET name=value ...])
+#                  [EXPLAIN] [LETS] [RETARGETABLE] [STANDALONE] [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -20,6 +20,9 @@
 #   RECORDER        keeps the steps around alarms, for `etlc incident`: RECORDER 2s,1s,4
 #   EXPLAIN         the class says why a verdict is what it is: why_NAME(); not with VALUES boolean
 #   LETS            what lets say of each step is telemetry too: let_NAME(), robustness_NAME()
+#   RETARGETABLE    the numbers of the spec lie in <stem of SPEC>.params.bin beside the header, and
+#                   the class takes other ones; not with INLINE_TARGETS, RECORDER, EXPLAIN or VALUES
+#                   boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
 # itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja
@@ -28,7 +31,7 @@ cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
-  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;LETS;STANDALONE"
+  cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;LETS;RETARGETABLE;STANDALONE"
     "SPEC;THRESHOLDS;FITTED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
@@ -53,6 +56,11 @@ function(etlc_add_monitor target)
   if(arg_EXPLAIN AND "${arg_VALUES}" STREQUAL "boolean")
     message(FATAL_ERROR "${call}: EXPLAIN follows robustness, which VALUES boolean has none of")
   endif()
+  if(arg_RETARGETABLE AND (arg_EXPLAIN OR arg_RECORDER OR DEFINED arg_INLINE_TARGETS
+                           OR "${arg_VALUES}" STREQUAL "boolean"))
+    message(FATAL_ERROR
+      "${call}: RETARGETABLE goes without EXPLAIN, RECORDER, INLINE_TARGETS and VALUES boolean")
+  endif()
   if(DEFINED arg_INLINE_TARGETS AND NOT arg_INLINE_TARGETS MATCHES "^[0-9]+$")
     message(FATAL_ERROR "${call}: INLINE_TARGETS ${arg_INLINE_TARGETS}: expected a number of bytes")
   endif()
@@ -62,16 +70,22 @@ function(etlc_add_monitor target)
   get_filename_component(stem "${spec}" NAME_WLE)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/etlc/${target}")
   set(header "${folder}/${stem}.hpp")
-  set(targets_file "${folder}/${stem}.targets.bin")
   get_target_property(monitors ${target} ETLC_MONITORS)
   if("${stem}" IN_LIST monitors)
     message(FATAL_ERROR
       "${call}: there is a monitor ${stem}.hpp already: name one of the two specs otherwise")
   endif()
   set_property(TARGET ${target} APPEND PROPERTY ETLC_MONITORS "${stem}")
-  set_property(TARGET ${target} APPEND PROPERTY ETLC_TARGETS_FILES "${targets_file}")
+  if(arg_RETARGETABLE)
+    set(beside "${folder}/${stem}.params.bin")
+    set_property(TARGET ${target} APPEND PROPERTY ETLC_PARAMS_FILES "${beside}")
+    set(options --retargetable)
+  else()
+    set(beside "${folder}/${stem}.targets.bin")
+    set_property(TARGET ${target} APPEND PROPERTY ETLC_TARGETS_FILES "${beside}")
+    set(options --targets-file "${beside}")
+  endif()
 
-  set(options)
   set(depends "${spec}")
   if(arg_THRESHOLDS)
     __etlc_input("${call}" THRESHOLDS "${arg_THRESHOLDS}" thresholds)
@@ -110,9 +124,8 @@ function(etlc_add_monitor target)
 
   file(MAKE_DIRECTORY "${folder}")
   add_custom_command(
-    OUTPUT "${header}" "${targets_file}"
-    COMMAND etlc::etlc "${spec}" -o "${header}" --targets-file "${targets_file}"
-            --depfile "${header}.d" ${options}
+    OUTPUT "${header}" "${beside}"
+    COMMAND etlc::etlc "${spec}" -o "${header}" --depfile "${header}.d" ${options}
     DEPENDS ${depends} etlc::etlc
     DEPFILE "${header}.d"
     COMMENT "Compiling ${stem}.etl to ${stem}.hpp"

@@ -1,5 +1,6 @@
 #include "check/check.hpp"
 
+#include "check/guarantees/retargetable.hpp"
 #include "check/steps.hpp"
 
 namespace etlc::check {
@@ -35,6 +36,7 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     check_thresholds(context);
     set_robustness(context);
     warn(context);
+    if (options.retargetable) make_retargetable(context);
 
     if (sink.has_errors() || context.lacks_data) return std::nullopt;
     context.model.dependencies.assign(context.dependencies.begin(), context.dependencies.end());

@@ -44,6 +44,8 @@ struct Options {
     bool allow_missing = false;
     /// `--lets`: what lets say at each step is telemetry.
     bool lets = false;
+    /// `--retargetable`: the numbers of the spec may change while its monitors run.
+    bool retargetable = false;
     std::vector<Setting> settings;
 };
 

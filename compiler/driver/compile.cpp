@@ -64,7 +64,11 @@ std::optional<Output> emit(const source::File& file, const Request& request, dia
     if (!text) return std::nullopt;
     output.text = std::move(*text);
     output.dependencies = compiled->model->dependencies;
-    if (request.emit == "hpp") output.compiled = std::move(*compiled);
+    if (request.emit == "hpp") {
+        if (request.check.retargetable)
+            output.params = emit::params(compiled->plan, {.version = library::kVersion});
+        output.compiled = std::move(*compiled);
+    }
     return output;
 }
 

@@ -28,7 +28,8 @@ struct Request : pipeline::Options {
 struct Output {
     std::string text;                       ///< of request.emit
     std::vector<std::string> dependencies;  ///< every file that the spec loads
-    Compiled compiled;  ///< of the header: its plan says what goes to the file of targets
+    Compiled compiled;   ///< of the header: its plan says what goes to the file of targets
+    std::string params;  ///< of a retargetable class: what goes to the file of parameters
 };
 
 std::optional<Compiled> compile(const source::File& file, const Request& request, diag::Sink& sink);

@@ -117,13 +117,16 @@ void add_common_options(CLI::App& app, Call& call, const std::string& spec = "sp
     driver::add_compiler_options(app, call.request);
 }
 
-/// monitor.targets.bin for monitor.hpp, in the same folder; none for standard output.
-void name_targets_file(Call& call) {
+/// monitor.targets.bin and monitor.params.bin for monitor.hpp, in the same folder; none for
+/// standard output.
+void name_files_beside(Call& call) {
     call.output.targets_named = !call.output.targets.empty();
     const std::filesystem::path header = call.output.result;
-    if (!call.output.targets_named && header != "-")
-        call.output.targets =
-            (header.parent_path() / (header.stem().string() + ".targets.bin")).string();
+    const auto beside = [&](const char* ending) {
+        return (header.parent_path() / (header.stem().string() + ending)).string();
+    };
+    if (header != "-") call.output.params = beside(".params.bin");
+    if (!call.output.targets_named && header != "-") call.output.targets = beside(".targets.bin");
     call.request.targets_file = std::filesystem::path(call.output.targets).filename().string();
 }
 
@@ -149,8 +152,9 @@ int compile_command(int argc, char** argv) {
         !mistake.empty())
         return driver::complain(app, mistake);
     if (call.request.explain) call.request.values = check::Values::sourced;
+    if (call.request.emit == "params") call.request.check.retargetable = true;
     if (call.output.result.empty()) call.output.result = "-";
-    name_targets_file(call);
+    name_files_beside(call);
     call.request.check.allow_missing = call.check_only;
     return with_spec(call, SpecWarnings::told, [&](const source::File& file, diag::Sink& sink) {
         if (call.check_only) {

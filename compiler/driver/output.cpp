@@ -24,8 +24,9 @@ void write_output(const OutputPaths& paths, const source::File& spec, const Outp
     const bool has_targets = paths.targets_named || !plan.stored.empty();
     std::vector<std::string> inputs = output.dependencies;
     inputs.push_back(spec.path());
-    if (!check_outputs({has_targets ? paths.targets : "", paths.depfile, paths.result}, inputs,
-                       sink))
+    const std::string params = output.params.empty() ? "" : paths.params;
+    if (!check_outputs({has_targets ? paths.targets : "", params, paths.depfile, paths.result},
+                       inputs, sink))
         return;
     OutputFiles files(sink);
     if (has_targets) {
@@ -34,6 +35,7 @@ void write_output(const OutputPaths& paths, const source::File& spec, const Outp
         };
         if (!files.begin(paths.targets) || !plan::store(plan, write)) return;
     }
+    if (!params.empty() && !files.add(params, output.params)) return;
     if (!paths.depfile.empty() && !files.add(paths.depfile, rule)) return;
     // The result is the last to appear: a build that is stopped in between finds it older than the
     // spec.

@@ -14,23 +14,6 @@ using check::Index;
 using check::InputType;
 using plan::StreamOp;
 
-std::vector<Member> telemetry_members(const Context& context) {
-    std::vector<Member> result;
-    for (const auto& [p, name] : context.names.predicate_member) {
-        const bool plain = context.model.predicates[p].plain_distance();
-        result.push_back({plain ? "etlmon::Measured" : "float", name,
-                          "telemetry of " + context.model.predicates[p].name,
-                          fmt::format("{} = etlmon::{};", name, plain ? "kUnmeasured" : "kMissing"),
-                          ""});
-    }
-    for (const auto& [of, nearest] : context.names.nearest)
-        result.push_back(
-            {"uint32_t", nearest.member,
-             fmt::format("the row nearest by {}", context.model.distances[of.second].text),
-             nearest.member + " = 0;", ""});
-    return result;
-}
-
 std::vector<Member> own_members(const Context& context) {
     const plan::Plan& plan = context.plan;
     std::vector<Member> result;
@@ -94,30 +77,6 @@ std::vector<Member> own_members(const Context& context) {
     return result;
 }
 
-void print_telemetry(Printer& out, const Context& context) {
-    for (const auto& [p, member] : context.names.predicate_member) {
-        const check::Predicate& predicate = context.model.predicates[p];
-        const bool plain = predicate.plain_distance();
-        out.line("float distance_{}() const noexcept {{ return {}{}; }}", predicate.name, member,
-                 plain ? ".delta" : "");
-        const auto adaptive = context.names.threshold_member.find(p);
-        if (adaptive == context.names.threshold_member.end())
-            out.line("static constexpr float threshold_{}() noexcept {{ return {}; }}",
-                     predicate.name, float_literal(predicate.threshold.value));
-        else
-            out.line("float threshold_{}() const noexcept {{ return {}; }}", predicate.name,
-                     adaptive->second);
-        if (plain)
-            out.line("uint32_t nearest_{}() const noexcept {{ return {}.nearest; }}",
-                     predicate.name, member);
-        for (check::Index d : predicate.distances())
-            if (const auto nearest = context.names.nearest.find({p, d});
-                nearest != context.names.nearest.end())
-                out.line("uint32_t {}() const noexcept {{ return {}; }}", nearest->second.function,
-                         nearest->second.member);
-    }
-}
-
 /// Some stream looks at positions that may lie before the trace, or after its end.
 bool asks_what_exists(const plan::Plan& plan) {
     return plan.has_sliding ||
@@ -163,9 +122,9 @@ void print_types(Printer& out, const Context& context) {
     out.line();
 }
 
-void print_class_constants(Printer& out, const Context& context) {
+void print_made_from(Printer& out, const Context& context) {
+    if (context.retargetable()) return;  // the parameters say it
     const check::Fingerprint made_from = check::fingerprint(context.model);
-    const plan::Cost& cost = context.plan.cost;
     print_doc(out, "What the class was made from, as XXH64: log it with the verdicts.");
     const auto hash = [](const char* name, std::uint64_t value) {
         return fmt::format("static constexpr uint64_t {} = 0x{:016x}u;", name, value);
@@ -178,10 +137,15 @@ void print_class_constants(Printer& out, const Context& context) {
          {hash("kThresholdsHash", made_from.thresholds),
           made_from.thresholds == 0 ? "no named thresholds" : "thresholds, as they begin"}},
         "///<");
+}
+
+void print_class_constants(Printer& out, const Context& context) {
+    const plan::Cost& cost = context.plan.cost;
+    print_made_from(out, context);
     print_doc(out, "What it costs.");
     std::vector<std::pair<std::string, std::string>> sizes;
     sizes.emplace_back(fmt::format("static constexpr size_t kStateBytes = {};",
-                                   context.stores_targets()
+                                   context.stores_targets() || context.retargetable()
                                        ? fmt::format("etlmon::with_pointer({})", cost.state_bytes)
                                        : fmt::format("{}", cost.state_bytes)),
                        "sizeof(Monitor)");
@@ -210,6 +174,7 @@ void print_step_on_demand(Printer& out, const Context& context) {
 }
 
 void print_constructors(Printer& out, const Context& context) {
+    if (context.retargetable()) return print_retarget_interface(out, context);
     if (!context.stores_targets()) {
         out.line("Monitor() noexcept { reset(); }");
         return out.line();
@@ -322,6 +287,14 @@ void declare_advance(Printer& out) {
 
 /// What stands for a predicate that is not seen: at a step that lacks its sample.
 void print_unseen(Printer& out, const Context& context) {
+    if (context.retargetable()) {
+        print_doc(out,
+                  "What stands for what is not seen: anything, since other parameters may come.");
+        out.open("static Value unseen() noexcept {");
+        out.line("return Value{etlmon::kBottom, etlmon::kTop};");
+        out.close();
+        return out.line();
+    }
     if (context.names.predicate_unseen.empty()) return;
     print_doc(
         out,
@@ -361,6 +334,8 @@ std::vector<Member> members(const Context& context) {
     });
     if (context.stores_targets())
         all.insert(all.begin(), {"const float*", "rows", "in " + context.targets_file, ""});
+    if (context.retargetable())
+        all.insert(all.begin(), {"const float*", "numbers", "the parameters; null: none yet", ""});
     return all;
 }
 
@@ -376,6 +351,7 @@ void print_class(Printer& out, const Context& context) {
     print_interface(out, context, all);
     out.label("private:");
     print_unseen(out, context);
+    print_unknown_atoms(out, context);
     print_why_of(out, context);
     if (asks_what_exists(context.plan)) print_exists(out, context);
     if (context.on_demand) declare_advance(out);

@@ -10,6 +10,7 @@
 #include "emit/names.hpp"
 #include "emit/spelling.hpp"
 #include "emit/text/layout.hpp"
+#include "plan/parameters.hpp"
 #include "plan/plan.hpp"
 #include "plan/program/budget.hpp"
 #include "plan/program/demand.hpp"
@@ -42,6 +43,13 @@ struct Context {
     bool explains = plan::value_type(plan.values).sourced;
     plan::Samples sampled = plan::samples(plan);  ///< where it explains
 
+    std::vector<plan::Parameter> parameters = {};  ///< of a retargetable class
+    std::uint64_t shape = 0;                       ///< of such a class; 0 while it is found out
+    /// All numbers of the spec lie in parameters that the monitor is given.
+    bool retargetable() const { return model.retargetable; }
+    /// Where one of these lies: "numbers + targets::goal", "numbers[thresholds::near]".
+    std::string parameter(plan::Parameter::Kind kind, check::Index index) const;
+    std::string parameter(const check::Expr& number) const;
     /// Some target sets lie beside the header: the monitor has to be given them.
     bool stores_targets() const { return !plan.stored.empty(); }
     /// How the functions of a step are declared: where a call would cost as much as they do, part
@@ -90,6 +98,9 @@ std::string what_takes_stack(const plan::Plan& plan);
 
 // The parts of the header, in order.
 void print_summary(Printer& out, const Context& context);
+/// The figures that the head of the file and --emit report share.
+void print_figures(Printer& out, const std::string& prefix, const plan::Plan& plan,
+                   const std::string& targets_file);
 void print_inputs_and_verdicts(Printer& out, const Context& context);
 void print_constants(Printer& out, const Context& context);
 void print_class(Printer& out, const Context& context);
@@ -172,6 +183,22 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
 /// Those of readings and streams: the plan says what they are.
 std::vector<Member> temporal_members(const Context& context);
 std::vector<Member> threshold_members(const Context& context);
+
+// The parameters of a retargetable class; nothing else prints anything then.
+/// What a monitor has to be given besides its state, in words.
+std::string about_parameters(const plan::Plan& plan, bool is_calibrated);
+/// Where they lie, and what a block of them must be.
+void print_parameters(Printer& out, const Context& context);
+/// Constructors, retarget() and what is asked about parameters.
+void print_retarget_interface(Printer& out, const Context& context);
+/// measure() of a monitor that has none yet.
+void print_unknown_atoms(Printer& out, const Context& context);
+void print_shadow(Printer& out, const Context& context);
+
+// Telemetry of named predicates.
+std::vector<Member> telemetry_members(const Context& context);
+/// distance_P(), threshold_P(), nearest_P()
+void print_telemetry(Printer& out, const Context& context);
 
 // Telemetry of lets, where the plan has some; nothing else prints anything then.
 std::vector<Member> let_members(const Context& context);

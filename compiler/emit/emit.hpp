@@ -26,6 +26,8 @@ struct Backend {
 const std::vector<Backend>& backends();
 
 std::string header(const plan::Plan& plan, const Options& options);
+/// What a retargetable class of this plan takes, with the numbers that the spec has.
+std::string params(const plan::Plan& plan, const Options& options);
 std::string dot(const plan::Plan& plan, const Options& options);
 std::string report(const plan::Plan& plan, const Options& options);
 

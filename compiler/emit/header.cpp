@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <set>
 
+#include "data/files/hash.hpp"
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
@@ -31,6 +32,7 @@ bool any_stream(const plan::Plan& plan, std::initializer_list<StreamOp> ops) {
 
 /// What measures a distance.
 const char* header_of(const Context& context, Index d) {
+    if (context.retargetable()) return "params/rows";
     if (plan::stored_set(context.plan, d) == nullptr) return "distance/kernel";
     return plan::searches(context.plan, d) ? "distance/search" : "distance/targets";
 }
@@ -72,6 +74,7 @@ std::set<std::string> runtime_headers(const Context& context) {
         headers.insert({"temporal/handover", "temporal/window"});
     if (any_stream(plan, {StreamOp::widening})) headers.insert("temporal/widening");
     if (plan.recorder) headers.insert("temporal/recorder");
+    if (context.retargetable()) headers.insert({"params/params", "params/shadow"});
     for (const Names::OfReading& reading : context.names.readings) {
         if (!reading.guards.empty()) headers.insert("temporal/machine");
         if (!reading.count.empty()) headers.insert("temporal/pending");
@@ -109,18 +112,67 @@ void print_includes(Printer& out, const Context& context, const std::string& ver
 
 }  // namespace
 
-std::string header(const plan::Plan& plan, const Options& options) {
+namespace {
+
+Context context_of(const plan::Plan& plan, const Options& options) {
     const check::Model& model = *plan.model;
-    const Context context{plan,
-                          *plan.formulas,
-                          model,
-                          make_names(plan),
-                          file_name(model.file.path()),
-                          options.name_space.empty() ? model.name : options.name_space,
-                          options.targets_file,
-                          spelling(plan.values),
-                          plan::value_type(plan.values).on_demand,
-                          plan::dependents(plan)};
+    Context context{plan,
+                    *plan.formulas,
+                    model,
+                    make_names(plan),
+                    file_name(model.file.path()),
+                    options.name_space.empty() ? model.name : options.name_space,
+                    options.targets_file,
+                    spelling(plan.values),
+                    plan::value_type(plan.values).on_demand,
+                    plan::dependents(plan)};
+    if (model.retargetable) context.parameters = plan::parameters(plan);
+    return context;
+}
+
+/// What stands in the namespace.
+void print_body(Printer& out, const Context& context) {
+    print_inputs_and_verdicts(out, context);
+    if (context.retargetable())
+        print_parameters(out, context);
+    else
+        print_constants(out, context);
+    print_tables(out, context);
+    print_class(out, context);
+    print_shadow(out, context);
+}
+
+/// A program without its comments. No string of generated code has two slashes.
+std::string without_comments(std::string_view text) {
+    std::string result;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find('\n', at), text.size());
+        const std::string_view line = text.substr(at, end - at);
+        const std::string_view code = line.substr(0, line.find("//"));
+        const std::size_t last = code.find_last_not_of(' ');
+        if (last != code.npos) result.append(code.substr(0, last + 1)).push_back('\n');
+        at = end + 1;
+    }
+    return result;
+}
+
+/// XXH64 of the class without a number of the spec: its text, as it stands in any namespace, with 0
+/// for what parameters say of themselves.
+std::uint64_t shape(const plan::Plan& plan, const std::string& version) {
+    Options options;
+    options.version = version;
+    const Context context = context_of(plan, options);
+    Printer out;
+    print_includes(out, context, version, false);
+    print_body(out, context);
+    return data::xxh64(without_comments(out.take()));
+}
+
+}  // namespace
+
+std::string header(const plan::Plan& plan, const Options& options) {
+    Context context = context_of(plan, options);
+    if (context.retargetable()) context.shape = shape(plan, options.version);
     Printer out;
     print_comment(out, "//",
                   fmt::format("Made by etlc {} from {}: change that, and run etlc again.",
@@ -131,13 +183,14 @@ std::string header(const plan::Plan& plan, const Options& options) {
     out.line(
         "inline namespace ETLMON_BUILD {  // units compiled with other flags have another class");
     out.line();
-    print_inputs_and_verdicts(out, context);
-    print_constants(out, context);
-    print_tables(out, context);
-    print_class(out, context);
+    print_body(out, context);
     out.line("}  // namespace ETLMON_BUILD");
     out.line("}}  // namespace {}", context.name_space);
     return options.standalone.empty() ? out.take() : standalone(out.take(), options.standalone);
+}
+
+std::string params(const plan::Plan& plan, const Options& options) {
+    return plan::block(plan, shape(plan, options.version));
 }
 
 }  // namespace etlc::emit

@@ -151,8 +151,13 @@ private:
             names_.point_buffer[p] = local(measure_, name + "_values");
         }
         for (check::Index d : plan_.distances)
-            names_.distance_local[d] =
-                local(measure_, identifier(model_.distances[d].text, "distance"));
+            names_.distance_local[d] = local(measure_, distance_name(model_.distances[d]));
+    }
+
+    /// Of a retargetable class without the weights, which may change.
+    std::string distance_name(const check::Distance& distance) const {
+        return model_.retargetable ? "to_" + model_.targets[distance.target].name
+                                   : identifier(distance.text, "distance");
     }
 
     /// "nearest_P_T", T the target set.
@@ -310,7 +315,17 @@ private:
         if (pending.is_fold) names.members.push_back(member(members_, name + "_guard"));
     }
 
+    void name_numbers() {
+        Scope scope;
+        for (check::Index p : plan_.predicates)
+            check::for_each(model_.predicates[p].expression, [&](const check::Expr& e) {
+                if (e.kind == check::Expr::Kind::number)
+                    names_.number_constant[&e] = scope.number(names_.predicate_atom[p]);
+            });
+    }
+
     void name_constants() {
+        if (model_.retargetable) name_numbers();
         std::map<std::pair<check::Index, bool>, std::string> arrays;
         std::map<std::string, std::string> narrow_arrays;
         for (check::Index d : plan_.distances) {
@@ -367,19 +382,6 @@ private:
 };
 
 }  // namespace
-
-std::string Scope::claim(const std::string& wanted, const std::string& mark) {
-    std::string name = wanted + mark;
-    for (int i = 2; !taken_.insert(name).second; ++i)
-        name = fmt::format("{}_{}{}", wanted, i, mark);
-    return name;
-}
-
-std::string Scope::number(const std::string& wanted) {
-    int i = 1;
-    while (!taken_.insert(fmt::format("{}_{}", wanted, i)).second) ++i;
-    return fmt::format("{}_{}", wanted, i);
-}
 
 Names make_names(const plan::Plan& plan) {
     return Naming(plan).name_all();

@@ -14,27 +14,14 @@
 #pragma once
 
 #include <map>
-#include <set>
 #include <string>
 #include <string_view>
 #include <utility>
 
+#include "emit/text/scope.hpp"
 #include "plan/plan.hpp"
 
 namespace etlc::emit {
-
-/// Names of one scope, each given once.
-class Scope {
-public:
-    explicit Scope(std::set<std::string> taken = {}) : taken_(std::move(taken)) {}
-    /// `wanted` and `mark`; where that is taken, wanted_2 and mark, wanted_3 and mark, ...
-    std::string claim(const std::string& wanted, const std::string& mark = "");
-    /// wanted_1, or wanted_2, wanted_3, ... where it is taken.
-    std::string number(const std::string& wanted);
-
-private:
-    std::set<std::string> taken_;
-};
 
 struct Names {
     /// In measure(): this step's sample; of an embedding, a pointer; none for what is read in
@@ -98,6 +85,8 @@ struct Names {
     /// Per projected point: where its elements lie, and the array that they lie in.
     std::map<check::Index, std::string> point_local;
     std::map<check::Index, std::string> point_buffer;
+    /// Of a retargetable class: per number in an expression.
+    std::map<const check::Expr*, std::string> number_constant;
     /// Per projection that such a point goes through; the offset where it has one.
     std::map<check::Index, std::string> matrix_array;
     std::map<check::Index, std::string> offset_array;

@@ -2,12 +2,10 @@
 // report.
 #include <algorithm>
 
-#include "check/formulas/gaps.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/model/fingerprint.hpp"
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
-#include "emit/emit.hpp"
 #include "emit/text/table.hpp"
 #include "plan/decide/point_checks.hpp"
 #include "plan/narrow_targets.hpp"
@@ -27,16 +25,6 @@ std::string blank(const std::string& prefix) {
 /// Sentences, next to the margin.
 void print_sentences(Printer& out, const std::string& prefix, std::string_view text) {
     print_comment(out, is_comment(prefix) ? "//" : prefix.substr(1), text);
-}
-
-/// A formula in a table: its beginning, where it is long.
-std::string shortened(const std::string& text) {
-    constexpr std::size_t kLongest = 60;
-    return text.size() <= kLongest ? text : text.substr(0, kLongest - 4) + " ...";
-}
-
-std::string number(std::uint64_t x) {
-    return fmt::format("{}", x);
 }
 
 /// Some sets take other room on machines without vectors of floats.
@@ -114,7 +102,9 @@ std::string origin(const check::Threshold& threshold) {
 }
 
 std::vector<Row> threshold_rows(const plan::Plan& plan) {
-    std::vector<Row> rows{{"predicate", "measures", "threshold", "origin"}};
+    const bool may_change = plan.model->retargetable;
+    std::vector<Row> rows{
+        {"predicate", "measures", may_change ? "threshold at first" : "threshold", "origin"}};
     for (Index p : plan.predicates) {
         const check::Predicate& predicate = plan.model->predicates[p];
         rows.push_back({predicate.name.empty() ? "-" : predicate.name, predicate.text,
@@ -272,6 +262,9 @@ void print_tables(Printer& out, const std::string& prefix, const plan::Plan& pla
         print_table(out, prefix, storage_rows(plan), 2);
     }
     if (is_calibrated(plan, false)) print_guarantees(out, prefix, plan);
+    if (!plan.model->retargetable) return;
+    out.line(blank(prefix));
+    print_sentences(out, prefix, about_parameters(plan, is_calibrated(plan, false)));
 }
 
 /// The sets that the monitor has to be given, and what they take.
@@ -313,42 +306,20 @@ void print_rounded(Printer& out, const std::string& prefix, const check::Model& 
                     fmt::format("Durations are rounded {}: {}.", model.rounding, list));
 }
 
-std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
-    if (gap.inputs.empty()) return "never";
-    if (gap.steps != check::Gap::kForGood)
-        return fmt::format("for up to {}", diag::counted(gap.steps, "step"));
-    switch (monitor.restarts) {
-        case check::Restarts::never: break;
-        case check::Restarts::on_request: return "until it is restarted";
-        case check::Restarts::when_final: return "for good: no final verdict, no restart";
-    }
-    return "for good";
-}
-
-/// How long a missing sample may leave each verdict unknown.
-void print_gaps(Printer& out, const plan::Plan& plan) {
-    const std::vector<check::Gap> gaps = check::gaps(*plan.model);
-    std::vector<Row> rows{{"monitor", "a missing sample of", "may leave it unknown"}};
-    for (const plan::Monitor& monitor : plan.monitors) {
-        const check::Gap& gap = gaps[monitor.index];
-        std::string inputs;
-        for (const Index input : gap.inputs)
-            inputs += (inputs.empty() ? "" : ", ") + plan.model->inputs[input].name;
-        rows.push_back({monitor.name, inputs, unknown_for(monitor, gap)});
-    }
-    out.line();
-    print_table(out, "  ", rows, 3);
-}
-
 }  // namespace
+
+void print_figures(Printer& out, const std::string& prefix, const plan::Plan& plan,
+                   const std::string& targets_file) {
+    print_tables(out, prefix, plan);
+    print_stored(out, prefix, plan, targets_file);
+    print_settings(out, prefix, *plan.model);
+    print_rounded(out, prefix, *plan.model);
+}
 
 void print_summary(Printer& out, const Context& context) {
     out.line("//");
     print_made_from(out, "//   ", context);
-    print_tables(out, "//   ", context.plan);
-    print_stored(out, "//   ", context.plan, context.targets_file);
-    print_settings(out, "//", context.model);
-    print_rounded(out, "//", context.model);
+    print_figures(out, "//   ", context.plan, context.targets_file);
     out.line("//");
     print_sentences(out, "//",
                     "state B: of a monitor alone, what it shares with others counted in each. "
@@ -356,40 +327,6 @@ void print_summary(Printer& out, const Context& context) {
                     "distance elements: target elements that a step compares with its input.");
     if (context.stores_targets())
         out.line("// Besides state B, a monitor holds a pointer to its targets.");
-}
-
-std::string report(const plan::Plan& plan, const Options& options) {
-    const ir::Graph& graph = *plan.formulas;
-    Printer out;
-    out.line("spec {}", plan.model->name);
-    print_tables(out, "  ", plan);
-    print_stored(out, "  ", plan,
-                 options.targets_file.empty() ? "the file of targets" : options.targets_file);
-    print_settings(out, "  ", *plan.model);
-    print_rounded(out, "  ", *plan.model);
-    print_gaps(out, plan);
-    out.line();
-    out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
-    if (plan.cost.stack_bytes > 0)
-        out.line("stack of a step: {} bytes, for {}", plan.cost.stack_bytes,
-                 what_takes_stack(plan));
-    out.line();
-    std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
-    for (const plan::Reading& reading : plan.readings) {
-        const plan::Cost cost = plan::cost_of(reading, plan.values);
-        rows.push_back({shortened(graph.text(reading.node)), reading.as, number(cost.state_bytes),
-                        number(cost.code_bytes), number(cost.operations)});
-    }
-    for (const plan::Stream& stream : plan.streams) {
-        const plan::Cost cost = plan::cost_of(stream, plan.values);
-        if (cost.operations == 0 && cost.state_bytes == 0) continue;
-        const std::string text = plan::text_of(stream, graph);
-        rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream",
-                        number(cost.state_bytes), number(cost.code_bytes),
-                        number(cost.operations)});
-    }
-    if (rows.size() > 1) print_table(out, "  ", rows, 2);
-    return out.take();
 }
 
 }  // namespace etlc::emit

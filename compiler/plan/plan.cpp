@@ -35,6 +35,22 @@ void need(Plan& plan, std::set<Index> inputs, const std::set<Index>& predicates)
     plan.targets.assign(targets.begin(), targets.end());
 }
 
+/// Their places are numbers of 32 bits.
+void check_parameters(const Plan& plan, diag::Sink& sink) {
+    constexpr std::uint64_t kMostFloats = std::uint64_t{1} << 29U;
+    std::uint64_t floats = 0;
+    for (const Index t : plan.targets) {
+        const check::Target& target = plan.model->targets[t];
+        floats += 2 * target.values.size();  // perhaps of length 1 as well
+        if (floats <= kMostFloats) continue;
+        sink.report(diag::Code::not_retargetable, target.span,
+                    fmt::format("'{}' and what stands before it take more than the 2 GiB that "
+                                "parameters of --retargetable may have",
+                                target.name));
+        return;
+    }
+}
+
 class Planning {
 public:
     Planning(const ir::Program& program, const Limits& limits, check::Values values)
@@ -101,7 +117,8 @@ public:
         share_windows(plan_);
         keep_used_streams();
         collect_inputs();
-        plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
+        if (!plan_.model->retargetable)
+            plan_.stored = stored_sets(plan_, limits_.inline_target_bytes);
         narrow_targets(plan_, targets_as, sink);
         count_steps();
         add_costs(plan_);
@@ -184,6 +201,7 @@ std::optional<Plan> plan(const ir::Program& program, const Limits& limits, diag:
     if (!complete) return std::nullopt;
     planning.add_lets();
     Plan result = planning.finish(targets_as, sink);
+    if (result.model->retargetable) check_parameters(result, sink);
     check_budget(result, limits, advice, sink);
     if (sink.has_errors()) return std::nullopt;
     return result;

@@ -13,6 +13,9 @@ done
 "$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --recorder 5,3,4 --namespace dock_recorded \
     -o "$out/dock_recorded.hpp"
 "$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --explain --namespace dock_why -o "$out/dock_why.hpp"
+"$etlc" "$here/dock.etl" ${ETLC_OPTIONS:-} --retargetable --namespace dock_retargetable \
+    -o "$out/dock_retargetable.hpp"
+"$etlc" "$here/dock_moved.etl" --emit params -o "$out/dock_moved.params.bin"
 includes="-I$here -I$out -I$runtime"
 firmware="-std=c++17 -Wall -Wextra -Werror -Os -ffreestanding -fno-exceptions -fno-rtti
   -fno-math-errno -fno-threadsafe-statics -fno-asynchronous-unwind-tables -fstack-usage"
@@ -22,7 +25,7 @@ rv32="riscv64-unknown-elf-g++ --specs=picolibc.specs -march=rv32imafc -mabi=ilp3
   $firmware $includes"
 for board in "$@"; do
     source=$here/boards/$board
-    for program in loop interrupts recorder why; do
+    for program in loop interrupts recorder why retarget; do
         sources="$here/$program.cpp $source.cpp" image=$out/${board}_$program
         case $board in
         host) "${CXX:-g++}" -std=c++17 -Wall -Wextra -Werror \

@@ -65,6 +65,21 @@ for name in aligned level called; do
     grep -q "^$name " "$box/rv32_why.txt" || fail "no verdict is decided by $name"
 done
 
+# Other parameters, on trial and then in place of the first: the same lines everywhere, every
+# damaged page refused.
+for board in cortex_m4 rv32; do
+    timeout 120 sh "$loop/run.sh" "$box" "$board" retarget >/dev/null
+done
+cmp "$box/cortex_m4_retarget.txt" "$box/rv32_retarget.txt" || fail "the boards retarget otherwise"
+if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then
+    sh "$loop/run.sh" "$box" host retarget >/dev/null
+    cmp "$box/cortex_m4_retarget.txt" "$box/host_retarget.txt" || fail "the host retargets otherwise"
+fi
+awk '$1 == "parameters" { $2 == "00000000" ? taken++ : refused++ }
+     $1 == "trial" && $2 == "00000050" && $3 > "00000000" && $4 > "00000000" { differing++ }
+     END { exit taken != 1 || refused < 10 || differing != 2 }' "$box/rv32_retarget.txt" ||
+    fail "damage was taken, or the trial found nothing"
+
 # What a flight recorder writes: the same bytes everywhere, which etlc incident reads.
 for board in cortex_m4 rv32; do
     timeout 120 sh "$loop/run.sh" "$box" "$board" recorder >/dev/null
@@ -87,7 +102,7 @@ done
 objects() {  # PREFIX FLAG...: what the object of a monitor refers to and holds
     local prefix=$1
     shift
-    for spec in grasp dock hover belt gauge sort; do
+    for spec in grasp dock hover belt gauge sort dock_retargetable; do
         cat >"$box/$spec.cpp" <<END
 #include "$spec.hpp"
 $spec::Verdicts step(${spec}::Monitor& m, const $spec::Inputs& in);
@@ -109,13 +124,33 @@ END
             $1 ~ /^\.text/ { t += $2 } $1 ~ /^\.s?rodata/ { c += $2 } END { print t + 0, c + 0 }')"
         state=$(grep -o 'kStateBytes = [0-9]*' "$box/$spec.hpp" | grep -o '[0-9]*$')
         stack=$(awk '{ if ($(NF - 1) > most) most = $(NF - 1) } END { print most }' "$box/$spec.su")
-        printf '%-22s %-6s code %5d  constants %5d  state %4d  deepest frame %4d\n' "$prefix" \
+        printf '%-22s %-17s code %5d  constants %5d  state %4d  deepest frame %4d\n' "$prefix" \
             "$spec" "$text" "$constants" "$state" "$stack"
     done
 }
 objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f
 objects arm-none-eabi- -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard
 grep instructions "$box/rv32_loop.txt"
+
+# What other parameters add to a class: checked, and taken.
+cat >"$box/take.cpp" <<'END'
+#include "dock_retargetable.hpp"
+using dock_retargetable::Monitor;
+etlmon::ParamsState take(Monitor& m, const uint8_t* bytes, size_t size);
+etlmon::ParamsState take(Monitor& m, const uint8_t* bytes, size_t size) {
+    return m.retarget(bytes, size, etlmon::Past::kept);
+}
+END
+arm-none-eabi-g++ -mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard -std=c++17 -Os \
+    -ffreestanding -fno-exceptions -fno-rtti -fno-math-errno -fno-asynchronous-unwind-tables \
+    -fstack-usage -I "$box" -I "$runtime" -c "$box/take.cpp" -o "$box/take.o"
+taking=$(arm-none-eabi-size -A "$box/take.o" | awk '$1 ~ /^\.text/ { t += $2 } END { print t }')
+frame=$(awk '{ if ($(NF - 1) > most) most = $(NF - 1) } END { print most }' "$box/take.su")
+echo "retarget() on a Cortex-M4F: $taking bytes, deepest frame $frame"
+foreign=$(arm-none-eabi-nm -u "$box/take.o" | awk '{ print $2 }' | grep -v -x -E 'memcpy|memset') ||
+    true
+[ -z "$foreign" ] && [ "$taking" -le 1600 ] ||
+    fail "retarget() has more code than its limit, or refers to" $foreign
 
 # One predicate of 4 x 384, a scalar one, F (a && F b), bounds and telemetry: what a step executes;
 # beside it what only a missing embedding and distances that overflow, vanish or are exactly 0 need.

@@ -70,6 +70,31 @@ for name, data in {
 }.items():
     seed("fuzz_incident", name, data)
 
+# Exclusive-or'ed with the right parameters: 320 bytes behind a byte that says where they lie (64:
+# with a checksum that fits).
+def params(place, size=320, **changed):
+    data = bytearray(size)
+    for at, value in changed.items():
+        data[int(at[1:])] = value
+    return bytes([place]) + bytes(data)
+
+for name, data in {
+    "right": params(0),
+    "sealed": params(64),
+    "misaligned": params(4),
+    "truncated": params(0, 256),
+    "longer": params(0, 384),
+    "one_bit": params(0, _130=1),
+    "other_shape": params(64, _16=1),
+    "other_encoder": params(64, _24=1),
+    "threshold": params(64, _67=0x80),  # -0.25
+    "nan": params(64, _70=0x40, _71=0xc0),  # 0xbfc00000 becomes 0x7f800000: infinite
+    "zero_row": params(64, _130=0x19, _131=0x3f, _128=0x9a, _129=0x99),
+    "asymmetric": params(64, _196=1),
+    "padding": params(64, _80=1),
+}.items():
+    seed("fuzz_params", name, data)
+
 ENTRY = """"method": "conformal", "alpha": 0.10, "epsilon": 0.31, "n": 2, "k": 1, \
 "scores": [0.1, "inf"],
  "predicate": "min l2(z, goal) <= ", "truth": "array", "targets": {"goal": "0123456789abcdef"}"""

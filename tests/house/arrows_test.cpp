@@ -73,6 +73,7 @@ const std::map<std::string, Names> kHouses = {
     {"etlmon", {"etlmon"}},
     {"temporal", {"etlmon", "temporal"}},
     {"distance", {"etlmon", "temporal", "distance"}},
+    {"params", {"etlmon", "distance", "params"}},
     {"vectors", {"etlmon", "distance", "vectors"}},
     {"hosted", {"etlmon", "temporal", "distance", "hosted"}}};
 

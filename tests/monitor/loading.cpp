@@ -46,6 +46,12 @@ std::optional<check::Model> load(const std::string& text, const std::string& pat
     return load(text, path, {});
 }
 
+std::optional<check::Model> load_retargetable(const std::string& text) {
+    check::Options options;
+    options.retargetable = true;
+    return load(text, "test.etl", options);
+}
+
 std::optional<check::Model> load_with_thresholds(const std::string& text,
                                                  const std::string& thresholds) {
     check::Options options;

@@ -14,6 +14,9 @@ namespace etlc::tests {
 
 std::optional<check::Model> load(const std::string& text, const std::string& path = "test.etl");
 
+/// The same with numbers that may change: --retargetable.
+std::optional<check::Model> load_retargetable(const std::string& text);
+
 /// The same where its thresholds file holds this JSON.
 std::optional<check::Model> load_with_thresholds(const std::string& text,
                                                  const std::string& thresholds);

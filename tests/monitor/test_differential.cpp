@@ -113,6 +113,7 @@ struct RandomCase {
     SpecShape shape;
     int specs;
     double refused = 0;  ///< greatest share of specs that may be refused for their size
+    bool retargetable = false;
 };
 
 void PrintTo(const RandomCase& random, std::ostream* out) {
@@ -132,7 +133,8 @@ TEST_P(PlanRandom, AgreesWithTheReference) {
     const int specs = random.specs * effort();
     int refused = 0;
     for (int n = 0; n < specs; ++n) {
-        const auto model = load(random_spec(n, random.shape));
+        const std::string spec = random_spec(n, random.shape);
+        const auto model = random.retargetable ? load_retargetable(spec) : load(spec);
         ASSERT_TRUE(model);
         PlanRunner runner(*model, kRoomy);
         if (!runner.refusal().empty() && ++refused <= random.refused * specs) continue;
@@ -178,6 +180,11 @@ const RandomCase kCases[] = {
       .restarts = 0.5,
       .missing = 0.6},
      80},
+    {"Retargetable",
+     {.formulas = Formulas::mixed, .monitors = 4, .depth = 3, .window = 4, .restarts = 0.3},
+     80,
+     0.1,
+     true},
     {"SlidingRounded", {.formulas = Formulas::sliding, .depth = 2, .exact = false}, 40},
 };
 

@@ -32,6 +32,10 @@ silent() {  # COMPILER WARNING...
         -o "$box/use.o" || fail "$1 warns of $spec, $values, targets as $targets"
 }
 
+spec=examples/firmware_loop/gauge.etl values=--retargetable targets=f32
+"$etlc" "$source/$spec" --retargetable --namespace used -o "$box/monitor.hpp"
+silent "$gxx" "${gcc_warnings[@]}"
+silent "$clangxx" "${clang_warnings[@]}"
 while read -r spec targets options; do
     for values in "--values robustness" "--values boolean" --explain; do
         "$etlc" "$source/$spec" $values --targets-as "$targets" --namespace used \

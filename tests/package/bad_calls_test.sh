@@ -50,6 +50,8 @@ refused "NAMESPACE a-b is not a C++ namespace" \
     "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
 refused "INLINE_TARGETS 1k: expected a number of bytes" \
     "etlc_add_monitor(robot SPEC specs/a.etl INLINE_TARGETS 1k)"
+refused "RETARGETABLE goes without EXPLAIN, RECORDER, INLINE_TARGETS and VALUES boolean" \
+    "etlc_add_monitor(robot SPEC specs/a.etl RETARGETABLE EXPLAIN)"
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 

@@ -48,6 +48,7 @@ if command -v pkg-config >"$box/log"; then
         "reach: monitors: 1"
 fi
 expect "$("$box/build/stored")" "ready: reached 0"
+expect "$("$box/build/moving")" "ready: reached 0"
 if grep 'include[ <"]*etlmon/' "$box/build/etlc/alone/guard.hpp"; then fail \
     "a standalone header includes the runtime"; fi
 
@@ -66,6 +67,7 @@ compile
 expect "$(stamp "$guard")" "$guard_made"
 expect "$("$box/build/robot")" "reached -3 limit 0.5"
 expect "$("$box/build/stored")" "ready: reached -3"
+expect "$("$box/build/moving")" "ready: reached -3"
 
 change sed -i 's/<= 2.5/<= 2.25/' "$box/consumer/specs/guard.etl"
 compile

@@ -173,7 +173,8 @@ struct Predicate {
     Threshold threshold;
     Range delta;       ///< of the expression, by interval arithmetic, rounded outward
     Range robustness;  ///< of epsilon - delta or delta - epsilon for any epsilon it may have,
-                       ///< rounded outward, and what a missing sample counts as
+                       ///< rounded outward, and what a missing sample counts as; of a retargetable
+                       ///< model everything
     std::optional<bool> missing;  ///< what it counts as where it is unknown; else its whole range
     std::vector<Index> inputs;    ///< all inputs it reads, ascending
     Span span;
@@ -330,6 +331,9 @@ struct Constant {
 
 struct Model {
     std::string name;  ///< of the spec
+    /// Thresholds, targets, projections and numbers may change between steps: all that is said of
+    /// what may come holds whatever they are.
+    bool retargetable = false;
     std::vector<Constant> constants;
     source::File file;        ///< for the lines that comments quote
     double step_seconds = 0;  ///< 0: no rate was given

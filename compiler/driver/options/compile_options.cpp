@@ -31,6 +31,30 @@ std::string mistake_in_namespace(const std::string& name) {
     return "";
 }
 
+/// What a class whose numbers may change cannot have, and why.
+std::string mistake_in_retargetable_call(const CLI::App& app, const Request& request) {
+    const auto without = [&](const char* option, const char* why) {
+        return fmt::format("{} goes without {}: {}",
+                           request.emit == "params" ? "--emit params" : "--retargetable", option,
+                           why);
+    };
+    if (request.values == check::Values::boolean)
+        return without("--values boolean", "its class is made of robustness");
+    if (request.explain)
+        return without("--explain",
+                       "samples of before would be told with the thresholds and rows of now");
+    if (request.recorder)
+        return without("--recorder",
+                       "etlc incident would read an incident with the numbers of one spec");
+    if (request.targets_as != plan::Storage::f32)
+        return without("--targets-as",
+                       "how far narrowing moves a row is known of the rows of one spec");
+    for (const char* option : {"--inline-targets", "--targets-file"})
+        if (app.count(option) > 0)
+            return without(option, "all of its target sets lie in its parameters");
+    return "";
+}
+
 std::string emit_help() {
     std::string text = "print a stage instead of the header:";
     for (const auto& [name, summary] : emittable())
@@ -60,6 +84,10 @@ void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, b
     app.add_flag("--explain", request.explain,
                  "values that know their sample: why_NAME() says which one decides a verdict, with "
                  "its step, distance, threshold and nearest target");
+    app.add_flag(
+        "--retargetable", request.check.retargetable,
+        "targets, thresholds, projections and numbers lie in STEM.params.bin beside "
+        "STEM.hpp; the class takes another such file between steps, made by --emit params");
     app.add_option_function<std::string>(
            "--recorder", [&request](const std::string& text) { request.recorder = recorder(text); },
            "keep the steps around each alarm: BEFORE,AFTER,INCIDENTS, as 2s,1s,4 or 40,20,4; "
@@ -98,6 +126,10 @@ std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
         return "--explain follows robustness to the sample that it is that of, and --values "
                "boolean "
                "has none: leave one of the two out";
+    if (request.check.retargetable || request.emit == "params") {
+        const std::string mistake = mistake_in_retargetable_call(app, request);
+        if (!mistake.empty()) return mistake;
+    }
     if (app.count("--targets-file") > 0 && prints_stage && request.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
     return "";

@@ -32,11 +32,17 @@ std::string kernel_parameters(const Context& context, Index d) {
 
 std::string weights_argument(const Context& context, Index d) {
     const auto weights = context.names.weight_array.find(d);
-    return weights == context.names.weight_array.end() ? "" : ", targets::" + weights->second;
+    if (weights == context.names.weight_array.end()) return "";
+    if (context.retargetable()) return ", " + context.parameter(plan::Parameter::Kind::weights, d);
+    return ", targets::" + weights->second;
 }
 
 /// The kernel's call on the point that `z` names, for float32 rows.
 std::string wide_call(const Context& context, Index d, const std::string& z) {
+    if (context.retargetable())
+        return fmt::format("etlmon::measure_rows<{}>({}, {}{})", kernel_parameters(context, d), z,
+                           context.parameter(plan::Parameter::Kind::rows, d),
+                           weights_argument(context, d));
     const auto search = context.names.search_member.find(d);
     if (search != context.names.search_member.end())
         return fmt::format("{}.nearest<etlmon::{}>({}, rows + targets::{})", search->second,
@@ -135,18 +141,31 @@ std::optional<std::string> measured_at_once(const Context& context, Index d) {
     return wide_call(context, d, shared ? direction->second : sample(context, embedding));
 }
 
+namespace {
+
+/// The matrix, and the offset where there is one.
+std::string numbers_of(const Context& context, Index projection, bool stored) {
+    using Kind = plan::Parameter::Kind;
+    const auto offset = context.names.offset_array.find(projection);
+    const bool has_offset = offset != context.names.offset_array.end();
+    if (context.retargetable())
+        return context.parameter(Kind::matrix, projection) +
+               (has_offset ? ", " + context.parameter(Kind::offset, projection) : "");
+    return fmt::format("{}projections::{}{}", stored ? "rows + " : "",
+                       context.names.matrix_array.at(projection),
+                       has_offset ? ", projections::" + offset->second : "");
+}
+
+}  // namespace
+
 void print_projected(Printer& out, const Context& context, Index index) {
     const check::Point& point = context.model.points[index];
     const check::Point& inner = context.model.points[point.inner];
     const check::Projection& map = context.model.projections[point.projection];
     const std::string& buffer = context.names.point_buffer.at(index);
     const std::string& local = context.names.point_local.at(index);
-    const auto offset = context.names.offset_array.find(point.projection);
     const bool stored = plan::stored_projection(context.plan, point.projection) != nullptr;
-    const std::string numbers = fmt::format(
-        "{}projections::{}{}", stored ? "rows + " : "",
-        context.names.matrix_array.at(point.projection),
-        offset == context.names.offset_array.end() ? "" : ", projections::" + offset->second);
+    const std::string numbers = numbers_of(context, point.projection, stored);
     const std::string z = inner.is_vector()
                               ? fmt::format("etlmon::Point<{}>{{{{{}}}}}", inner.dimension,
                                             scalars_of(context, inner))

@@ -30,7 +30,8 @@ std::string expression(const Context& context, const Expr& e) {
         return text;
     };
     switch (e.kind) {
-        case Expr::Kind::number: return float_literal(e.number32);
+        case Expr::Kind::number:
+            return context.retargetable() ? context.parameter(e) : float_literal(e.number32);
         case Expr::Kind::scalar: return sample(context, e.index);
         case Expr::Kind::distance: return distance(context, e.index) + ".delta";
         case Expr::Kind::negate: return apply("negate");
@@ -164,6 +165,7 @@ private:
     /// What stands for a predicate whose sample is not there.
     std::string missing_value(Index p) const {
         const check::Predicate& predicate = context_.model.predicates[p];
+        if (!predicate.missing && context_.retargetable()) return "unseen()";
         if (!predicate.missing) return context_.names.predicate_unseen.at(p) + "()";
         return context_.atom_literal(plan::missing_value(predicate, context_.plan.values));
     }
@@ -250,6 +252,7 @@ void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
     open_half(out, context, "Monitor::Atoms",
               fmt::format("measure({}const Inputs& in)", reads_inputs ? "" : "[[maybe_unused]] "));
+    if (context.retargetable()) out.line("if (!ready()) return unknown();  // no parameters yet");
     out.line("Atoms now;");
     out.line("bool missing = false;");
     print_rank(out, context);

@@ -6,6 +6,15 @@
 
 namespace etlc::emit {
 
+std::string shortened(const std::string& formula) {
+    constexpr std::size_t kLongest = 60;
+    return formula.size() <= kLongest ? formula : formula.substr(0, kLongest - 4) + " ...";
+}
+
+std::string number(std::uint64_t x) {
+    return fmt::format("{}", x);
+}
+
 bool is_comment(const std::string& prefix) {
     return prefix.starts_with("//");
 }

@@ -1,6 +1,7 @@
 // Tables of text: in a comment of the header, or in a report.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,10 @@
 namespace etlc::emit {
 
 using Row = std::vector<std::string>;
+
+/// In a cell: a formula's beginning, where it is long; a number.
+std::string shortened(const std::string& formula);
+std::string number(std::uint64_t x);
 
 /// Lines behind this prefix are a comment, and no wider than code.
 bool is_comment(const std::string& prefix);

@@ -66,7 +66,9 @@ private:
         const check::Target& target = plan_.model->targets[distance.target];
         const std::uint32_t rows = target.rows;
         const std::uint32_t dimension = target.dimension;
-        const bool columns = metric_id(distance) != etlmon::MetricId::mahalanobis &&
+        // Rows of a retargetable class lie as they are, for all machines.
+        const bool columns = !plan_.model->retargetable &&
+                             metric_id(distance) != etlmon::MetricId::mahalanobis &&
                              etlmon::detail::in_columns(rows, dimension, vectors_);
         if (!arrays_.emplace(rows_of(distance), storage, columns).second) return;
         if (columns)

@@ -1,5 +1,5 @@
 // Writes target sets as .npy: rows that come in clusters, some of them twice, so that there are
-// ties. Usage: arrays FILE ROWS ELEMENTS
+// ties. Usage: arrays FILE ROWS ELEMENTS [SEED]
 #include <cstdio>
 #include <cstdlib>
 #include <random>
@@ -7,10 +7,11 @@
 #include <vector>
 
 int main(int argc, char** argv) {
-    if (argc != 4) return 2;
+    if (argc != 4 && argc != 5) return 2;
     const unsigned rows = static_cast<unsigned>(std::atoi(argv[2])),
                    width = static_cast<unsigned>(std::atoi(argv[3]));
-    std::mt19937 random(rows * 31 + width);
+    const unsigned seed = argc == 5 ? static_cast<unsigned>(std::atoi(argv[4])) : 0;
+    std::mt19937 random(rows * 31 + width + seed * 1000003);
     std::normal_distribution<float> normal;
     std::vector<float> center(width), values;
     for (unsigned k = 0; k < rows; ++k) {

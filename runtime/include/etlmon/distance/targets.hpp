@@ -8,6 +8,7 @@
 
 #include "etlmon/checksum.hpp"
 #include "etlmon/distance/kernel.hpp"
+#include "etlmon/with_pointer.hpp"
 
 namespace etlmon {
 inline namespace ETLMON_BUILD {
@@ -74,11 +75,6 @@ class Targets {
   const float* rows_ = nullptr;
   TargetsState state_ = TargetsState::absent;
 };
-
-/// The size of a class of `bytes` bytes in 32-bit words, with a pointer among its members.
-constexpr size_t with_pointer(size_t bytes) noexcept {
-  return (bytes + 2 * sizeof(void*) - 1) / sizeof(void*) * sizeof(void*);
-}
 
 /// measure() for rows that each begin at a multiple of 64 bytes; the same bits.
 template <class Metric, class Aggregation, uint32_t K, uint32_t D>

@@ -1,0 +1,58 @@
+#include "check/guarantees/retargetable.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+
+#include "check/numbers/range_arithmetic.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+void refuse(Context& c, Span span, const std::string& what, const std::string& why) {
+    c.report(diag::Code::not_retargetable, span,
+             fmt::format("{}, and --retargetable takes no such spec: {}", what, why));
+}
+
+void refuse_what_cannot_change(Context& c) {
+    for (const Predicate& predicate : c.model.predicates)
+        if (predicate.threshold.adaptation)
+            refuse(c, predicate.threshold.span,
+                   fmt::format("'{}' has an adaptive threshold", predicate.name),
+                   "what it has learnt is of the distance to the targets that there were");
+    for (const Monitor& monitor : c.model.monitors)
+        if (monitor.calibration)
+            refuse(c, monitor.calibration->threshold.span,
+                   fmt::format("'{}' is calibrated as a whole", monitor.name),
+                   "its shift is of episodes that one set of parameters judged from their "
+                   "beginning");
+}
+
+/// All that stand as fields, or parts of function names, beside predicates.
+std::set<std::string> names_of(const Model& model) {
+    std::set<std::string> names;
+    for (const Input& input : model.inputs) names.insert(input.name);
+    for (const Predicate& predicate : model.predicates) names.insert(predicate.name);
+    for (const Let& let : model.lets) names.insert(let.name);
+    for (const Monitor& monitor : model.monitors) names.insert(monitor.name);
+    return names;
+}
+
+}  // namespace
+
+void make_retargetable(Context& c) {
+    c.model.retargetable = true;
+    refuse_what_cannot_change(c);
+    std::set<std::string> names = names_of(c.model);
+    std::size_t number = 0;
+    for (Predicate& predicate : c.model.predicates) {
+        predicate.robustness = kEverything;
+        while (predicate.name.empty())
+            if (const std::string name = fmt::format("comparison_{}", ++number);
+                names.insert(name).second)
+                predicate.name = name;
+    }
+}
+
+}  // namespace etlc::check

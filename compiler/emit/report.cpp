@@ -1,0 +1,74 @@
+// --emit report: the figures of the head of the file, and those of its parts.
+#include "check/formulas/gaps.hpp"
+#include "diag/diag.hpp"
+#include "emit/context.hpp"
+#include "emit/emit.hpp"
+#include "emit/text/table.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+
+std::string unknown_for(const plan::Monitor& monitor, const check::Gap& gap) {
+    if (gap.inputs.empty()) return "never";
+    if (gap.steps != check::Gap::kForGood)
+        return fmt::format("for up to {}", diag::counted(gap.steps, "step"));
+    switch (monitor.restarts) {
+        case check::Restarts::never: break;
+        case check::Restarts::on_request: return "until it is restarted";
+        case check::Restarts::when_final: return "for good: no final verdict, no restart";
+    }
+    return "for good";
+}
+
+/// How long a missing sample may leave each verdict unknown.
+void print_gaps(Printer& out, const plan::Plan& plan) {
+    const std::vector<check::Gap> gaps = check::gaps(*plan.model);
+    std::vector<Row> rows{{"monitor", "a missing sample of", "may leave it unknown"}};
+    for (const plan::Monitor& monitor : plan.monitors) {
+        const check::Gap& gap = gaps[monitor.index];
+        std::string inputs;
+        for (const Index input : gap.inputs)
+            inputs += (inputs.empty() ? "" : ", ") + plan.model->inputs[input].name;
+        rows.push_back({monitor.name, inputs, unknown_for(monitor, gap)});
+    }
+    out.line();
+    print_table(out, "  ", rows, 3);
+}
+
+}  // namespace
+
+std::string report(const plan::Plan& plan, const Options& options) {
+    const ir::Graph& graph = *plan.formulas;
+    Printer out;
+    out.line("spec {}", plan.model->name);
+    print_figures(out, "  ", plan,
+                  options.targets_file.empty() ? "the file of targets" : options.targets_file);
+    print_gaps(out, plan);
+    out.line();
+    out.line("estimated code: {} bytes, targets aside", plan.cost.code_bytes);
+    if (plan.cost.stack_bytes > 0)
+        out.line("stack of a step: {} bytes, for {}", plan.cost.stack_bytes,
+                 what_takes_stack(plan));
+    out.line();
+    std::vector<Row> rows{{"part", "as", "state B", "code B", "operations"}};
+    for (const plan::Reading& reading : plan.readings) {
+        const plan::Cost cost = plan::cost_of(reading, plan.values);
+        rows.push_back({shortened(graph.text(reading.node)), reading.as, number(cost.state_bytes),
+                        number(cost.code_bytes), number(cost.operations)});
+    }
+    for (const plan::Stream& stream : plan.streams) {
+        const plan::Cost cost = plan::cost_of(stream, plan.values);
+        if (cost.operations == 0 && cost.state_bytes == 0) continue;
+        const std::string text = plan::text_of(stream, graph);
+        rows.push_back({text.empty() ? "(in between)" : shortened(text), "stream",
+                        number(cost.state_bytes), number(cost.code_bytes),
+                        number(cost.operations)});
+    }
+    if (rows.size() > 1) print_table(out, "  ", rows, 2);
+    return out.take();
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,201 @@
+// A retargetable class: where its numbers lie in the parameters that it is given, and the calls
+// that give it others.
+#include "diag/diag.hpp"
+#include "emit/context.hpp"
+#include "plan/kernels.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+using check::Index;
+using plan::Parameter;
+using Kind = Parameter::Kind;
+
+/// The namespace that names its place, and the name there.
+std::pair<std::string_view, std::string> name_of(const Context& context, const Parameter& one) {
+    switch (one.kind) {
+        case Kind::threshold: return {"thresholds", context.names.predicate_atom.at(one.index)};
+        case Kind::number: return {"constants", context.names.number_constant.at(one.number)};
+        case Kind::rows: return {"targets", context.names.target_array.at(one.index)};
+        case Kind::weights: return {"targets", context.names.weight_array.at(one.index)};
+        case Kind::matrix: return {"projections", context.names.matrix_array.at(one.index)};
+        case Kind::offset: break;
+    }
+    return {"projections", context.names.offset_array.at(one.index)};
+}
+
+std::string place_of(const Context& context, const Parameter& one) {
+    const auto [space, name] = name_of(context, one);
+    return fmt::format("{}::{}", space, name);
+}
+
+/// "8 rows of 32 elements, scaled to length 1"
+std::string words_for(const Context& context, const Parameter& one) {
+    const check::Model& model = context.model;
+    const std::string rows = fmt::format("{} of {}", diag::counted(one.count / one.width, "row"),
+                                         diag::counted(one.width, "element"));
+    switch (one.kind) {
+        case Kind::threshold: return "";
+        case Kind::number: return "in the expression of " + model.predicates[one.index].name;
+        case Kind::rows:
+            return rows +
+                   (plan::rows_as_given(model.distances[one.index]) ? "" : ", scaled to length 1");
+        case Kind::weights: return rows + ", of mahalanobis";
+        case Kind::matrix: return rows;
+        case Kind::offset: break;
+    }
+    return fmt::format("what {} subtracts first", model.projections[one.index].name);
+}
+
+std::string_view word_for(etlmon::ParamsPart::Rule rule) {
+    switch (rule) {
+        case etlmon::ParamsPart::any: break;
+        case etlmon::ParamsPart::not_negative: return "not_negative";
+        case etlmon::ParamsPart::positive: return "positive";
+        case etlmon::ParamsPart::unit_rows: return "unit_rows";
+        case etlmon::ParamsPart::symmetric: return "symmetric";
+    }
+    return "any";
+}
+
+void print_places(Printer& out, const Context& context, std::string_view space,
+                  const std::string& about) {
+    std::vector<std::pair<std::string, std::string>> lines;
+    for (const Parameter& one : context.parameters)
+        if (const auto [in, name] = name_of(context, one); in == space)
+            lines.emplace_back(fmt::format("inline constexpr size_t {} = {};", name, one.begin),
+                               words_for(context, one));
+    if (lines.empty()) return;
+    print_doc(out, about);
+    out.line("namespace {} {{", space);
+    print_aligned(out, lines, "///<");
+    out.line("}}  // namespace {}", space);
+}
+
+void print_layout(Printer& out, const Context& context) {
+    print_doc(out,
+              "What a block of parameters must be: of this shape, which is that of all below but "
+              "its numbers, and made with this encoder, 0 where the spec has none.");
+    out.open("struct Layout {");
+    out.line("static constexpr uint64_t kShape = 0x{:016x}u;", context.shape);
+    out.line("static constexpr uint64_t kEncoder = 0x{:016x}u;",
+             context.shape == 0 ? 0 : plan::encoder_hash(context.model));
+    out.line("static constexpr size_t kSize = {};  ///< in bytes",
+             plan::block_bytes(context.parameters));
+    print_doc(out, "Where numbers lie, how many, how many a row, and what must hold for each.");
+    if (context.parameters.empty()) {
+        out.line(
+            "static constexpr etlmon::ParamsPart kParts[] = {{0, 0, 1, "
+            "etlmon::ParamsPart::any}};");
+    } else {
+        out.open("static constexpr etlmon::ParamsPart kParts[] = {");
+        for (const Parameter& one : context.parameters)
+            out.line("{{{}, {}, {}, etlmon::ParamsPart::{}}}{}", place_of(context, one), one.count,
+                     one.width, word_for(one.rule), &one == &context.parameters.back() ? "" : ",");
+        out.close("};");
+    }
+    out.close("};");
+}
+
+}  // namespace
+
+std::string Context::parameter(Kind kind, Index index) const {
+    for (const Parameter& one : parameters) {
+        const bool is_same_array = kind == Kind::rows && one.kind == Kind::rows &&
+                                   names.target_array.at(one.index) == names.target_array.at(index);
+        if (one.kind == kind && (one.index == index || is_same_array))
+            return kind == Kind::threshold ? fmt::format("numbers[{}]", place_of(*this, one))
+                                           : "numbers + " + place_of(*this, one);
+    }
+    return "";
+}
+
+std::string Context::parameter(const check::Expr& number) const {
+    return fmt::format("numbers[constants::{}]", names.number_constant.at(&number));
+}
+
+std::string about_parameters(const plan::Plan& plan, bool is_calibrated) {
+    return fmt::format(
+        "Retargetable: target sets, thresholds and the numbers of projections, metrics and "
+        "expressions lie in parameters of {} bytes. A monitor holds a pointer to them, besides "
+        "state B, and may exchange them: above are those that the class was made with, and lower "
+        "and upper hold for any.{}",
+        plan::block_bytes(plan::parameters(plan)),
+        is_calibrated ? " A guarantee is one of the parameters that it came with." : "");
+}
+
+void print_parameters(Printer& out, const Context& context) {
+    if (!context.retargetable()) return;
+    const std::string from = "in floats from the first byte of the parameters";
+    print_places(out, context, "thresholds", "Where thresholds lie, " + from + ".");
+    print_places(out, context, "constants", "Where the numbers of expressions lie, likewise.");
+    print_places(out, context, "targets", "Where target sets begin, a row after the other.");
+    print_places(out, context, "projections", "Where projections A (z - m) begin: A, and m.");
+    out.line();
+    print_layout(out, context);
+    print_doc(out,
+              "A block of parameters, in flash or in memory, at a multiple of 64 bytes: all of it "
+              "is read once, to be checked. It must stay as it is while a monitor has it.");
+    out.line("using Params = etlmon::Params<Layout>;");
+    out.line();
+}
+
+void print_retarget_interface(Printer& out, const Context& context) {
+    if (!context.retargetable()) return;
+    print_doc(out,
+              "Without parameters: everything is unknown at every step, until retarget() gives "
+              "some.");
+    out.line("Monitor() noexcept : numbers(nullptr) { reset(); }");
+    print_doc(out, "With these, where they are ready.");
+    out.open("explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) {");
+    out.line("reset();");
+    out.close();
+    print_doc(out, "Whether this monitor has parameters.");
+    out.line("bool ready() const noexcept { return numbers != nullptr; }");
+    print_doc(out, "What they were made from.");
+    out.line("etlmon::MadeFrom origin() const noexcept { return etlmon::made_from(numbers); }");
+    out.line();
+    print_doc(out,
+              "Between steps: other parameters from the next one on. Where they are not ready "
+              "nothing changes, and the answer says why. Past::kept: verdicts go on, and steps "
+              "that were measured count as what was measured then. Past::forgotten: reset().");
+    out.open("etlmon::ParamsState retarget(const Params& params, etlmon::Past past) noexcept {");
+    out.line("if (!params.ready()) return params.state();");
+    out.line("numbers = params.numbers();");
+    print_wrapped(out, "if (past == etlmon::Past::forgotten) reset();");
+    out.line("return params.state();");
+    out.close();
+    print_doc(out, "The same from the bytes of a block.");
+    out.open(
+        "etlmon::ParamsState retarget(const uint8_t* bytes, size_t size, etlmon::Past past) "
+        "noexcept {");
+    out.line("return retarget(Params(bytes, size), past);");
+    out.close();
+    out.line();
+}
+
+void print_unknown_atoms(Printer& out, const Context& context) {
+    if (!context.retargetable()) return;
+    print_doc(out, "A step without parameters.");
+    out.open("Atoms unknown() noexcept {");
+    out.line("Atoms now;");
+    for (const auto* atoms : {&context.names.predicate_atom, &context.names.flag_atom})
+        for (const auto& [index, name] : *atoms) out.line("now.{} = unseen();", name);
+    print_wrapped(out, "if (incomplete != UINT32_MAX) ++incomplete;");
+    out.line("return now;");
+    out.close();
+    out.line();
+}
+
+void print_shadow(Printer& out, const Context& context) {
+    if (!context.retargetable()) return;
+    print_doc(out,
+              "Two of them side by side: one answers, the other has parameters that are on trial, "
+              "and what differs is counted (etlmon/params/shadow.hpp).");
+    out.line("using Shadow = etlmon::Shadow<Monitor, Inputs, Verdicts, {}>;",
+             context.plan.monitors.size());
+    out.line();
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,147 @@
+#!/usr/bin/env bash
+# retarget_test.sh ETLC CXX FLAG...: a class of --retargetable measures with the parameters that it
+# has what a plain class of the same numbers measures, to the bit, and takes others between steps:
+# a kept past is judged as a plain class judges the same robustness read from scalars, a forgotten
+# one as a new monitor. Damaged and foreign parameters are refused and change nothing. A shadow
+# counts what two monitors side by side differ in.
+set -euo pipefail
+here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
+runtime=$here/../../runtime/include
+etlc=$1 cxx=$2
+shift 2
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+fail() { echo "FAILED: $*"; exit 1; }
+
+"$cxx" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
+for seed in 1 2; do
+  mkdir $seed
+  ./arrays $seed/bay.npy 3 32 $seed
+  ./arrays $seed/wall.npy 20 7 $seed      # in columns, in a plain class
+  ./arrays $seed/many.npy 300 33 $seed
+  ./arrays $seed/map.npy 4 32 $seed
+done
+monitors='
+monitor reach = F at_bay;
+monitor avoid = G !at_wall;
+monitor both = F (at_bay && F among) && G (open -> !at_wall);
+monitor answered = G (through -> F[0,6] weighted);
+monitor nested = G (at_wall -> F[1,4] (formed && F[0,3] apart));
+monitor pending = G F[0,5] (among U through);
+monitor held = G (at_bay S weighted);
+restartable monitor again = F[2,9] at_wall;
+repeating monitor cycle = F among;
+sliding monitor slid = F[0,5] (at_bay || O[0,4] apart);
+sliding monitor sought = among U[1,4] at_bay;
+'
+unnamed='monitor charged = G (charge > LIMIT);
+sliding monitor level = G[0,3] (charge * GAIN <= 1.25);
+'
+spec() {  # SEED NEAR LIMIT GAIN WEIGHT ENDING
+  cat <<SPEC
+spec docking;
+const near = $2;
+const limit = $3;
+const gain = $4;
+input z : f32[32];
+input w : f32[7];
+input v : f32[33];
+input x : f32;
+input y : f32;
+input charge : f32 in [0, 2];
+input open : bool;
+target bay = load("bay.npy");
+target wall = load("wall.npy");
+target many = load("many.npy");
+target origin = [[0, 0], [$4, 1]];
+projection P = load("map.npy");
+predicate at_bay = min l2(z, bay) <= near;
+predicate at_wall = min cosine(w, wall) <= 0.$1;
+predicate among = kth(5) l1(v, many) <= 3$1;
+predicate apart = min l2(z, bay) - gain * mean angular(z, bay) >= 0.1;
+predicate weighted = min mahalanobis([$5, 2, 3, 4, 5, 6, 7])(w, wall) <= 1$1;
+predicate formed = max mahalanobis([[$4, 0.5], [0.5, $5]])([x, y], origin) < 2.$1;
+predicate through = min linf(P(z), bay) <= 1$1;
+$monitors
+SPEC
+  sed "s/LIMIT/limit/; s/GAIN/gain/" <<<"$unnamed"
+}
+spec 1 7.5 0.5 1.5 1 >1/docking.etl
+spec 2 8.5 0.25 2.5 3 >2/docking.etl
+"$etlc" 1/docking.etl --retargetable -o docking.hpp
+"$etlc" 1/docking.etl --namespace first -o first.hpp
+"$etlc" 2/docking.etl --namespace second -o second.hpp
+
+# Parameters: those beside the header are those of --emit params, on every call. Of other numbers
+# the class is the same but for its comments.
+"$etlc" 1/docking.etl --emit params -o first.bin
+cmp first.bin docking.params.bin || fail "two kinds of parameters"
+"$etlc" 2/docking.etl --emit params -o second.bin
+! cmp -s first.bin second.bin || fail "other numbers have the same parameters"
+"$etlc" 2/docking.etl --retargetable -o other.hpp
+code() { sed 's,//.*,,; s, *$,,; /^$/d' "$1"; }
+cmp <(code docking.hpp) <(code other.hpp) || fail "a number stands in the class"
+"$etlc" 1/docking.etl --set near=8.25 --emit params >third.bin
+"$etlc" 1/docking.etl --retargetable --namespace a::b --standalone -o pasted.hpp
+cmp pasted.params.bin docking.params.bin || fail "parameters depend on the namespace"
+# Of another shape: a longer window.
+sed 's/F\[0,6\]/F[0,7]/' 1/docking.etl >1/longer.etl
+"$etlc" 1/longer.etl --emit params -o longer.bin
+
+# The same formulas over scalars that are given each predicate's robustness.
+{
+  echo "spec twin;"
+  echo "input open : bool;"
+  for p in at_bay at_wall among apart weighted formed through comparison_1 comparison_2; do
+    echo "input of_$p : f32; predicate $p = of_$p >= 0;"
+    echo "PREDICATE($p)" >>predicates.inc
+  done
+  echo "$monitors"
+  sed "s/(charge > LIMIT)/comparison_1/; s/(charge \* GAIN <= 1.25)/comparison_2/" <<<"$unnamed"
+} >twin.etl
+"$etlc" twin.etl -o twin.hpp
+
+for file in first second third longer; do
+  { echo "alignas(64) inline const unsigned char ${file}_bytes[] = {"
+    od -An -v -tu1 "$file.bin" | tr -s ' ' , | sed 's/^,//; s/$/,/'
+    echo "};"; } >"$file.inc"
+done
+flags=(-std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wdouble-promotion -Wpedantic -Werror \
+  -I. "-I$runtime")
+"$cxx" "${flags[@]}" "$@" "$here/retarget/main.cpp" -o program
+./program
+cat >pasted.cpp <<'PROGRAM'
+#include "pasted.hpp"
+int main() {
+  a::b::Shadow shadow;
+  return shadow.step(a::b::Inputs()).reach.unknown() ? 0 : 1;
+}
+PROGRAM
+"$cxx" -std=c++17 -Wall -Wextra -Wconversion -Wshadow -Wpedantic -Werror pasted.cpp -o pasted
+./pasted
+
+# What the class calls things of its own is free for a spec.
+cat >thresholds.etl <<'SPEC'
+spec thresholds;
+input numbers : f32[2];
+input params, constants : f32;
+input shadow : bool;
+target targets = [[1, 2], [3, 4]];
+target layout = [[1, 0]];
+projection projections = [[1, 2]] offset [1, 1];
+predicate ready = min l2(numbers, targets) - 2 * min l2(numbers, layout) <= 1;
+predicate unseen = cosine(numbers, layout) <= 1;
+predicate origin = params + 2.5 * constants > 3;
+predicate retarget = min l2(projections(numbers), targets) <= 1;
+let unknown = F ready && unseen;
+monitor past = unknown;
+monitor monitor_of = G (origin || retarget -> shadow);
+SPEC
+"$etlc" thresholds.etl --retargetable --lets -o thresholds.hpp 2>notes.txt
+cat >words.cpp <<'PROGRAM'
+#include "thresholds.hpp"
+int main() { return thresholds::Shadow().step(thresholds::Inputs()).past.alarm() ? 1 : 0; }
+PROGRAM
+"$cxx" "${flags[@]}" words.cpp -o words
+./words
