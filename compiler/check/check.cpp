@@ -1,6 +1,7 @@
 #include "check/check.hpp"
 
 #include "check/guarantees/retargetable.hpp"
+#include "check/inspect.hpp"
 #include "check/steps.hpp"
 
 namespace etlc::check {
@@ -17,11 +18,7 @@ void check_up_to_inputs(Context& context, ast::Spec& spec) {
     check_inputs(context);
 }
 
-}  // namespace
-
-std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
-                           diag::Sink& sink) {
-    Context context{spec, file, options, sink};
+void check_all(Context& context, ast::Spec& spec) {
     check_up_to_inputs(context, spec);
     check_embeddings(context);
     check_projections(context);
@@ -36,11 +33,44 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
     check_thresholds(context);
     set_robustness(context);
     warn(context);
-    if (options.retargetable) make_retargetable(context);
-
-    if (sink.has_errors() || context.lacks_data) return std::nullopt;
+    if (context.options.retargetable) make_retargetable(context);
     context.model.dependencies.assign(context.dependencies.begin(), context.dependencies.end());
+}
+
+bool is_complete(const Context& context) {
+    return !context.sink.has_errors() && !context.lacks_data;
+}
+
+}  // namespace
+
+std::optional<Model> check(ast::Spec spec, const source::File& file, const Options& options,
+                           diag::Sink& sink) {
+    Context context{spec, file, options, sink};
+    check_all(context, spec);
+    if (!is_complete(context)) return std::nullopt;
     return std::move(context.model);
+}
+
+Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
+                  diag::Sink& sink) {
+    Context context{spec, file, options, sink};
+    check_all(context, spec);
+    Inspected result;
+    result.complete = is_complete(context);
+    for (std::size_t kind = 0; kind < kNameKinds; ++kind) {
+        for (const Entity& entity : context.scope.all(static_cast<NameKind>(kind))) {
+            const Reference* found = context.scope.find(entity.name);
+            if (found == nullptr || entity.duplicate) continue;
+            const bool broken = entity.broken || found->kind == NameKind::unreadable;
+            result.names[entity.name] = {found->kind, found->index, broken};
+        }
+    }
+    if (context.step.rate != nullptr) {
+        result.step_number = context.step.rate->number.text;
+        result.step_unit = context.step.rate->unit;
+    }
+    result.model = std::move(context.model);
+    return result;
 }
 
 std::optional<Model> check_encoded(ast::Spec spec, const source::File& file, const Options& options,

@@ -21,6 +21,12 @@ const CodeInfo& info(Code code) {
     return all_codes()[static_cast<std::size_t>(code)];
 }
 
+Diagnostic& did_you_mean(Diagnostic& to, const std::string& word,
+                         std::optional<source::Span> where) {
+    to.meant = word;
+    return to.note(where, fmt::format("did you mean '{}'?", word));
+}
+
 Diagnostic& Sink::report(Code code, source::Span span, std::string message) {
     return report(Diagnostic{code, std::move(message), span, {}, 0, 0, {}});
 }

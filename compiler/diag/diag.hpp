@@ -53,6 +53,8 @@ struct Diagnostic {
     std::vector<Note> notes;
     /// What would be an error elsewhere, and is allowed here: something that is not there yet.
     bool is_allowed = false;
+    /// What could stand in place of `span`, where there is one thing that was probably meant.
+    std::string meant{};
 
     Severity severity() const { return is_allowed ? Severity::note : info(code).severity; }
     Diagnostic& note(std::string text) { return note({}, std::move(text)); }
@@ -61,6 +63,10 @@ struct Diagnostic {
         return *this;
     }
 };
+
+/// Asks for `word` in place of the span. `where`: the place that has the word.
+Diagnostic& did_you_mean(Diagnostic& to, const std::string& word,
+                         std::optional<source::Span> where = {});
 
 /// Collects what the stages find. Passed by reference through the pipeline.
 class Sink {

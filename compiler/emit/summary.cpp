@@ -79,28 +79,6 @@ std::vector<Row> monitor_rows(const plan::Plan& plan) {
     return rows;
 }
 
-std::string origin(const check::Threshold& threshold) {
-    switch (threshold.origin) {
-        case check::ThresholdOrigin::literal: return "written in the spec; no guarantee";
-        case check::ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
-        case check::ThresholdOrigin::conformal:
-            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}",
-                               threshold.alpha, threshold.k, threshold.n,
-                               check::coverage_quantile(threshold.n, threshold.k, 0.05),
-                               check::coverage_quantile(threshold.n, threshold.k, 0.95));
-        case check::ThresholdOrigin::class_conditional:
-            return fmt::format(
-                "class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
-                threshold.alpha, threshold.k, threshold.n);
-        case check::ThresholdOrigin::adaptive:
-            return fmt::format(
-                "adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
-                threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
-                threshold.adaptation->hi, threshold.k, threshold.n);
-    }
-    return "";
-}
-
 std::vector<Row> threshold_rows(const plan::Plan& plan) {
     const bool may_change = plan.model->retargetable;
     std::vector<Row> rows{
@@ -108,7 +86,8 @@ std::vector<Row> threshold_rows(const plan::Plan& plan) {
     for (Index p : plan.predicates) {
         const check::Predicate& predicate = plan.model->predicates[p];
         rows.push_back({predicate.name.empty() ? "-" : predicate.name, predicate.text,
-                        fmt::format("{}", predicate.threshold.value), origin(predicate.threshold)});
+                        fmt::format("{}", predicate.threshold.value),
+                        check::origin(predicate.threshold)});
     }
     return rows;
 }

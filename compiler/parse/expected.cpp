@@ -13,6 +13,16 @@ namespace etlc::parse {
 
 using grammar::EtlParser;
 
+const std::vector<std::string>& distance_words() {
+    static const std::vector<std::string> words{
+#define DISTANCE(id, Type, prepared, zero_is_unknown) #id,
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    };
+    return words;
+}
+
 namespace {
 
 using Types = std::vector<std::size_t>;
@@ -23,16 +33,6 @@ struct Group {
     std::string words;
     bool closed;  ///< a list of keywords: another word in their place is an unknown one
 };
-
-const std::vector<std::string>& distance_words() {
-    static const std::vector<std::string> words{
-#define DISTANCE(id, Type, prepared, zero_is_unknown) #id,
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-    };
-    return words;
-}
 
 const std::vector<Group>& groups() {
     static const std::vector<Group> all{

@@ -21,6 +21,9 @@ bool expects_keyword(const Stuck& stuck);
 /// The words that could have stood there, for the nearest to a misspelt one.
 std::vector<std::string> expected_spellings(const Stuck& stuck);
 
+/// The names of distances.
+const std::vector<std::string>& distance_words();
+
 /// "l2, l1 or mahalanobis(M)", of all distances; `before_last`: " or ".
 std::string distances_in_words(std::string_view before_last);
 

@@ -187,7 +187,7 @@ private:
             empty ? "the file is empty"
                   : fmt::format("expected 'spec NAME;', found {}", quoted(first, file_)));
         if (diag::nearest_name(text_of(first, file_), {"spec"}))
-            missing.note("did you mean 'spec'?");
+            diag::did_you_mean(missing, "spec");
         missing.note("a file begins with 'spec NAME;', which names the generated code");
     }
 

@@ -69,8 +69,10 @@ private:
 
     void add_nearest(Diagnostic& to, const Token& word,
                      const std::vector<std::string>& candidates) const {
-        if (const auto nearest = diag::nearest_name(text(word), candidates))
-            to.note(fmt::format("did you mean '{}'?", *nearest));
+        const auto nearest = diag::nearest_name(text(word), candidates);
+        if (!nearest) return;
+        diag::did_you_mean(to, *nearest);
+        if (to.span != span_of(word)) to.meant.clear();
     }
 
     Diagnostic no_declaration() const {
@@ -180,6 +182,9 @@ private:
             add_nearest(to, found_, expected_spellings(stuck_));
         if (to.notes.empty()) add_note_on_words(to);
         if (to.notes.empty()) add_note_on_rule(to);
+        if (slice_ended() && to.meant.empty() &&
+            stuck_.expected.contains(std::size_t{EtlParser::SEMICOLON}))
+            to.meant = ";";
     }
 
     /// What the words found and before suggest was meant.

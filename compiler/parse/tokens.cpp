@@ -21,46 +21,47 @@ namespace {
 struct Hint {
     std::string_view written;
     std::string_view hint;
+    std::string_view meant = "";  ///< where there is but one thing to write instead
 };
 
 constexpr std::array kHints{
-    Hint{"===", "'equal' is '=='; formulas are compared with '<->'"},
+    Hint{"===", "'equal' is '=='; formulas are compared with '<->'", "=="},
     Hint{"!==", "'not equal' is '!='; 'not' is '!'"},
-    Hint{"<>", "'not equal' is '!='"},
+    Hint{"<>", "'not equal' is '!='", "!="},
     Hint{"=>", "'implies' is '->', 'greater or equal' is '>='"},
-    Hint{"<=>", "'if and only if' is '<->'"},
-    Hint{"=<", "'less or equal' is '<='"},
-    Hint{"<-->", "'if and only if' is '<->'"},
-    Hint{"-->", "'implies' is '->'"},
-    Hint{"&", "'and' is '&&'"},
-    Hint{"/\\", "'and' is '&&'"},
-    Hint{"|", "'or' is '||'"},
-    Hint{"\\/", "'or' is '||'"},
-    Hint{"~", "'not' is '!'"},
+    Hint{"<=>", "'if and only if' is '<->'", "<->"},
+    Hint{"=<", "'less or equal' is '<='", "<="},
+    Hint{"<-->", "'if and only if' is '<->'", "<->"},
+    Hint{"-->", "'implies' is '->'", "->"},
+    Hint{"&", "'and' is '&&'", "&&"},
+    Hint{"/\\", "'and' is '&&'", "&&"},
+    Hint{"|", "'or' is '||'", "||"},
+    Hint{"\\/", "'or' is '||'", "||"},
+    Hint{"~", "'not' is '!'", "!"},
     Hint{"^", "there are no powers; a square is a product"},
     Hint{"**", "there are no powers; a square is a product"},
     Hint{":=", "a declaration has '=' after its name"},
     Hint{"{", "a spec has no blocks; formulas are grouped by '( )'"},
     Hint{"}", "a spec has no blocks; formulas are grouped by '( )'"},
     Hint{"'", "a file name stands between double quotes"},
-    Hint{"#", "a comment begins with '//'"},
-    Hint{"≤", "'less or equal' is '<='"},
-    Hint{"≥", "'greater or equal' is '>='"},
-    Hint{"∧", "'and' is '&&'"},
-    Hint{"∨", "'or' is '||'"},
-    Hint{"¬", "'not' is '!'"},
-    Hint{"→", "'implies' is '->'"},
-    Hint{"⇒", "'implies' is '->'"},
-    Hint{"↔", "'if and only if' is '<->'"},
-    Hint{"□", "'always' is 'G'"},
-    Hint{"◇", "'eventually' is 'F'"},
-    Hint{"♢", "'eventually' is 'F'"},
-    Hint{"○", "'next' is 'X'"},
-    Hint{"−", "this is not the minus sign '-'"},
-    Hint{"–", "this is not the minus sign '-'"},
-    Hint{"×", "a product is written '*'"},
-    Hint{"·", "a product is written '*'"},
-    Hint{"∞", "infinity is written 'inf'"},
+    Hint{"#", "a comment begins with '//'", "//"},
+    Hint{"≤", "'less or equal' is '<='", "<="},
+    Hint{"≥", "'greater or equal' is '>='", ">="},
+    Hint{"∧", "'and' is '&&'", "&&"},
+    Hint{"∨", "'or' is '||'", "||"},
+    Hint{"¬", "'not' is '!'", "!"},
+    Hint{"→", "'implies' is '->'", "->"},
+    Hint{"⇒", "'implies' is '->'", "->"},
+    Hint{"↔", "'if and only if' is '<->'", "<->"},
+    Hint{"□", "'always' is 'G'", "G"},
+    Hint{"◇", "'eventually' is 'F'", "F"},
+    Hint{"♢", "'eventually' is 'F'", "F"},
+    Hint{"○", "'next' is 'X'", "X"},
+    Hint{"−", "this is not the minus sign '-'", "-"},
+    Hint{"–", "this is not the minus sign '-'", "-"},
+    Hint{"×", "a product is written '*'", "*"},
+    Hint{"·", "a product is written '*'", "*"},
+    Hint{"∞", "infinity is written 'inf'", "inf"},
     Hint{"“", "a file name stands between plain double quotes"},
     Hint{"”", "a file name stands between plain double quotes"},
     Hint{"\xC2\xA0", "this is a no-break space; put a plain space"},
@@ -69,7 +70,9 @@ constexpr std::array kHints{
 void add_hint(diag::Diagnostic& to, std::string_view written) {
     const auto* const found = std::find_if(
         kHints.begin(), kHints.end(), [written](const Hint& h) { return h.written == written; });
-    if (found != kHints.end()) to.note(std::string(found->hint));
+    if (found == kHints.end()) return;
+    to.note(std::string(found->hint));
+    to.meant = found->meant;
 }
 
 diag::Diagnostic diagnostic(diag::Code code, Span span, std::string message) {

@@ -41,7 +41,7 @@ const Method* find_method(Context& c, const ast::Name& name) {
                            fmt::format("'{}' is not a calibration method; expected {}", name.text,
                                        diag::alternatives(names)));
     if (const auto near = diag::nearest_name(name.text, names))
-        error.note(fmt::format("did you mean '{}'?", *near));
+        diag::did_you_mean(error, *near);
     return nullptr;
 }
 

@@ -245,6 +245,28 @@ std::string text(const Claim& claim) {
     return "nothing: " + claim.why;
 }
 
+std::string origin(const Threshold& threshold) {
+    switch (threshold.origin) {
+        case ThresholdOrigin::literal: return "written in the spec; no guarantee";
+        case ThresholdOrigin::f1: return "calibrated for F1; no guarantee";
+        case ThresholdOrigin::conformal:
+            return fmt::format("conformal, alpha = {}; score {} of {}, coverage {:.3f} to {:.3f}",
+                               threshold.alpha, threshold.k, threshold.n,
+                               coverage_quantile(threshold.n, threshold.k, 0.05),
+                               coverage_quantile(threshold.n, threshold.k, 0.95));
+        case ThresholdOrigin::class_conditional:
+            return fmt::format(
+                "class-conditional, alpha = {}; score {} of {} frames; no guarantee for episodes",
+                threshold.alpha, threshold.k, threshold.n);
+        case ThresholdOrigin::adaptive:
+            return fmt::format(
+                "adaptive, alpha = {}, gamma = {}, in [{}, {}]; starts at conformal score {} of {}",
+                threshold.alpha, threshold.adaptation->gamma, threshold.adaptation->lo,
+                threshold.adaptation->hi, threshold.k, threshold.n);
+    }
+    return "";
+}
+
 std::string miss_bound(const Predicate& predicate) {
     const Adaptation& adaptation = *predicate.threshold.adaptation;
     const double start = predicate.threshold.value;

@@ -43,6 +43,9 @@ std::vector<Claim> claims(const Model& model, const Monitor& monitor,
 /// f1-calibrated".
 std::string text(const Claim& claim);
 
+/// Where a threshold comes from, and what that alone guarantees: "calibrated for F1; no guarantee".
+std::string origin(const Threshold& threshold);
+
 /// Of an adaptive predicate, how many of the first T labelled positive frames it misses at most,
 /// "0.1 T + 35.7 + 0.9 H", H the number of misses at which the end of its range held the threshold
 /// back. docs/calibration.md derives it.

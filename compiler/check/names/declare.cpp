@@ -17,7 +17,8 @@ void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bo
     std::string suggestion = allowed_name(name.text, kind, is_namespace);
     while (!is_namespace && c.scope.find(suggestion) != nullptr) suggestion += "1";
     c.report(Code::forbidden_name, name.span, fmt::format("'{}' {}", name.text, *why))
-        .note(fmt::format("another name would do, for example '{}'", suggestion));
+        .note(fmt::format("another name would do, for example '{}'", suggestion))
+        .meant = suggestion;
 }
 
 void declare(Context& c, NameKind kind, const ast::Name& name) {

@@ -20,7 +20,7 @@ const Reference* find(Context& c, const ast::Name& name, const std::vector<NameK
                            fmt::format("'{}' is not declared; expected {}", name.text, wanted));
     const std::string near = c.scope.nearest(name.text, kinds);
     if (near.empty()) return nullptr;
-    error.note(c.scope.entity(*c.scope.find(near)).span, fmt::format("did you mean '{}'?", near));
+    diag::did_you_mean(error, near, c.scope.entity(*c.scope.find(near)).span);
     return nullptr;
 }
 

@@ -61,7 +61,7 @@ const Method* find_method(Context& c, const ast::Name& name, Slot slot) {
                            fmt::format("'{}' does not fit {}; expected {}", name.text, word(slot),
                                        diag::alternatives(words)));
     if (const auto near = diag::nearest_name(name.text, words))
-        error.note(fmt::format("did you mean '{}'?", *near));
+        diag::did_you_mean(error, *near);
     return nullptr;
 }
 

@@ -1,0 +1,234 @@
+#include "parse/continuations.hpp"
+
+#include <algorithm>
+
+#include "EtlLexer.h"
+#include "EtlParser.h"
+#include "parse/expected.hpp"
+#include "parse/nesting.hpp"
+#include "parse/slices.hpp"
+#include "parse/tokens.hpp"
+
+namespace etlc::parse {
+
+using grammar::EtlLexer;
+using grammar::EtlParser;
+
+namespace {
+
+/// The parser reads them once for each word. Longer declarations are matrices.
+constexpr std::size_t kMostTokens = 2000;
+
+/// Thrown where the parser cannot go on.
+struct Stopped {
+    const Token* at;
+};
+
+class Stop final : public antlr4::ANTLRErrorStrategy {
+public:
+    void reset(antlr4::Parser* /*parser*/) override {}
+    Token* recoverInline(antlr4::Parser* parser) override {
+        throw Stopped{parser->getCurrentToken()};
+    }
+    void recover(antlr4::Parser* /*parser*/, std::exception_ptr error) override {
+        try {
+            std::rethrow_exception(error);
+        } catch (const antlr4::RecognitionException& e) {
+            throw Stopped{e.getOffendingToken()};
+        }
+    }
+    void sync(antlr4::Parser* /*parser*/) override {}
+    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
+    void reportMatch(antlr4::Parser* /*parser*/) override {}
+    void reportError(antlr4::Parser* /*parser*/,
+                     const antlr4::RecognitionException& /*error*/) override {}
+};
+
+/// Where the last token was taken.
+class Watch final : public antlr4::tree::ParseTreeListener {
+public:
+    explicit Watch(const Token* last) : last_(last) {}
+
+    void visitTerminal(antlr4::tree::TerminalNode* node) override {
+        if (node->getSymbol() != last_) return;
+        for (auto* at = node->parent; at != nullptr; at = at->parent)
+            rules_.push_back(dynamic_cast<antlr4::ParserRuleContext*>(at)->getRuleIndex());
+    }
+    void visitErrorNode(antlr4::tree::ErrorNode* /*node*/) override {}
+    void enterEveryRule(antlr4::ParserRuleContext* /*context*/) override {}
+    void exitEveryRule(antlr4::ParserRuleContext* /*context*/) override {}
+
+    /// From the innermost; empty: the parser did not come to it, since it has to see more.
+    const std::vector<std::size_t>& rules() const { return rules_; }
+
+private:
+    const Token* last_;
+    std::vector<std::size_t> rules_;
+};
+
+/// Whether the parser takes a token behind those of a declaration that was begun.
+class Probe {
+public:
+    Probe(Tokens tokens, std::size_t end_offset) : tokens_(std::move(tokens)) {
+        auto last = std::make_unique<antlr4::CommonToken>(EtlLexer::IDENTIFIER);
+        last->setStartIndex(end_offset);
+        last->setStopIndex(end_offset);
+        probe_ = last.get();
+        tokens_.push_back(std::move(last));
+        auto eof = std::make_unique<antlr4::CommonToken>(static_cast<std::size_t>(Token::EOF));
+        eof->setStartIndex(end_offset);
+        tokens_.push_back(std::move(eof));
+    }
+
+    bool is_too_deep() const { return too_deep_at(tokens_, {0, tokens_.size() - 1}).has_value(); }
+
+    /// Nothing: it does not. Else the rules in which it stands, from the innermost, where it alone
+    /// tells.
+    std::optional<std::vector<std::size_t>> rules_of(std::size_t type) {
+        probe_->setType(type);
+        SliceStream stream(tokens_, {0, tokens_.size() - 1});
+        EtlParser parser(&stream);
+        parser.removeErrorListeners();
+        parser.setErrorHandler(std::make_shared<Stop>());
+        Watch watch(probe_);
+        parser.addParseListener(&watch);
+        try {
+            parser.declaration();
+        } catch (const Stopped& stopped) {
+            if (stopped.at->getType() != Token::EOF) return std::nullopt;
+        }
+        return watch.rules();
+    }
+
+private:
+    Tokens tokens_;
+    antlr4::CommonToken* probe_;
+};
+
+bool has(const std::vector<std::size_t>& rules, std::size_t rule) {
+    return std::find(rules.begin(), rules.end(), rule) != rules.end();
+}
+
+/// Of a name that stands in these rules.
+Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
+    if (has(rules, EtlParser::RuleAmount))
+        return has(rules, EtlParser::RuleBound) ? Role::bound : Role::amount;
+    if (rules.size() < 2 || rules[0] != EtlParser::RuleName) return Role::none;
+    switch (rules[1]) {
+        case EtlParser::RulePrimary: return Role::operand;
+        case EtlParser::RulePoint: return Role::point;
+        case EtlParser::RuleDistance: return Role::target;
+        case EtlParser::RuleWeights: return Role::weights;
+        case EtlParser::RuleEncodedBy: return Role::encoder;
+        case EtlParser::RuleCalibrated: return Role::calibration;
+        case EtlParser::RuleFitted: return Role::fitting;
+        case EtlParser::RuleDeclaration:
+            if (declaration == EtlParser::TRUTH) return Role::predicate;
+            return declaration == EtlParser::PERIOD ? Role::amount : Role::none;
+        default: return Role::none;
+    }
+}
+
+/// Of a token that has one spelling.
+std::string keyword(std::size_t type) {
+    const std::string quoted = EtlLexer(nullptr).getVocabulary().getLiteralName(type);
+    return quoted.size() > 2 ? quoted.substr(1, quoted.size() - 2) : "";
+}
+
+/// The spellings of a token: of an operator two.
+std::vector<std::string> spellings(std::size_t type) {
+    switch (type) {
+        case EtlLexer::IFF: return {"<->", "iff"};
+        case EtlLexer::IMPLIES: return {"->", "implies"};
+        case EtlLexer::OR: return {"||", "or"};
+        case EtlLexer::AND: return {"&&", "and"};
+        case EtlLexer::NOT: return {"!", "not"};
+        case EtlLexer::UNTIL: return {"U", "until"};
+        case EtlLexer::WEAK_UNTIL: return {"W", "weak_until"};
+        case EtlLexer::RELEASE: return {"R", "release"};
+        case EtlLexer::SINCE: return {"S", "since"};
+        case EtlLexer::NEXT: return {"X", "next"};
+        case EtlLexer::EVENTUALLY: return {"F", "eventually"};
+        case EtlLexer::ALWAYS: return {"G", "always"};
+        case EtlLexer::PREVIOUS: return {"Y", "previous"};
+        case EtlLexer::ONCE: return {"O", "once"};
+        case EtlLexer::HISTORICALLY: return {"H", "historically"};
+        case EtlLexer::DISTANCE: {
+            std::vector<std::string> words = distance_words();
+            std::erase(words, keyword(EtlLexer::MAHALANOBIS));
+            return words;
+        }
+        default: return {keyword(type)};
+    }
+}
+
+/// Whether the text up to `offset` ends in a comment, which is no token.
+bool ends_in_comment(std::string_view text, std::size_t from) {
+    for (std::size_t i = from; i + 1 < text.size(); ++i) {
+        const std::string_view two = text.substr(i, 2);
+        if (two == "//") {
+            i = text.find_first_of("\r\n", i);
+            if (i == std::string_view::npos) return true;
+        } else if (two == "/*") {
+            i = text.find("*/", i + 2);
+            if (i == std::string_view::npos) return true;
+            ++i;
+        }
+    }
+    return false;
+}
+
+/// A word that ends at the place may go on.
+bool is_typed(const Token& token, std::uint32_t offset, const source::File& before) {
+    const bool word = is_name(token) || is_reserved_word(token, before);
+    return word && span_of(token).end == offset;
+}
+
+/// Fills in what the grammar says.
+void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
+    const std::size_t declaration = tokens.empty() ? Token::EOF : tokens.front()->getType();
+    Probe probe(std::move(tokens), offset);
+    if (probe.is_too_deep()) return;
+    for (std::size_t type = EtlLexer::SPEC; type < EtlLexer::IDENTIFIER; ++type) {
+        const auto rules = probe.rules_of(type);
+        // A contextual word that is taken as a name is none of the language here.
+        if (!rules || (!rules->empty() && rules->front() == EtlParser::RuleName)) continue;
+        for (std::string& word : spellings(type)) found.words.push_back(std::move(word));
+    }
+    if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER))
+        found.role = role_in(*rules, declaration);
+    const auto number = probe.rules_of(EtlLexer::NUMBER);
+    found.number = number.has_value();
+    found.in_interval = number && has(*number, EtlParser::RuleBound);
+}
+
+}  // namespace
+
+Continuations continuations_at(const source::File& file, std::uint32_t offset) {
+    const source::File before(file.path(), std::string(file.text().substr(0, offset)));
+    Continuations found;
+    found.typed = {offset, offset};
+    Tokens tokens = tokens_of(before);
+    tokens.pop_back();  // EOF
+    const std::uint32_t end = tokens.empty() ? 0 : span_of(*tokens.back()).end;
+    if (ends_in_comment(before.text(), end)) return found;
+    if (!tokens.empty() && is_typed(*tokens.back(), offset, before)) {
+        found.typed = span_of(*tokens.back());
+        tokens.pop_back();
+    }
+    const auto ends = [](const auto& token) { return token->getType() == EtlLexer::SEMICOLON; };
+    const auto last = std::find_if(tokens.rbegin(), tokens.rend(), ends);
+    tokens.erase(tokens.begin(), last.base());
+    if (std::any_of(tokens.begin(), tokens.end(), [](const auto& t) { return is_mistake(*t); }))
+        return found;
+    if (!tokens.empty()) {
+        found.declaration = text_of(*tokens.front(), before);
+        if (tokens.back()->getType() == EtlLexer::NUMBER)
+            found.number_before = text_of(*tokens.back(), before);
+    }
+    if (tokens.size() > kMostTokens) return found;
+    ask(found, std::move(tokens), offset);
+    return found;
+}
+
+}  // namespace etlc::parse
