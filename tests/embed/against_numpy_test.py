@@ -6,13 +6,11 @@ import sys
 import tempfile
 
 import numpy as np
-import onnx
-from onnx import TensorProto, helper, numpy_helper
+from networks import DEVIATION, MEAN, Convolutional, prepared
 from PIL import Image
 
 ETLC = os.path.abspath(sys.argv[1])
 EMBEDDER = os.path.join(os.path.dirname(ETLC), "etlc-embed")
-MEAN, DEVIATION = (0.485, 0.456, 0.406), (0.229, 0.224, 0.225)
 random = np.random.default_rng(7)
 
 
@@ -47,52 +45,8 @@ def frames_are_those_of_ffmpeg():
     assert b"damaged" in call(EMBEDDER, "video", "cut.mp4", status=65).stderr
 
 
-def resized(image, rows, columns):
-    """Bilinear, centres of pixels at half numbers."""
-    result = np.zeros((rows, columns, 3))
-    for r in range(rows):
-        for c in range(columns):
-            y = max((r + 0.5) * image.shape[0] / rows - 0.5, 0)
-            x = max((c + 0.5) * image.shape[1] / columns - 0.5, 0)
-            top, left = int(y), int(x)
-            bottom, right = min(top + 1, image.shape[0] - 1), min(left + 1, image.shape[1] - 1)
-            v, u = y - top, x - left
-            result[r, c] = ((1 - v) * ((1 - u) * image[top, left] + u * image[top, right]) +
-                            v * ((1 - u) * image[bottom, left] + u * image[bottom, right]))
-    return result
-
-
-def network():
-    """A convolution, a rectifier, and a map to four numbers: of different weights everywhere, so
-    that neither colours nor rows nor columns may change places."""
-    kernel = random.normal(size=(5, 3, 3, 3)).astype(np.float32)
-    final = random.normal(size=(5 * 8 * 6, 4)).astype(np.float32)
-    nodes = [helper.make_node("Conv", ["x", "k"], ["c"], kernel_shape=[3, 3], pads=[1, 1, 1, 1]),
-             helper.make_node("Relu", ["c"], ["r"]),
-             helper.make_node("Flatten", ["r"], ["f"]),
-             helper.make_node("Gemm", ["f", "w"], ["z"], transB=1)]
-    graph = helper.make_graph(
-        nodes, "net", [helper.make_tensor_value_info("x", TensorProto.FLOAT, [1, 3, 8, 6])],
-        [helper.make_tensor_value_info("z", TensorProto.FLOAT, [1, 4])],
-        [numpy_helper.from_array(kernel, "k"), numpy_helper.from_array(final.T.copy(), "w")])
-    model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 11)])
-    model.ir_version = 6
-    onnx.save(model, "net.onnx")
-
-    def compute(image):
-        x = (resized(image.astype(float), 8, 6) / 255 - MEAN) / DEVIATION
-        padded = np.pad(x, ((1, 1), (1, 1), (0, 0)))
-        maps = np.zeros((5, 8, 6))
-        for o, r, c in np.ndindex(maps.shape):
-            window = padded[r : r + 3, c : c + 3].transpose(2, 0, 1)
-            maps[o, r, c] = max((window * kernel[o]).sum(), 0)
-        return maps.reshape(-1) @ final
-
-    return compute
-
-
 def embeddings_are_those_of_loops():
-    compute = network()
+    network = Convolutional("net.onnx", random)
     os.mkdir("bay")
     images = [random.integers(0, 256, size, dtype=np.uint8) for size in ((8, 6, 3), (13, 17, 3))]
     for i, image in enumerate(images):
@@ -115,12 +69,12 @@ monitor m = F min l2(z, bay) <= 1;
     rows = np.load("t.embedded.npz")["rows-1"]
     assert rows.shape == (4, 4)
     for i, (row, image) in enumerate(zip(rows, images)):
-        expected = compute(image)
+        expected = network(prepared(image, 8, 6))
         tolerance = 1e-4 if i < 3 else 2e-2  # two libraries decode JPEG to within a level
         error = np.abs(row - expected).max() / np.abs(expected).max()
         assert error <= tolerance, (i, error)
     for wrong in (images[0][:, :, ::-1], images[0][::-1]):  # and would see a change of places
-        assert np.abs(rows[0] - compute(wrong)).max() > 1e-2
+        assert np.abs(rows[0] - network(prepared(wrong, 8, 6))).max() > 1e-2
 
 
 def bad_images_are_refused():

@@ -1,21 +1,27 @@
 #include "embed/worker/onnx.hpp"
 
 #include <algorithm>
+#include <array>
+#include <map>
 
 namespace etlc::embed::worker {
 
 namespace {
 
 // Field numbers of onnx.proto, https://github.com/onnx/onnx/blob/v1.12.0/onnx/onnx.proto
-constexpr std::uint64_t kGraph = 7;                                   // ModelProto
-constexpr std::uint64_t kInitializer = 5, kInput = 11, kOutput = 12;  // GraphProto
-constexpr std::uint64_t kTensorName = 8;                              // TensorProto
-constexpr std::uint64_t kName = 1, kType = 2;                         // ValueInfoProto
-constexpr std::uint64_t kTensorType = 1;                              // TypeProto
-constexpr std::uint64_t kElement = 1, kShape = 2;                     // TypeProto.Tensor
-constexpr std::uint64_t kDimension = 1;                               // TensorShapeProto
-constexpr std::uint64_t kDimensionValue = 1;                          // its Dimension
-constexpr std::uint64_t kFloat = 1;                                   // TensorProto.DataType
+constexpr std::uint64_t kGraph = 7;                                    // ModelProto
+constexpr std::uint64_t kInitializer = 5, kInput = 11, kOutput = 12;   // GraphProto
+constexpr std::uint64_t kNode = 1;                                     // GraphProto
+constexpr std::uint64_t kNodeInput = 1, kNodeOutput = 2;               // NodeProto
+constexpr std::uint64_t kNodeName = 3, kOperator = 4, kAttribute = 5;  // NodeProto
+constexpr std::uint64_t kAttributeTensor = 5;                          // AttributeProto
+constexpr std::uint64_t kTensorShape = 1, kTensorName = 8;             // TensorProto
+constexpr std::uint64_t kName = 1, kType = 2;                          // ValueInfoProto
+constexpr std::uint64_t kTensorType = 1;                               // TypeProto
+constexpr std::uint64_t kElement = 1, kShape = 2;                      // TypeProto.Tensor
+constexpr std::uint64_t kDimension = 1;                                // TensorShapeProto
+constexpr std::uint64_t kDimensionValue = 1;                           // its Dimension
+constexpr std::uint64_t kFloat = 1;                                    // TensorProto.DataType
 
 /// One message: its fields in order.
 class Message {
@@ -27,6 +33,7 @@ public:
         if (rest_.empty() || !sound_) return false;
         const std::uint64_t key = varint();
         field = key >> 3U;
+        is_number = (key & 7U) == 0;
         switch (key & 7U) {
             case 0: number = varint(); break;
             case 1: skip(8); break;
@@ -37,8 +44,16 @@ public:
         return sound_;
     }
 
+    /// The next of numbers that stand one after the other.
+    bool next_packed() {
+        if (rest_.empty() || !sound_) return false;
+        number = varint();
+        return sound_;
+    }
+
     bool sound() const { return sound_; }
 
+    bool is_number = false;  ///< else it has bytes
     std::uint64_t field = 0;
     std::uint64_t number = 0;
     std::string_view bytes;
@@ -103,34 +118,92 @@ Value value_of(std::string_view bytes) {
     return value;
 }
 
-std::string tensor_name(std::string_view bytes) {
+/// Repeated numbers, which a file may hold one by one or packed.
+void add_numbers(const Message& field, std::vector<std::int64_t>& to) {
+    if (field.is_number) return to.push_back(static_cast<std::int64_t>(field.number));
+    for (Message packed(field.bytes); packed.next_packed();)
+        to.push_back(static_cast<std::int64_t>(packed.number));
+}
+
+struct Tensor {
     std::string name;
-    for (Message message(bytes); message.next();)
-        if (message.field == kTensorName) name = message.bytes;
-    return name;
+    std::vector<std::int64_t> shape;
+};
+
+Tensor tensor_of(std::string_view bytes) {
+    Tensor tensor;
+    for (Message message(bytes); message.next();) {
+        if (message.field == kTensorName) tensor.name = message.bytes;
+        if (message.field == kTensorShape) add_numbers(message, tensor.shape);
+    }
+    return tensor;
+}
+
+using Shapes = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
+
+struct StoredNode {
+    std::string kind;
+    std::string name;
+    std::vector<std::string> inputs;
+    std::vector<std::string> outputs;
+};
+
+/// `tensors`: gets what a node Constant gives.
+StoredNode node_of(std::string_view bytes, Shapes& tensors) {
+    StoredNode node;
+    std::vector<std::int64_t> shape;
+    for (Message message(bytes); message.next();) {
+        if (message.field == kNodeInput) node.inputs.emplace_back(message.bytes);
+        if (message.field == kNodeOutput) node.outputs.emplace_back(message.bytes);
+        if (message.field == kNodeName) node.name = message.bytes;
+        if (message.field == kOperator) node.kind = message.bytes;
+        if (message.field != kAttribute) continue;
+        for (Message attribute(message.bytes); attribute.next();)
+            if (attribute.field == kAttributeTensor && !attribute.is_number)
+                shape = tensor_of(attribute.bytes).shape;
+    }
+    if (node.kind == "Constant" && !node.outputs.empty()) tensors[node.outputs[0]] = shape;
+    return node;
+}
+
+Node described(const StoredNode& node, const Shapes& tensors) {
+    constexpr std::array<std::string_view, 4> kArithmetic = {"Add", "Sub", "Mul", "Div"};
+    const std::string output = node.outputs.empty() ? "" : node.outputs[0];
+    Node result;
+    result.layer = node.name.empty() ? "onnx_node_output_0!" + output : "onnx_node!" + node.name;
+    result.text = node.kind + " '" + (node.name.empty() ? output : node.name) + "'";
+    if (std::find(kArithmetic.begin(), kArithmetic.end(), node.kind) == kArithmetic.end())
+        return result;
+    for (const std::string& input : node.inputs)
+        if (const auto tensor = tensors.find(input); tensor != tensors.end())
+            result.constant = tensor->second;
+    return result;
 }
 
 }  // namespace
 
 std::optional<Interface> interface_of(std::string_view model) {
     Interface result;
-    std::vector<std::string> weights;
+    Shapes weights;
+    std::vector<StoredNode> nodes;
     Message message(model);
     while (message.next()) {
         if (message.field != kGraph) continue;
         Message graph(message.bytes);
         while (graph.next()) {
-            if (graph.field == kInitializer) weights.push_back(tensor_name(graph.bytes));
+            if (graph.field == kInitializer) {
+                Tensor weight = tensor_of(graph.bytes);
+                weights[weight.name] = std::move(weight.shape);
+            }
+            if (graph.field == kNode) nodes.push_back(node_of(graph.bytes, weights));
             if (graph.field == kInput) result.inputs.push_back(value_of(graph.bytes));
             if (graph.field == kOutput) result.outputs.push_back(value_of(graph.bytes));
         }
         if (!graph.sound()) return std::nullopt;
     }
     if (!message.sound() || result.inputs.empty() || result.outputs.empty()) return std::nullopt;
-    std::sort(weights.begin(), weights.end());
-    std::erase_if(result.inputs, [&](const Value& input) {
-        return std::binary_search(weights.begin(), weights.end(), input.name);
-    });
+    std::erase_if(result.inputs, [&](const Value& input) { return weights.contains(input.name); });
+    for (const StoredNode& node : nodes) result.nodes.push_back(described(node, weights));
     return result;
 }
 

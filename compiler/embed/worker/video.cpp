@@ -1,20 +1,18 @@
 // Video through FFmpeg's libraries. Frames have the bytes of
 // `ffmpeg -i FILE -fps_mode passthrough -f rawvideo -pix_fmt rgb24 -`.
 extern "C" {
-#include <libavcodec/avcodec.h>
-#include <libavformat/avformat.h>
 #include <libavutil/display.h>
 #include <libavutil/opt.h>
 #include <libavutil/pixdesc.h>
-#include <libswscale/swscale.h>
 }
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <memory>
 
 #include "data/frames/protocol.hpp"
+#include "embed/worker/container.hpp"
+#include "embed/worker/decoder.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
@@ -22,28 +20,6 @@ namespace etlc::embed::worker {
 namespace {
 
 using namespace data::frames;
-
-template <auto free>
-struct Free {
-    template <class T>
-    void operator()(T* pointer) const {
-        free(&pointer);
-    }
-};
-using Format = std::unique_ptr<AVFormatContext, Free<avformat_close_input>>;
-using Codec = std::unique_ptr<AVCodecContext, Free<avcodec_free_context>>;
-using Packet = std::unique_ptr<AVPacket, Free<av_packet_free>>;
-using Picture = std::unique_ptr<AVFrame, Free<av_frame_free>>;
-struct FreeScaler {
-    void operator()(SwsContext* scaler) const { sws_freeContext(scaler); }
-};
-using Scaler = std::unique_ptr<SwsContext, FreeScaler>;
-
-std::string words_of(int error) {
-    char words[AV_ERROR_MAX_STRING_SIZE] = "";
-    av_strerror(error, words, sizeof words);
-    return words;
-}
 
 std::string number(double value) {
     char text[32];
@@ -67,6 +43,11 @@ struct Choice {
         if (!only.empty()) return std::binary_search(only.begin(), only.end(), frame);
         return frame >= first && !ends_before(frame) && (frame - first) % stride == 0;
     }
+    /// The next frame that is wanted, from this one on.
+    std::int64_t next_from(std::int64_t frame) const {
+        if (only.empty()) return std::max(first, frame);
+        return *std::lower_bound(only.begin(), only.end(), frame);
+    }
     bool is_all() const { return only.empty() && count == INT64_MAX; }
 };
 
@@ -79,88 +60,6 @@ Choice choice_of(const Words& options) {
     for (const double rate : options.numbers("--rate")) choice.rate = rate;
     return choice;
 }
-
-/// The pictures of the file's video, in the order in which they are shown.
-class Decoder {
-public:
-    explicit Decoder(const std::string& path) : packet_(av_packet_alloc()) {
-        AVFormatContext* format = nullptr;
-        AVDictionary* limits = nullptr;
-        av_dict_set(&limits, "protocol_whitelist", "file", 0);  // a play list may name others
-        int error = avformat_open_input(&format, path.c_str(), nullptr, &limits);
-        av_dict_free(&limits);
-        if (error < 0) refuse(kRefused, "is no video, or a damaged one: " + words_of(error));
-        format_.reset(format);
-        error = avformat_find_stream_info(format, nullptr);
-        if (error < 0) refuse(kRefused, "is no video, or a damaged one: " + words_of(error));
-        const AVCodec* codec = nullptr;
-        stream_ = av_find_best_stream(format, AVMEDIA_TYPE_VIDEO, -1, -1, &codec, 0);
-        if (stream_ < 0 || codec == nullptr) refuse(kRefused, "holds no video that can be decoded");
-        for (unsigned i = 0; i < format->nb_streams; ++i)
-            if (static_cast<int>(i) != stream_) format->streams[i]->discard = AVDISCARD_ALL;
-        codec_.reset(avcodec_alloc_context3(codec));
-        avcodec_parameters_to_context(codec_.get(), stream()->codecpar);
-        codec_->thread_count = 0;
-        codec_->pkt_timebase = stream()->time_base;
-        error = avcodec_open2(codec_.get(), codec, nullptr);
-        if (error < 0) refuse(kRefused, "cannot be decoded: " + words_of(error));
-    }
-
-    const AVStream* stream() const { return format_->streams[stream_]; }
-
-    /// False at the end.
-    bool next(AVFrame* picture) {
-        for (;;) {
-            const int error = avcodec_receive_frame(codec_.get(), picture);
-            if (error == 0) break;
-            if (error == AVERROR_EOF) return false;
-            if (error != AVERROR(EAGAIN)) damaged(error);
-            send();
-        }
-        if ((picture->flags & AV_FRAME_FLAG_CORRUPT) != 0 || picture->decode_error_flags != 0)
-            refuse(kRefused,
-                   "is damaged: frame " + std::to_string(shown_) + " cannot be decoded whole");
-        ++shown_;
-        return true;
-    }
-
-    /// How many pictures there should be: what the container says; 0 where it says nothing.
-    std::int64_t promised() const {
-        return std::max<std::int64_t>(stream()->nb_frames - discarded_, 0);
-    }
-    std::int64_t shown() const { return shown_; }
-
-private:
-    void send() {
-        int error = av_read_frame(format_.get(), packet_.get());
-        while (error == 0 && packet_->stream_index != stream_) {
-            av_packet_unref(packet_.get());
-            error = av_read_frame(format_.get(), packet_.get());
-        }
-        if (error == AVERROR_EOF) {
-            avcodec_send_packet(codec_.get(), nullptr);
-            return;
-        }
-        if (error < 0) damaged(error);
-        if ((packet_->flags & AV_PKT_FLAG_DISCARD) != 0) ++discarded_;
-        if ((packet_->flags & AV_PKT_FLAG_CORRUPT) != 0) damaged(AVERROR_INVALIDDATA);
-        error = avcodec_send_packet(codec_.get(), packet_.get());
-        av_packet_unref(packet_.get());
-        if (error < 0) damaged(error);
-    }
-
-    [[noreturn]] void damaged(int error) {
-        refuse(kRefused,
-               "is damaged or cut behind frame " + std::to_string(shown_) + ": " + words_of(error));
-    }
-
-    Format format_;
-    Codec codec_;
-    Packet packet_;
-    int stream_ = -1;
-    std::int64_t shown_ = 0;
-    std::int64_t discarded_ = 0;
-};
 
 /// To red, green and blue as ffmpeg converts by default.
 class Converter {
@@ -301,11 +200,14 @@ public:
 
     std::int64_t stride() const { return stride_; }
 
+    /// The time stamp of frame 0.
+    void begin(std::int64_t stamp) { begin_ = double(stamp) * seconds_; }
+
     /// Refuses a frame that is more than half a frame from its place.
     void check(const AVFrame& picture, std::int64_t frame) {
         if (rate_ == 0 || picture.best_effort_timestamp == AV_NOPTS_VALUE) return;
         const double time = double(picture.best_effort_timestamp) * seconds_;
-        if (frame == 0) begin_ = time;
+        if (frame == 0) begin(picture.best_effort_timestamp);
         const double place = double(frame) / frames_a_second_;
         if (std::abs(time - begin_ - place) * frames_a_second_ > 0.5)
             refuse(kOutOfStep, "has frame " + std::to_string(frame) + " at " +
@@ -339,13 +241,18 @@ void check_count(const Decoder& decoder, const Choice& choice) {
 
 void send_video(const std::string& path, const Words& options) {
     av_log_set_level(AV_LOG_QUIET);
+    if (const std::string why = why_cut(path); !why.empty()) refuse(kRefused, why);
     const Choice choice = choice_of(options);
     Decoder decoder("file:" + path);
     Clock clock(decoder.stream(), choice.rate);
     Converter converter;
     const int turns = quarter_turns(decoder.stream());
     const Picture picture(av_frame_alloc());
-    for (std::int64_t frame = 0; !choice.ends_before(frame); ++frame) {
+    for (;;) {
+        if (choice.ends_before(decoder.shown())) return;
+        decoder.go_towards(choice.next_from(decoder.shown()));
+        if (decoder.first_time() != AV_NOPTS_VALUE) clock.begin(decoder.first_time());
+        const std::int64_t frame = decoder.shown();
         if (!decoder.next(picture.get())) {
             check_count(decoder, choice);
             return;
