@@ -1,6 +1,7 @@
-# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [VALUES robustness|boolean]
-#                  [NAMESPACE name] [INLINE_TARGETS bytes] [RECORDER before,after,incidents]
-#                  [EXPLAIN] [LETS] [RETARGETABLE] [STANDALONE] [SET name=value ...])
+# etlc_add_monitor(TARGET SPEC file [THRESHOLDS file] [FITTED file] [EMBEDDED file]
+#                  [VALUES robustness|boolean] [NAMESPACE name] [INLINE_TARGETS bytes]
+#                  [RECORDER before,after,incidents] [EXPLAIN] [LETS] [RETARGETABLE] [STANDALONE]
+#                  [SET name=value ...])
 #
 # Compiles an Embedding Temporal Logic spec into the header <stem of SPEC>.hpp, which the sources of
 # TARGET then include by that name.
@@ -8,6 +9,7 @@
 #   SPEC            the .etl file
 #   THRESHOLDS      the thresholds file; default: SPEC.thresholds.json beside the spec, if it exists
 #   FITTED          what `etlc fit` found; default: SPEC.fitted.npz beside the spec, if it exists
+#   EMBEDDED        what `etlc embed` made; default: SPEC.embedded.npz beside the spec
 #   VALUES          what the monitors compute: robustness (the default) or boolean, truth values and
 #                   only the distances that matter
 #   NAMESPACE       of the generated code; default: the name after `spec`
@@ -24,15 +26,15 @@
 #                   the class takes other ones; not with INLINE_TARGETS, RECORDER, EXPLAIN or VALUES
 #                   boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder
-# and is made again when the spec, a file that it loads, the thresholds, what is fitted or etlc
-# itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and the Ninja
-# or Makefile generators (3.21 for the others).
+# and is made again when the spec, a file that it loads, the thresholds, what is fitted or embedded,
+# or etlc itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and
+# the Ninja or Makefile generators (3.21 for the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
 function(etlc_add_monitor target)
   cmake_parse_arguments(PARSE_ARGV 1 arg "EXPLAIN;LETS;RETARGETABLE;STANDALONE"
-    "SPEC;THRESHOLDS;FITTED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
+    "SPEC;THRESHOLDS;FITTED;EMBEDDED;VALUES;NAMESPACE;INLINE_TARGETS;RECORDER" "SET")
   set(call "etlc_add_monitor(${target})")
 
   if(arg_UNPARSED_ARGUMENTS)
@@ -96,6 +98,11 @@ function(etlc_add_monitor target)
     __etlc_input("${call}" FITTED "${arg_FITTED}" fitted)
     list(APPEND options --fitted "${fitted}")
     list(APPEND depends "${fitted}")
+  endif()
+  if(arg_EMBEDDED)
+    __etlc_input("${call}" EMBEDDED "${arg_EMBEDDED}" embedded)
+    list(APPEND options --embedded "${embedded}")
+    list(APPEND depends "${embedded}")
   endif()
   if(arg_VALUES)
     list(APPEND options --values ${arg_VALUES})

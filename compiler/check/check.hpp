@@ -37,6 +37,8 @@ struct Options {
     std::string fitted_path;
     /// What is fitted, and in no file: then none is looked for.
     const fitted::File* fitted = nullptr;
+    /// File of embeddings; empty: SPEC.embedded.npz beside the spec.
+    std::string embedded_path;
     /// `etlc fit` reads a spec before it has what it fits: that has its shape and no values.
     bool allow_unfitted = false;
     /// `--check` takes a spec before its files are there: a target file, a thresholds file or an

@@ -79,6 +79,7 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     options.settings = request.settings;
     options.thresholds_path = request.thresholds;
     options.fitted_path = request.fitted;
+    options.embedded_path = request.embedded;
     options.allow_uncalibrated = request.thresholds.empty();
     options.allow_uncalibrated_monitors = true;
     const auto model = check::check(std::move(spec), file, options, sink);

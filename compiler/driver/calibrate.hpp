@@ -21,6 +21,7 @@ struct CalibrateRequest {
     std::string output;              ///< empty: beside the spec
     std::vector<check::Setting> settings;
     std::string fitted;      ///< the file of what is fitted; empty: beside the spec
+    std::string embedded;    ///< the file of embeddings; empty: beside the spec
     std::string thresholds;  ///< those of the predicates; empty: they are calibrated now
     ShardRequest shard;
 };

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "data/files/file.hpp"
+#include "data/files/hash.hpp"
 #include "driver/output_file.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
@@ -64,6 +65,16 @@ bool make_folder(const std::string& folder, diag::Sink& sink) {
     return false;
 }
 
+/// By the content of its first and last file, so that neither names nor the order count.
+std::uint32_t shard_of(const embed::Recording& recording, std::uint32_t shards) {
+    const auto& files = recording.files;
+    const std::string content =
+        files.empty() ? recording.episode
+                      : fmt::format("{} {}{}", files.size(), data::ends_of_file(files.front()),
+                                    data::ends_of_file(files.back()));
+    return static_cast<std::uint32_t>(data::xxh64(content) % shards) + 1;
+}
+
 std::string report(const check::Model& model, const embedded::File& file, std::size_t episodes,
                    const std::string& folder) {
     std::string text;
@@ -71,8 +82,8 @@ std::string report(const check::Model& model, const embedded::File& file, std::s
         text += fmt::format("encoder {}: dimension {}, {} {}\n", name, encoder.dimension,
                             encoder.kind, embedded::fingerprint(encoder));
     for (const check::Encoded& encoded : model.encoded)
-        text += fmt::format("{}: {}\n", encoded.text,
-                            diag::counted(file.entries.at(encoded.text).rows, "row"));
+        if (const auto entry = file.entries.find(encoded.text); entry != file.entries.end())
+            text += fmt::format("{}: {}\n", encoded.text, diag::counted(entry->second.rows, "row"));
     if (episodes > 0) text += fmt::format("{} in {}\n", diag::counted(episodes, "episode"), folder);
     return text;
 }
@@ -91,10 +102,17 @@ bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& si
     auto embeddings = embed::describe_encoders(*model, asked, sink);
     if (!embeddings) return false;
     const double rate = model->step_seconds > 0 ? 1 / model->step_seconds : 0;
-    const auto recordings = embed::find_recordings(request.data, rate, sink);
+    auto recordings = embed::find_recordings(request.data, rate, sink);
     if (sink.has_errors()) return false;
+    const ShardRequest& shard = request.shard;
+    if (shard.shards > 0)
+        std::erase_if(recordings, [&](const embed::Recording& recording) {
+            return shard_of(recording, shard.shards) != shard.shard;
+        });
 
-    const std::string result = embedded::default_path(file.path());
+    const std::string result =
+        request.embedded.empty() ? embedded::default_path(file.path()) : request.embedded;
+    const bool has_targets = shard.shards == 0 || shard.shard == 1;
     std::vector<std::string> outputs = {result};
     std::vector<std::string> inputs = {file.path()};
     for (const check::Encoder& encoder : model->encoders)
@@ -112,9 +130,9 @@ bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& si
     const auto keep = [&](const embed::Recording& recording, const std::string& bytes) {
         return files.add(episode_path(request.output, recording), bytes);
     };
-    return embed::embed_targets(*model, asked, *embeddings, sink) &&
+    return (!has_targets || embed::embed_targets(*model, asked, *embeddings, sink)) &&
            embed::embed_recordings(*model, *embeddings, recordings, asked, keep, sink) &&
-           files.add(result, embedded::write(*embeddings)) &&
+           (!has_targets || files.add(result, embedded::write(*embeddings))) &&
            files.add(std::string(kStandardOutput),
                      source::visible_lines(
                          report(*model, *embeddings, recordings.size(), request.output))) &&

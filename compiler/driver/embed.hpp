@@ -1,6 +1,7 @@
 // `etlc embed`: spec, images and videos in, embeddings and episodes out.
 // Takes: the spec's text. Gives: the file of embeddings beside the spec, and an episode for every
-// recording. Keeps true: all files appear or none, each whole.
+// recording; of a shard, for every recording of it. Keeps true: all files appear or none, each
+// whole; those of all shards are those of one process.
 #pragma once
 
 #include <string>
@@ -8,6 +9,7 @@
 
 #include "check/check.hpp"
 #include "diag/diag.hpp"
+#include "driver/fleet/fleet.hpp"
 #include "embed/embed.hpp"
 #include "source/source.hpp"
 
@@ -17,6 +19,8 @@ struct EmbedRequest {
     embed::Request embed;           ///< its version is set here
     std::vector<std::string> data;  ///< recordings
     std::string output;             ///< folder of the episodes
+    std::string embedded;           ///< the file of embeddings; empty: beside the spec
+    ShardRequest shard;             ///< which recordings; the first encodes the targets as well
     std::vector<check::Setting> settings;
 };
 

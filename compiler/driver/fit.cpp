@@ -47,6 +47,7 @@ bool fit(const source::File& file, const FitRequest& request, diag::Sink& sink) 
     options.allow_uncalibrated = true;
     options.allow_uncalibrated_monitors = true;
     options.allow_unfitted = true;
+    options.embedded_path = request.embedded;
     const auto model = check::check(std::move(spec), file, options, sink);
     if (!model || sink.refused()) return false;
 

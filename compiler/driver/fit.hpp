@@ -19,6 +19,7 @@ struct FitRequest {
     std::string groups;             ///< of .h5 files that are episodes
     fit::Request fit;               ///< its episodes, version and progress are set here
     std::string output;             ///< empty: beside the spec
+    std::string embedded;           ///< the file of embeddings; empty: beside the spec
     std::vector<check::Setting> settings;
     /// Prints which distances would separate these predicates, or all, and writes no file.
     bool suggest = false;

@@ -1,7 +1,7 @@
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <map>
+#include <memory>
 
 #include "data/arrays/npz_writer.hpp"
 #include "data/files/file.hpp"
@@ -47,9 +47,15 @@ public:
     bool make() {
         if (recordings_.empty()) return true;
         if (!has_cameras()) return false;
-        for (Index encoder = 0; encoder < model_.encoders.size(); ++encoder)
-            if (!encode(encoder)) return false;
-        return true;
+        std::map<Index, std::unique_ptr<Encoder>> encoders;
+        for (const Index input : inputs_)
+            if (!start(model_.inputs[input].encoder, encoders)) return false;
+        for (std::size_t r = 0; r < recordings_.size(); ++r)
+            for (const Index input : inputs_)
+                if (!add(*encoders.at(model_.inputs[input].encoder), r, input)) return false;
+        for (const auto& [index, encoder] : encoders)
+            if (auto trouble = encoder->finish()) return fail(trouble->failure, model_path(index));
+        return !failed_;
     }
 
 private:
@@ -74,33 +80,35 @@ private:
         return true;
     }
 
-    bool encode(Index index) {
-        const check::Encoder& encoder = model_.encoders[index];
-        const bool is_used = std::any_of(inputs_.begin(), inputs_.end(), [&](Index input) {
-            return model_.inputs[input].encoder == index;
-        });
-        if (!is_used) return true;
-        const std::string model_path = data::beside(model_.file.path(), encoder.model);
-        auto running = Encoder::start(encoder, model_path, request_.running);
-        if (!running) return fail(running.failure(), model_path);
-        for (std::size_t r = 0; r < recordings_.size(); ++r)
-            for (const Index input : inputs_)
-                if (model_.inputs[input].encoder == index && !add(**running, r, input, model_path))
-                    return false;
-        if (auto trouble = (*running)->finish()) return fail(trouble->failure, model_path);
-        return !failed_;
+    std::string model_path(Index encoder) const {
+        return data::beside(model_.file.path(), model_.encoders[encoder].model);
     }
 
-    bool add(Encoder& running, std::size_t recording, Index input, const std::string& model_path) {
+    /// All run at once, so that an episode is written when the next ones are read.
+    bool start(Index index, std::map<Index, std::unique_ptr<Encoder>>& encoders) {
+        std::unique_ptr<Encoder>& place = encoders[index];
+        if (place) return true;
+        auto started = Encoder::start(model_.encoders[index], model_path(index), request_.running);
+        if (!started) return fail(started.failure(), model_path(index));
+        place = std::move(*started);
+        return true;
+    }
+
+    bool add(Encoder& encoder, std::size_t recording, Index input) {
         const Recording& from = recordings_[recording];
         auto frames = from.open(model_.inputs[input].name);
         if (!frames) return fail(frames.failure(), from.path);
         const auto trouble =
-            running.add(**frames, from.path, [this, recording, input](std::vector<float> rows) {
+            encoder.add(**frames, from.path, [this, recording, input](std::vector<float> rows) {
                 take(recording, input, std::move(rows));
             });
-        if (trouble) return fail(trouble->failure, trouble->of_encoder ? model_path : from.path);
-        return !failed_;
+        if (!trouble) return !failed_;
+        if (trouble->of_encoder)
+            return fail(trouble->failure, model_path(model_.inputs[input].encoder));
+        const bool is_of_images = from.files.size() > 1;
+        return fail(trouble->failure, is_of_images && trouble->frame < from.files.size()
+                                          ? from.files[trouble->frame]
+                                          : from.path);
     }
 
     /// The episode is written once it has all its inputs.

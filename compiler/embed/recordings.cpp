@@ -30,18 +30,24 @@ std::string beside(const fs::path& folder, const std::string& name) {
 Recording video(const std::string& path, double rate) {
     const fs::path file = path;
     const std::string name = file.stem().string();
-    return {path, name, true,
+    return {path,
+            name,
+            true,
             [path, rate](const std::string&) { return data::open_video(path, {.rate = rate}); },
-            beside(file.parent_path(), name)};
+            beside(file.parent_path(), name),
+            {path}};
 }
 
 Recording images(const std::string& folder, std::vector<std::string> paths) {
     fs::path place = fs::path(folder).lexically_normal();
     if (!place.has_filename()) place = place.parent_path();  // of "drives/ep3/"
     const std::string name = place.filename().string();
-    return {folder, name, true,
-            [paths = std::move(paths)](const std::string&) { return data::open_images(paths); },
-            beside(place.parent_path(), name)};
+    return {folder,
+            name,
+            true,
+            [paths](const std::string&) { return data::open_images(paths); },
+            beside(place.parent_path(), name),
+            std::move(paths)};
 }
 
 std::vector<std::string> sorted_entries(const std::string& folder) {

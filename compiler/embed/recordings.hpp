@@ -30,6 +30,8 @@ struct Recording {
     std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
     /// A .csv file of its name beside it: see embed/beside.hpp; empty: there is none.
     std::string beside{};
+    /// The video, or the images, one a frame.
+    std::vector<std::string> files{};
 };
 
 /// Every recording of the arguments. `rate`: steps a second, 0 where the spec has no rate: then

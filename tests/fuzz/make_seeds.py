@@ -125,6 +125,43 @@ for name, text in {
 }.items():
     seed("fuzz_thresholds", name, text.encode())
 
+def frame(rows, columns, pixels):
+    return struct.pack("<II", rows, columns) + pixels
+
+def field(number, content):
+    """Of a protocol buffer: bytes, or a number."""
+    if isinstance(content, int):
+        return bytes([number << 3, content])
+    return bytes([number << 3 | 2, len(content)]) + content
+
+def value(name, shape):
+    sizes = b"".join(field(1, field(1, n)) for n in shape)
+    return field(1, name) + field(2, field(1, field(1, 1) + field(2, sizes)))
+
+NODE = field(1, b"x") + field(1, b"w") + field(2, b"y") + field(3, b"n") + field(4, b"Mul")
+CONSTANT = field(2, b"c") + field(4, b"Constant") + field(5, field(5, field(1, b"\x02\x03")))
+MODEL = field(7, field(1, NODE) + field(1, CONSTANT) + field(5, field(1, 2) + field(8, b"w"))
+              + field(11, value(b"x", (1, 3, 2, 2))) + field(12, value(b"y", (1, 4))))
+ROWS = struct.pack("<6f", 1, 2, 3, 4, 5, 6)
+for name, status, data in (
+    ("frames", 0, frame(1, 2, b"rgbrgb") + frame(2, 1, b"rgbrgb")),
+    ("refused", 65, frame(1, 1, b"rgb") + b"is cut"),
+    ("out_of_step", 66, b"has 25 frames a second"),
+    ("no_such_frame", 67, b""),
+    ("dies", 139, frame(1, 1, b"r")),
+    ("large", 0, frame(1 << 14, 1 << 14, b"")),
+    ("embeddings", 0, struct.pack("<I", 2) + ROWS),
+    ("too_many", 0, struct.pack("<I", 1) + ROWS),
+    ("too_few", 0, struct.pack("<I", 3) + ROWS),
+    ("not_finite", 0, struct.pack("<I", 2) + ROWS[:-4] + struct.pack("<f", float("nan"))),
+    ("no_dimension", 0, struct.pack("<I", 0) + ROWS),
+    ("wide", 0, struct.pack("<I", 1 << 21) + ROWS),
+):
+    seed("fuzz_worker", name, bytes([status]) + data)
+seed("fuzz_worker", "marks",
+     b'{"format": 1, "inputs": {"z": "0123456789abcdef", "y": "00112233445566aa"}}')
+seed("fuzz_worker", "model", MODEL)
+
 # For fuzz_compile: specs that are long as trees or large as state machines, and bytes that choose
 # deep ones.
 HEAD = "spec s;\ninput x : f32 in [-1, 1];\npredicate p = x > 0;\npredicate q = x < 0.5;\n"

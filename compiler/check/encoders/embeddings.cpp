@@ -28,12 +28,15 @@ diag::Diagnostic& report_missing(Context& c, Span span, std::string message) {
 }
 
 std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
-    const std::string path = embedded::default_path(c.file.path());
+    const std::string& given = c.options.embedded_path;
+    const std::string path = given.empty() ? embedded::default_path(c.file.path()) : given;
     if (!exists(path)) {
         report_missing(
             c, first.span,
             fmt::format("'{}' makes embeddings, and there is no file {}", first.name, path))
-            .note("'etlc embed' makes it, of the images that the spec names");
+            .note(
+                "'etlc embed' makes it, of the images that the spec names; --embedded names "
+                "another");
         return std::nullopt;
     }
     auto file = embedded::read(path);

@@ -4,7 +4,10 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <bit>
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -107,6 +110,24 @@ diag::Result<std::string> hash_of_file(const std::string& path, diag::Code code)
         }
         filled = 0;
     }
+}
+
+std::string ends_of_file(const std::string& path) {
+    constexpr std::uintmax_t kEnd = 1U << 12U;
+    std::error_code error;
+    const std::uintmax_t size = std::filesystem::file_size(path, error);
+    std::ifstream file(path, std::ios::binary);
+    if (error || !file) return {};
+    std::string bytes = std::to_string(size) + ' ';
+    const auto add = [&](std::uintmax_t from) {
+        std::string end(std::min(kEnd, size - from), '\0');
+        file.seekg(static_cast<std::streamoff>(from));
+        file.read(end.data(), static_cast<std::streamsize>(end.size()));
+        bytes += end;
+    };
+    add(0);
+    add(size > kEnd ? size - kEnd : 0);
+    return bytes;
 }
 
 }  // namespace etlc::data

@@ -17,4 +17,8 @@ std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed = 0);
 /// Of a file of any size, 16 hex digits. Failures carry the code and do not repeat the path.
 diag::Result<std::string> hash_of_file(const std::string& path, diag::Code code);
 
+/// What mostly tells a large file from others: its size, and its first and last 4 KiB. Empty where
+/// it cannot be read.
+std::string ends_of_file(const std::string& path);
+
 }  // namespace etlc::data

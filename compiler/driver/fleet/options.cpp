@@ -21,7 +21,7 @@ bool read_shard(std::string_view text, ShardRequest& request) {
 
 }  // namespace
 
-void add_shard_options(CLI::App& app, ShardRequest& request) {
+void add_shard_option(CLI::App& app, ShardRequest& request, const std::string& description) {
     app.add_option_function<std::string>(
            "--shard",
            [&request](const std::string& text) {
@@ -30,9 +30,14 @@ void add_shard_options(CLI::App& app, ShardRequest& request) {
                        "--shard",
                        "'" + text + "' is no shard; expected I/N with I from 1 to N: 3/64");
            },
-           "read only this shard of the episodes, and write a part of the result; etlc merge makes "
-           "the result of all parts")
+           description)
         ->type_name("I/N");
+}
+
+void add_shard_options(CLI::App& app, ShardRequest& request) {
+    add_shard_option(app, request,
+                     "read only this shard of the episodes, and write a part of the result; etlc "
+                     "merge makes the result of all parts");
     app.add_option("--part", request.part, "with --shard: the part to write")->type_name("FILE");
 }
 

@@ -8,6 +8,9 @@
 
 namespace etlc::driver {
 
+/// --shard
+void add_shard_option(CLI::App& app, ShardRequest& request, const std::string& description);
+
 /// --shard, --part
 void add_shard_options(CLI::App& app, ShardRequest& request);
 

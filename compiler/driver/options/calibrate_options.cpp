@@ -22,6 +22,7 @@ void add_calibrate_options(CLI::App& app, CalibrateRequest& calibrate) {
                    "whole are, on episodes that these thresholds have not seen")
         ->type_name("FILE");
     add_fitted_option(app, calibrate.fitted);
+    add_embedded_option(app, calibrate.embedded);
     add_folds_option(app, calibration.folds,
                      "also say what the thresholds would be without each of N folds of the "
                      "episodes");

@@ -1,5 +1,6 @@
 #include "driver/options/embed_options.hpp"
 
+#include "driver/fleet/options.hpp"
 #include "driver/options/options.hpp"
 #include "driver/options/spec_options.hpp"
 
@@ -13,6 +14,13 @@ void add_embed_options(CLI::App& app, EmbedRequest& request) {
         ->type_name("FILE...");
     app.add_option("-o,--output", request.output, "folder where the episodes go, as .npz")
         ->type_name("FOLDER");
+    app.add_option("--embedded", request.embedded,
+                   "where what the spec names goes, encoded (default: SPEC.embedded.npz beside "
+                   "the spec)")
+        ->type_name("FILE");
+    add_shard_option(app, request.shard,
+                     "make episodes of this shard of the recordings only; the first encodes what "
+                     "the spec names as well");
     app.add_option("--encoder-cmd", request.embed.running.command,
                    "a command that encodes: frames on its standard input, embeddings on its "
                    "standard output (docs/encoders.md)")
@@ -26,6 +34,8 @@ std::string mistake_in_embed_call(const EmbedRequest& request) {
     if (request.data.empty() != request.output.empty())
         return request.data.empty() ? "-o takes the episodes of --data, which is missing"
                                     : "--data needs -o FOLDER, where the episodes go";
+    if (request.shard.shards > 0 && request.data.empty())
+        return "--shard takes a part of the recordings of --data, which is missing";
     return "";
 }
 

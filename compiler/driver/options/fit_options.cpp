@@ -10,6 +10,7 @@ void add_fit_options(CLI::App& app, FitRequest& request) {
     add_episode_options(app, request.data, request.groups, request.fit.allow_overlap,
                         request.fit.jobs);
     add_map_option(app, request.fit.names);
+    add_embedded_option(app, request.embedded);
     app.add_option("-o,--output", request.output,
                    "where to write what is fitted (default: SPEC.fitted.npz beside the spec); "
                    "- is standard output")

@@ -36,6 +36,13 @@ void add_fitted_option(CLI::App& app, std::string& path) {
         ->type_name("FILE");
 }
 
+void add_embedded_option(CLI::App& app, std::string& path) {
+    app.add_option("--embedded", path,
+                   "what 'etlc embed' made of images and videos (default: SPEC.embedded.npz beside "
+                   "the spec)")
+        ->type_name("FILE");
+}
+
 void add_compiler_options(CLI::App& app, Request& request) {
     add_set_option(app, request.check.settings);
     app.add_option(
@@ -43,6 +50,7 @@ void add_compiler_options(CLI::App& app, Request& request) {
            "calibrated thresholds (default: SPEC.thresholds.json beside the spec, where it exists)")
         ->type_name("FILE");
     add_fitted_option(app, request.check.fitted_path);
+    add_embedded_option(app, request.check.embedded_path);
     add_choice<check::Values>(
         app, "--values", request.values,
         {{"robustness", check::Values::robustness}, {"boolean", check::Values::boolean}},

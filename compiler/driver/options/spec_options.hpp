@@ -16,6 +16,9 @@ void add_set_option(CLI::App& app, std::vector<check::Setting>& settings);
 /// --fitted
 void add_fitted_option(CLI::App& app, std::string& path);
 
+/// --embedded
+void add_embedded_option(CLI::App& app, std::string& path);
+
 /// -W, --diagnostics
 void add_diagnostics_options(CLI::App& app, std::vector<std::string>& warnings,
                              std::string& diagnostics);

@@ -1,5 +1,6 @@
 // Images through OpenCV: PNG and JPEG, turned as their EXIF orientation says.
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <opencv2/imgcodecs.hpp>
@@ -19,7 +20,7 @@ using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes_of(const std::string& path) {
     std::ifstream file(path, std::ios::binary);
-    if (!file) refuse(kRefused, "cannot be read");
+    if (!file || std::filesystem::is_directory(path)) refuse(kRefused, "cannot be read");
     return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 

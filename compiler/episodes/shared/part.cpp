@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -23,24 +21,6 @@ using diag::Failure;
 constexpr std::string_view kMagic = "etlc part 1\n";
 constexpr std::size_t kHash = 8;  ///< bytes, the last of the file: of all before
 constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
-
-std::string ends_of(const std::string& path) {
-    constexpr std::uintmax_t kEnd = 1U << 12U;
-    std::error_code error;
-    const std::uintmax_t size = std::filesystem::file_size(path, error);
-    std::ifstream file(path, std::ios::binary);
-    if (error || !file) return {};  // whoever reads it will say so
-    std::string bytes = std::to_string(size) + ' ';
-    const auto add = [&](std::uintmax_t from) {
-        std::string end(std::min(kEnd, size - from), '\0');
-        file.seekg(static_cast<std::streamoff>(from));
-        file.read(end.data(), static_cast<std::streamsize>(end.size()));
-        bytes += end;
-    };
-    add(0);
-    add(size > kEnd ? size - kEnd : 0);
-    return bytes;
-}
 
 /// What two parts of a call have to share.
 bool same_call(const Part& a, const Part& b) {
@@ -93,7 +73,7 @@ bool complete(const Part& all, const std::vector<std::uint32_t>& shards, const s
 
 std::uint32_t shard_of(const std::string& episode, std::uint32_t shards) {
     const std::string file = data::trace_file(episode);
-    const std::uint64_t hash = data::xxh64(ends_of(file) + episode.substr(file.size()));
+    const std::uint64_t hash = data::xxh64(data::ends_of_file(file) + episode.substr(file.size()));
     return static_cast<std::uint32_t>(hash % shards) + 1;
 }
 

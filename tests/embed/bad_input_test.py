@@ -1,0 +1,249 @@
+"""bad_input_test.py ETLC: images and videos that are damaged, cut, or of a form that would be taken
+for another are refused by name, and nothing is written; those of other forms that say the same give
+the same frames; frames late in a video are those that decoding all gives."""
+import os
+import pathlib
+import struct
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+from PIL import Image, ImageOps
+
+ETLC = os.path.abspath(sys.argv[1])
+EMBEDDER = os.path.join(os.path.dirname(ETLC), "etlc-embed")
+random = np.random.default_rng(5)
+
+
+def call(*words, status=0):
+    done = subprocess.run(words, capture_output=True)
+    assert done.returncode == status, (words, done.returncode, done.stderr)
+    return done.stdout, done.stderr.decode()
+
+
+def frames_of(data):
+    frames = []
+    while data:
+        height, width = struct.unpack("<II", data[:8])
+        size = height * width * 3
+        frames.append(np.frombuffer(data[8 : 8 + size], np.uint8).reshape(height, width, 3))
+        data = data[8 + size :]
+    return frames
+
+
+def images(*paths):
+    return frames_of(call(EMBEDDER, "images", *paths)[0])
+
+
+def video(path, *options):
+    return frames_of(call(EMBEDDER, "video", path, *map(str, options))[0])
+
+
+def refused(words, fault, status=65):
+    out, said = call(EMBEDDER, *map(str, words), status=status)
+    assert fault in said.splitlines()[-1], (words, fault, said)  # libpng says more before
+    return frames_of(out)
+
+
+def noise(*shape, most=256):
+    return random.integers(0, most, shape, np.uint16 if most > 256 else np.uint8)
+
+
+def other_forms_say_the_same():
+    colour, grey = noise(7, 5, 3), noise(7, 5)
+    opaque = np.dstack([colour, np.full((7, 5), 255, np.uint8)])
+    few = Image.fromarray(colour // 64 * 64).quantize(64)
+    same = {
+        "colour.png": (Image.fromarray(colour), colour),
+        "opaque.png": (Image.fromarray(opaque, "RGBA"), colour),
+        "grey.png": (Image.fromarray(grey), np.dstack([grey] * 3)),
+        "grey_opaque.png": (Image.merge("LA", [Image.fromarray(grey), Image.new("L", (5, 7), 255)]),
+                            np.dstack([grey] * 3)),
+        "palette.png": (few, np.asarray(few.convert("RGB"))),
+        "two.png": (Image.fromarray(grey > 99), np.dstack([(grey > 99) * np.uint8(255)] * 3)),
+        "tall.png": (Image.fromarray(noise(40, 1, 3)), None),
+    }
+    for name, (image, expected) in same.items():
+        image.save(name)
+        expected = np.asarray(image) if expected is None else expected
+        assert (images(name)[0] == expected).all(), name
+    both = images("colour.png", "tall.png")  # of different sizes
+    assert [frame.shape for frame in both] == [(7, 5, 3), (40, 1, 3)]
+
+
+def orientations_are_applied():
+    # Blocks of a colour, so that two libraries that decode JPEG agree.
+    blocks = Image.fromarray(np.kron(noise(2, 3, 3), np.ones((16, 16, 1), np.uint8)))
+    for orientation in range(1, 9):
+        exif = Image.Exif()
+        exif[0x0112] = orientation
+        blocks.save("turned.jpg", quality=98, exif=exif, subsampling=0)
+        expected = np.asarray(ImageOps.exif_transpose(Image.open("turned.jpg")))
+        found = images("turned.jpg")[0]
+        assert found.shape == expected.shape, orientation
+        assert np.abs(found.astype(int) - expected).max() <= 3, orientation
+
+
+def images_are_refused():
+    Image.fromarray(noise(4, 4, most=65536)).save("deep_grey.png")
+    call("ffmpeg", "-v", "error", "-f", "lavfi", "-i", "testsrc2=size=16x16", "-frames:v", "1",
+         "-pix_fmt", "rgb48be", "deep.png")
+    half = np.dstack([noise(4, 4, 3), np.full((4, 4), 128, np.uint8)])
+    Image.fromarray(half, "RGBA").save("half.png")
+    Image.fromarray(noise(4, 4)).quantize(8).save("hole.png", transparency=0)
+    Image.fromarray(noise(64, 64, 3)).save("whole.png")
+    Image.fromarray(noise(64, 64, 3)).save("whole.jpg")
+    for ending in ("png", "jpg"):
+        whole = pathlib.Path(f"whole.{ending}").read_bytes()
+        pathlib.Path(f"cut.{ending}").write_bytes(whole[: len(whole) * 2 // 3])
+    whole = bytearray(pathlib.Path("whole.png").read_bytes())
+    whole[len(whole) // 2] ^= 255
+    pathlib.Path("changed.png").write_bytes(whole)
+    pathlib.Path("empty.png").write_bytes(b"")
+    pathlib.Path("text.png").write_text("no image\n")
+    os.mkdir("folder.png")
+    for name, fault in (("deep_grey.png", "16 bits a channel"), ("deep.png", "16 bits a channel"),
+                        ("half.png", "transparent"), ("hole.png", "transparent"),
+                        ("cut.png", "damaged"), ("cut.jpg", "cut"), ("changed.png", "damaged"),
+                        ("empty.png", "empty"), ("text.png", "no image"),
+                        ("folder.png", "cannot be read"), ("none.png", "cannot be read")):
+        given = refused(["images", "colour.png", name], fault)
+        assert len(given) == 1, "the image before is whole"
+
+
+def make_video(path, *options, frames=24, size="32x32"):
+    call("ffmpeg", "-v", "error", "-y", "-f", "lavfi", "-i", f"testsrc2=size={size}:rate=10",
+         "-frames:v", str(frames), "-pix_fmt", "yuv420p", *options, path)
+    return bytearray(pathlib.Path(path).read_bytes())
+
+
+def videos_are_refused():
+    h264 = ["-c:v", "libx264", "-g", "8"]
+    for path, options in (("v.mp4", h264), ("fast.mp4", [*h264, "-movflags", "+faststart"]),
+                          ("v.mov", h264), ("v.mkv", h264), ("v.avi", ["-c:v", "mpeg4"]),
+                          ("v.webm", ["-c:v", "libvpx-vp9", "-deadline", "realtime"]),
+                          ("v.gif", ["-pix_fmt", "rgb8"])):
+        whole = make_video(path, *options)
+        assert len(video(path)) == 24, path
+        for less in [len(whole) // 3] + [1] * (path in ("v.mkv", "v.webm", "v.gif")):
+            pathlib.Path("cut_" + path).write_bytes(whole[:-less])
+            _, said = call(EMBEDDER, "video", "cut_" + path, status=65)
+            assert any(word in said for word in ("cut", "damaged", "no frame")), (path, less, said)
+    # More frames than there are, in the head of an .avi and in a tag of an .mkv.
+    whole = pathlib.Path("v.avi").read_bytes()
+    at = whole.index(b"strh") + 8 + 32
+    assert struct.unpack("<I", whole[at : at + 4]) == (24,)
+    pathlib.Path("more.avi").write_bytes(whole[:at] + struct.pack("<I", 70) + whole[at + 4 :])
+    refused(["video", "more.avi"], "promises 70 frames and holds 24")
+    call("ffmpeg", "-v", "error", "-i", "v.mkv", "-c", "copy", "-metadata:s:v",
+         "NUMBER_OF_FRAMES=25", "more.mkv")
+    refused(["video", "more.mkv"], "promises 25 frames and holds 24")
+    refused(["video", "v.mp4", "--only", "3,24"], "has 24 frames; there is no frame 24", 67)
+    refused(["video", "v.mp4", "--first", 20, "--count", 5], "there is no frame 24", 67)
+    for ending in ("mp4", "mkv"):
+        call("ffmpeg", "-v", "quiet", "-f", "lavfi", "-i", "testsrc2=size=64x48", "-frames:v", "0",
+             f"none.{ending}")
+        said = call(EMBEDDER, "video", f"none.{ending}", status=65)[1]
+        assert "no frame" in said or "no video" in said, said
+    pathlib.Path("empty.mp4").write_bytes(b"")
+    pathlib.Path("text.mp4").write_text("no video\n")
+    for name in ("empty.mp4", "text.mp4", "none_at_all.mp4"):
+        refused(["video", name], "is no video")
+    call("ffmpeg", "-v", "error", "-f", "lavfi", "-i", "sine", "-t", "1", "sound.mp4")
+    refused(["video", "sound.mp4"], "holds no video")
+
+
+def late_frames_are_those_of_all():
+    h264 = ["-c:v", "libx264", "-g", "20"]
+    kinds = (("late.mp4", h264), ("open.mkv", [*h264, "-x264-params", "open-gop=1:bframes=3"]),
+             ("refresh.mkv", [*h264, "-x264-params", "intra-refresh=1"]),
+             ("old.avi", ["-c:v", "mpeg4", "-bf", "2", "-g", "20"]),
+             ("late.webm", ["-c:v", "libvpx-vp9", "-deadline", "realtime", "-cpu-used", "8", "-g",
+                            "20", "-auto-alt-ref", "1", "-lag-in-frames", "16"]),
+             ("hidden.webm", ["-c:v", "libvpx", "-deadline", "realtime", "-g", "20",
+                              "-auto-alt-ref", "1", "-lag-in-frames", "16"]))
+    wanted = [3, 79, 80, 81, 137, 139]
+    for path, options in kinds:
+        make_video(path, *options, frames=140)
+        every = video(path)
+        assert len(every) == 140, path
+        some = video(path, "--only", ",".join(map(str, wanted)))
+        assert len(some) == len(wanted), path
+        assert all((a == every[n]).all() for a, n in zip(some, wanted)), path
+        if path == "late.mp4":
+            of_late = every
+    every = of_late
+    end = video("late.mp4", "--first", 120)
+    assert len(end) == 20 and all((a == b).all() for a, b in zip(end, every[120:]))
+    part = video("late.mp4", "--first", 93, "--count", 9)
+    assert len(part) == 9 and all((a == b).all() for a, b in zip(part, every[93:]))
+    assert len(video("late.mp4", "--first", 120, "--rate", 5)) == 10
+    refused(["video", "late.mp4", "--first", 135, "--count", 9], "there is no frame 143", 67)
+    # What lies before the key frame is not decoded, and may be damaged.
+    packets = call("ffprobe", "-v", "error", "-select_streams", "v", "-show_entries",
+                   "packet=pos,size", "-of", "csv=p=0", "late.mp4")[0].split()
+    whole = bytearray(pathlib.Path("late.mp4").read_bytes())
+    sizes = {position: size for size, position in (map(int, row.split(b",")) for row in packets)}
+    for position in sorted(sizes)[10:30]:
+        start, end = position + 5, position + sizes[position]
+        whole[start:end] = bytes(end - start)
+    pathlib.Path("damaged.mp4").write_bytes(whole)
+    assert (video("damaged.mp4", "--only", 110)[0] == every[110]).all()
+    refused(["video", "damaged.mp4"], "damaged")
+
+
+def nothing_is_written():
+    pathlib.Path("t.etl").write_text("""spec t;
+rate 10 Hz;
+encoder net = load("net.onnx"), image [8, 8];
+input z : f32[4] by net;
+target bay = images("colour.png"), frames("v.mp4", [3]) by net;
+monitor m = F min l2(z, bay) <= 1;
+""")
+    pathlib.Path("net.onnx").write_text("for a command\n")
+    row = struct.pack("<4f", 1, 2, 3, 4)
+    pathlib.Path("encode.py").write_text(f"""import struct, sys
+sys.stdout.buffer.write(struct.pack("<I", 4))
+while head := sys.stdin.buffer.read(8):
+    height, width = struct.unpack("<II", head)
+    sys.stdin.buffer.read(3 * height * width)
+    sys.stdout.buffer.write({row!r})
+""")
+    good = ["--encoder-cmd", "/usr/bin/python3 encode.py"]
+    os.mkdir("mixed")
+    for name in ("colour.png", "half.png"):
+        os.link(name, f"mixed/{name}")
+    for data, words in (("cut_v.mkv", ["E1010", "cut_v.mkv", "is cut"]),
+                        ("mixed", ["E1009", "mixed/half.png", "transparent"]),
+                        ("more.avi", ["E1010", "promises 70"]),
+                        ("none.mp4", ["E1010", "no"]), ("sound.mp4", ["E1010", "no video"])):
+        said = call(ETLC, "embed", "t.etl", "--data", "v.mp4", data, "-o", "out", *good,
+                    status=1)[1]
+        assert all(word in said for word in words), (data, said)
+        assert not os.listdir("out") and not os.path.exists("t.embedded.npz"), data
+    # Commands that end or hang while there is more to read than a pipe holds.
+    make_video("large.mp4", "-c:v", "libx264", frames=20, size="640x480")
+    for command, words in (("exit 3", ["exit status 3"]), ("sleep 60", ["said nothing for 1"]),
+                           ("head -c 100000 > /dev/null; exit 4", ["exit status 4"]),
+                           ("exec 0<&-; sleep 60", ["'net'"]),
+                           ("cat", ["dimension"]), ("yes", ["dimension"]),
+                           ("printf '\\001\\000\\000\\000'; cat > /dev/null",
+                            ["dimension 1, the inputs by it have 4"])):
+        said = call(ETLC, "embed", "t.etl", "--data", "large.mp4", "-o", "out", "--encoder-cmd",
+                    command, "--encoder-timeout", "1", status=1)[1]
+        assert all(word in said for word in words) and "E101" in said, (command, said)
+        assert not os.listdir("out") and not os.path.exists("t.embedded.npz"), command
+    call(ETLC, "embed", "t.etl", "--data", "v.mp4", "-o", "out", *good)
+    assert np.load("out/v.npz")["z"].shape == (24, 4)
+
+
+with tempfile.TemporaryDirectory() as folder:
+    os.chdir(folder)
+    other_forms_say_the_same()
+    orientations_are_applied()
+    images_are_refused()
+    videos_are_refused()
+    late_frames_are_those_of_all()
+    nothing_is_written()
+    os.chdir("/")
