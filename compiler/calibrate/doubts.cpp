@@ -18,7 +18,7 @@ std::optional<episodes::Auroc> ranking(const std::vector<Demonstration>& demonst
     std::vector<episodes::RankedFrame> frames;
     for (std::size_t e = 0; e < demonstrations.size(); ++e)
         for (const Scores::Labelled& frame : demonstrations[e].scores[of].labelled)
-            frames.push_back({frame.score, frame.positive, e});
+            frames.push_back({{-frame.score, static_cast<std::uint32_t>(e), frame.positive}});
     std::vector<std::vector<episodes::RankedFrame>> all{std::move(frames)};
     const auto result = episodes::auroc(all, demonstrations.size());
     return result && result->interval ? result : std::nullopt;

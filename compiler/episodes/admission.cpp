@@ -15,7 +15,7 @@ using diag::Code;
 
 constexpr std::string_view kHowToAllow =
     "if they are different recordings after all, say why with --allow-overlap REASON: the reason "
-    "stands in the thresholds file and next to every guarantee";
+    "is kept with the result and stands next to every guarantee";
 
 /// "shares about 97 % of its content with"
 std::string in_common(const data::Overlap& overlap) {

@@ -7,6 +7,28 @@ namespace etlc::episodes {
 
 namespace {
 
+/// How many frames of a class, or how much they count.
+struct Classes {
+    double positives = 0;
+    double negatives = 0;
+};
+
+/// Calls `visit(first, last, lower, tied)` for each run of frames of one score, `lower` being those
+/// of lower scores. A frame counts as often as `weight(frame)` says.
+template <class Frame, class Weight, class Visit>
+void for_each_tie(Frame* begin, Frame* end, const Weight& weight, const Visit& visit) {
+    Classes lower;
+    while (begin != end) {
+        Frame* const first = begin;
+        Classes tied;
+        for (; begin != end && begin->score == first->score; ++begin)
+            (begin->positive ? tied.positives : tied.negatives) += weight(*begin);
+        visit(first, begin, lower, tied);
+        lower.positives += tied.positives;
+        lower.negatives += tied.negatives;
+    }
+}
+
 /// Of a group, or of an episode those that it has a part in.
 struct Pairs {
     double ordered = 0;
@@ -22,21 +44,16 @@ void for_each_in_order(std::vector<RankedFrame>& frames, const Visit& visit) {
         if (a.score != b.score) return a.score < b.score;
         return a.episode != b.episode ? a.episode < b.episode : a.step < b.step;
     });
-    double negatives_left = static_cast<double>(std::count_if(
-        frames.begin(), frames.end(), [](const RankedFrame& frame) { return !frame.positive; }));
-    double positives_before = 0;
-    for (std::size_t i = 0; i < frames.size();) {
-        const std::size_t begin = i;
-        double positives = 0;
-        while (i < frames.size() && frames[i].score == frames[begin].score)
-            positives += frames[i++].positive ? 1 : 0;
-        const double negatives = static_cast<double>(i - begin) - positives;
-        negatives_left -= negatives;
-        for (std::size_t k = begin; k < i; ++k)
-            visit(frames[k], frames[k].positive ? negatives_left + negatives / 2
-                                                : positives_before + positives / 2);
-        positives_before += positives;
-    }
+    const auto positives = static_cast<double>(std::count_if(
+        frames.begin(), frames.end(), [](const RankedFrame& frame) { return frame.positive; }));
+    for_each_tie(
+        frames.data(), frames.data() + frames.size(), [](const RankedFrame&) { return 1.0; },
+        [&](RankedFrame* first, RankedFrame* last, const Classes& lower, const Classes& tied) {
+            const double higher = positives - lower.positives - tied.positives;
+            for (; first != last; ++first)
+                visit(*first, first->positive ? lower.negatives + tied.negatives / 2
+                                              : higher + tied.positives / 2);
+        });
 }
 
 /// The pairs of a group, and of each episode in it.
@@ -71,6 +88,35 @@ Pairs count(std::vector<RankedFrame>& frames, std::vector<Pairs>& episodes) {
 }
 
 }  // namespace
+
+Ranking::Ranking(std::vector<Scored> frames, const std::vector<std::uint32_t>& folds)
+    : frames_(std::move(frames)) {
+    const auto fold = [&](const Scored& frame) { return folds.empty() ? 0 : folds[frame.episode]; };
+    std::sort(frames_.begin(), frames_.end(), [&](const Scored& a, const Scored& b) {
+        return fold(a) != fold(b) ? fold(a) < fold(b) : a.score < b.score;
+    });
+    for (std::size_t i = 0; i < frames_.size(); ++i)
+        if (i == 0 || fold(frames_[i]) != fold(frames_[i - 1])) begins_.push_back(i);
+    begins_.push_back(frames_.size());
+}
+
+std::optional<double> Ranking::auroc(const std::vector<std::uint32_t>& weights) const {
+    double twice_ordered = 0;  // a tie is half a pair
+    double pairs = 0;
+    for (std::size_t fold = 0; fold + 1 < begins_.size(); ++fold) {
+        Classes all;
+        for_each_tie(
+            frames_.data() + begins_[fold], frames_.data() + begins_[fold + 1],
+            [&](const Scored& frame) { return weights[frame.episode]; },
+            [&](const Scored*, const Scored*, const Classes& lower, const Classes& tied) {
+                twice_ordered += tied.positives * (2 * lower.negatives + tied.negatives);
+                all = {lower.positives + tied.positives, lower.negatives + tied.negatives};
+            });
+        pairs += all.positives * all.negatives;
+    }
+    if (pairs == 0) return std::nullopt;
+    return twice_ordered / 2 / pairs;
+}
 
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
     constexpr std::size_t kLeastEpisodes = 5;

@@ -14,6 +14,7 @@
 #include "check/model/model.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
+#include "episodes/frames.hpp"
 #include "episodes/leaks.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
@@ -51,7 +52,7 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 using Opener =
     std::function<diag::Result<std::unique_ptr<data::Trace>>(const std::vector<data::Channel>&)>;
 
-class Recording {
+class Recording final : public Frames {
 public:
     /// Failures: what opening the trace fails with; no_label where a predicate has neither a truth
     /// nor an array. They do not name the episode.
@@ -59,17 +60,13 @@ public:
                                         const data::NamesInFile& names);
     static diag::Result<Recording> open(const Wanted& wanted, const Opener& open);
 
-    /// The next frame; false at the end of the episode.
-    diag::Result<bool> next();
-
-    /// Of this frame, by index of the model's inputs; those not wanted are not there.
-    const std::vector<plan::Sample>& samples() const { return samples_; }
-    /// Of this frame: one of the wanted predicates.
-    Label label(Index predicate) const;
+    diag::Result<bool> next() override;
+    const std::vector<plan::Sample>& samples() const override { return samples_; }
+    Label label(Index predicate) const override;
     /// Whether its labels come from an array of the episode.
     bool from_array(Index predicate) const { return sources_[predicate].from_array; }
 
-    std::uint64_t frames() const { return frames_; }
+    std::uint64_t frames() const override { return frames_; }
     /// Number of frames where the file tells it beforehand, else 0.
     std::uint64_t length() const { return trace_->length(); }
     /// Of the frames so far; hash and content over the inputs of `identity`.

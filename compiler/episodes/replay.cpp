@@ -11,7 +11,7 @@ Follower::Follower(const plan::Plan& plan, const GroundTruth* truth)
     if (truth != nullptr) labelled_ = labelled_predicates(*truth);
 }
 
-void Follower::step(const Recording& recording) {
+void Follower::step(const Frames& recording) {
     finished_ = false;
     if (truth_ == nullptr) {
         verdicts_ = &evaluator_.step(recording.samples());
@@ -44,7 +44,7 @@ Wanted wanted(const check::Model& model, const std::vector<const plan::Plan*>& p
         &model, {inputs.begin(), inputs.end()}, std::move(predicates), std::move(identity), &leaks};
 }
 
-diag::Result<bool> replay(Recording& recording, const std::vector<Follower*>& followers,
+diag::Result<bool> replay(Frames& recording, const std::vector<Follower*>& followers,
                           const AfterStep& frame, const AfterStep& rest) {
     for (Follower* follower : followers) follower->reset();
     for (;;) {

@@ -35,7 +35,7 @@ public:
     void reset() { evaluator_.reset(); }
     /// From the next step on, this monitor of the model is about that step.
     void restart(Index monitor) { evaluator_.restart(places_[monitor]); }
-    void step(const Recording& recording);
+    void step(const Frames& recording);
     /// After the last frame.
     void finish();
 
@@ -61,7 +61,7 @@ using AfterStep = std::function<bool()>;
 /// From the first frame of the recording to its last, with `frame` after each; then, where there is
 /// a `rest`, through the positions that the end leaves open, with `rest` after each. Gives: whether
 /// it came to the end.
-diag::Result<bool> replay(Recording& recording, const std::vector<Follower*>& followers,
+diag::Result<bool> replay(Frames& recording, const std::vector<Follower*>& followers,
                           const AfterStep& frame, const AfterStep& rest = nullptr);
 
 }  // namespace etlc::episodes

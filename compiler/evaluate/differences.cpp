@@ -41,8 +41,8 @@ public:
         result.name = first_.predicates[a].name;
         result.level = "frames";
         if (result.other_truths > 0) return result;
-        const Ranking ranking_a = ranking_of(first_, a);
-        const Ranking ranking_b = ranking_of(second_, b);
+        const episodes::Ranking ranking_a = ranking_of(first_, a);
+        const episodes::Ranking ranking_b = ranking_of(second_, b);
         result.auroc = less(
             bootstrap_, [&](const Weights& weights) { return ranking_b.auroc(weights); },
             [&](const Weights& weights) { return ranking_a.auroc(weights); });

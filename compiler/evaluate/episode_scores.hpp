@@ -9,10 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "episodes/auroc.hpp"
 #include "episodes/replay.hpp"
 #include "evaluate/counts.hpp"
 #include "evaluate/duration.hpp"
-#include "evaluate/ranking.hpp"
 #include "evaluate/subject.hpp"
 
 namespace etlc::evaluate {
@@ -40,8 +40,8 @@ struct MonitorEpisode {
 
 struct PredicateEpisode {
     Counts frames;
-    std::vector<Scored> scored;    ///< `episode` is not yet set
-    std::uint64_t unmeasured = 0;  ///< labelled frames whose distance is unknown
+    std::vector<episodes::Scored> scored;  ///< `episode` is not yet set
+    std::uint64_t unmeasured = 0;          ///< labelled frames whose distance is unknown
     bool from_array = false;
     LabelRuns truth;  ///< of the frames
     std::optional<std::uint64_t> first_error;

@@ -135,7 +135,7 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
 Evaluation summarise(const Judgement& judgement);
 
 /// By what this predicate measured, all labelled frames.
-Ranking ranking_of(const Judgement& judgement, std::size_t predicate);
+episodes::Ranking ranking_of(const Judgement& judgement, std::size_t predicate);
 
 /// Specs on the same episodes.
 struct SideBySide {

@@ -119,7 +119,7 @@ PredicateScore predicate_score(const Bootstrap& bootstrap, const Judgement& judg
         result.arrays += episode.predicates[i].from_array ? 1 : 0;
     }
     result.coverage = coverage(bootstrap, counts);
-    const Ranking ranking = ranking_of(judgement, i);
+    const episodes::Ranking ranking = ranking_of(judgement, i);
     result.auroc = bootstrap.figure([&](const Weights& weights) { return ranking.auroc(weights); });
     return result;
 }
@@ -148,15 +148,15 @@ MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgemen
 
 }  // namespace
 
-Ranking ranking_of(const Judgement& judgement, std::size_t predicate) {
-    std::vector<Scored> frames;
+episodes::Ranking ranking_of(const Judgement& judgement, std::size_t predicate) {
+    std::vector<episodes::Scored> frames;
     for (std::uint32_t e = 0; e < judgement.episodes.size(); ++e) {
-        for (Scored frame : judgement.episodes[e].predicates[predicate].scored) {
+        for (episodes::Scored frame : judgement.episodes[e].predicates[predicate].scored) {
             frame.episode = e;
             frames.push_back(frame);
         }
     }
-    return Ranking(std::move(frames), judgement.fold_of);
+    return episodes::Ranking(std::move(frames), judgement.fold_of);
 }
 
 Evaluation summarise(const Judgement& judgement) {

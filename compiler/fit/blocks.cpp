@@ -19,7 +19,9 @@ void Blocks::add(const std::vector<float>& point, const std::vector<std::int8_t>
 
 std::vector<Moments> Blocks::take() {
     flush();
-    return std::move(moments_);
+    std::vector<Moments> result(moments_.size(), Moments(frames_.rows()));
+    std::swap(result, moments_);
+    return result;
 }
 
 void Blocks::flush() {
@@ -48,13 +50,22 @@ void Blocks::flush() {
     filled_ = 0;
 }
 
-std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) const {
-    Matrix frames(frames_.rows(), std::count(selected.begin(), selected.end(), true));
+std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) {
+    selected_.resize(frames_.rows(), kFrames);
     Eigen::Index to = 0;
     for (std::size_t f = 0; f < selected.size(); ++f)
         if (selected[f])
-            frames.col(to++) = frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
-    return std::make_shared<Scatter>(Scatter::of(frames));
+            selected_.col(to++) = frames_.col(static_cast<Eigen::Index>(f)).cast<double>();
+    std::shared_ptr<Scatter> result = unused_scatter();
+    result->set(selected_.leftCols(to));
+    return result;
+}
+
+std::shared_ptr<Scatter> Blocks::unused_scatter() {
+    for (const std::shared_ptr<Scatter>& one : scatters_)
+        if (one.use_count() == 1) return one;
+    scatters_.push_back(std::make_shared<Scatter>());
+    return scatters_.back();
 }
 
 Mean Blocks::mean(std::size_t need, std::size_t of_class) const {

@@ -22,12 +22,13 @@ public:
 
     /// `classes`: per need.
     void add(const std::vector<float>& point, const std::vector<std::int8_t>& classes);
-    /// At the end: per need.
+    /// Of all since the last call, per need.
     std::vector<Moments> take();
 
 private:
     void flush();
-    std::shared_ptr<Scatter> scatter(const std::vector<bool>& selected) const;
+    std::shared_ptr<Scatter> scatter(const std::vector<bool>& selected);
+    std::shared_ptr<Scatter> unused_scatter();
     Mean mean(std::size_t need, std::size_t of_class) const;
 
     static constexpr Eigen::Index kFrames = 512;
@@ -37,6 +38,9 @@ private:
     std::vector<bool> with_scatter_;
     std::vector<std::vector<std::int8_t>> classes_;  ///< per need, then per frame of the block
     std::vector<Moments> moments_;
+    // Large, and so made once.
+    Matrix selected_;                                 ///< frames
+    std::vector<std::shared_ptr<Scatter>> scatters_;  ///< some of them in use
 };
 
 }  // namespace etlc::fit

@@ -76,8 +76,8 @@ std::vector<PointNeeds> by_point(const std::vector<Need>& needs) {
 
 /// The predicates in these needs whose labels are wanted: those with a truth, and those that would
 /// need an array.
-std::vector<Index> labelled_predicates(const check::Model& model, const std::vector<Need>& needs,
-                                       const std::vector<Index>& have_labels) {
+std::set<Index> labelled_predicates(const check::Model& model, const std::vector<Need>& needs,
+                                    const std::vector<Index>& have_labels) {
     std::set<Index> found;
     for (const Need& need : needs) {
         if (need.label != kNone) found.insert(need.label);
@@ -87,7 +87,7 @@ std::vector<Index> labelled_predicates(const check::Model& model, const std::vec
                 std::binary_search(have_labels.begin(), have_labels.end(), predicate))
                 found.insert(predicate);
     }
-    return {found.begin(), found.end()};
+    return found;
 }
 
 std::vector<Index> formulas_of(const std::vector<Need>& needs) {
@@ -97,10 +97,31 @@ std::vector<Index> formulas_of(const std::vector<Need>& needs) {
     return formulas;
 }
 
-struct Episode : episodes::Recorded {
-    std::vector<Collected> collected;  ///< per need
-    std::vector<Index> from_arrays;
-};
+/// What is read of an episode, for these needs and to measure.
+episodes::Wanted wanted_for(const check::Model& model, const std::vector<Need>& needs,
+                            const std::vector<Measured>& measured,
+                            const std::vector<Index>& have_labels) {
+    episodes::Wanted result;
+    result.model = &model;
+    result.identity = episodes::identity_inputs(model);
+    std::set<Index> inputs(result.identity.begin(), result.identity.end());
+    const auto add = [&](const std::vector<Index>& more) {
+        inputs.insert(more.begin(), more.end());
+    };
+    std::set<Index> labelled = labelled_predicates(model, needs, have_labels);
+    for (const Measured& one : measured) {
+        add(model.predicates[one.predicate].inputs);
+        labelled.insert(one.label);
+    }
+    result.predicates.assign(labelled.begin(), labelled.end());
+    for (const Need& need : needs) add(model.points[need.point].inputs);
+    const episodes::GroundTruth truth = episodes::ground_truth(model, result.predicates);
+    const episodes::TruthEvaluator where(truth.model, formulas_of(needs));
+    for (const Index input : where.inputs())
+        if (input < model.inputs.size()) inputs.insert(input);  // the others are labels
+    result.inputs.assign(inputs.begin(), inputs.end());
+    return result;
+}
 
 /// How frames are shared out among the episodes.
 struct Shares {
@@ -108,55 +129,44 @@ struct Shares {
     std::size_t every = 1;  ///< of so many episodes one gives some
 };
 
+using Episode = std::vector<Collected>;  ///< per need
+
 class Reader {
 public:
-    Reader(const check::Model& model, const std::vector<Need>& needs, std::vector<Index> labelled,
-           std::size_t most_frames, const data::NamesInFile& names)
+    Reader(const check::Model& model, const std::vector<Need>& needs, const Readings& readings,
+           std::size_t most_frames)
         : model_(model),
           needs_(needs),
+          readings_(readings),
           points_(by_point(needs)),
-          truth_(episodes::ground_truth(model, labelled)),
+          truth_(episodes::ground_truth(model, readings.wanted().predicates)),
           where_(truth_.model, formulas_of(needs)),
-          most_frames_(most_frames),
-          names_(names) {
-        wanted_.model = &model;
-        wanted_.predicates = std::move(labelled);
-        wanted_.identity = episodes::identity_inputs(model);
-        std::set<Index> inputs(wanted_.identity.begin(), wanted_.identity.end());
-        for (const Need& need : needs)
-            inputs.insert(model.points[need.point].inputs.begin(),
-                          model.points[need.point].inputs.end());
-        for (const Index input : where_.inputs())
-            if (input < model.inputs.size()) inputs.insert(input);  // the others are labels
-        wanted_.inputs.assign(inputs.begin(), inputs.end());
+          most_frames_(most_frames) {
+        for (const PointNeeds& one : points_) blocks_.push_back(blocks_of(one));
     }
 
     diag::Result<Episode> score(const std::string& path) {
-        auto recording = episodes::Recording::open(wanted_, path, names_);
-        if (!recording) return recording.failure();
+        const auto opened = readings_.open(readings_.index_of(path));
+        if (!opened) return opened.failure();
+        episodes::Frames& frames = **opened;
         where_.reset();
         std::vector<Collector> collectors;
         for (const Need& need : needs_) collectors.emplace_back(need, most_frames_);
-        std::vector<Blocks> blocks;
-        for (const PointNeeds& one : points_) blocks.push_back(blocks_of(one));
         for (;;) {
-            const auto more = recording->next();
+            const auto more = frames.next();
             if (!more) return more.failure();
             if (!*more) break;
-            take_labels(*recording);
+            take_labels(frames);
             for (std::size_t p = 0; p < points_.size(); ++p)
-                take_point(*recording, points_[p], collectors, blocks[p]);
+                take_point(frames, points_[p], collectors, blocks_[p]);
         }
         Episode result;
-        static_cast<episodes::Recorded&>(result) = recording->recorded();
-        for (Collector& collector : collectors) result.collected.push_back(collector.take());
+        for (Collector& collector : collectors) result.push_back(collector.take());
         for (std::size_t p = 0; p < points_.size(); ++p) {
-            std::vector<Moments> moments = blocks[p].take();
+            std::vector<Moments> moments = blocks_[p].take();
             for (std::size_t i = 0; i < moments.size(); ++i)
-                result.collected[points_[p].with_moments[i]].moments = std::move(moments[i]);
+                result[points_[p].with_moments[i]].moments = std::move(moments[i]);
         }
-        for (const Index predicate : wanted_.predicates)
-            if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
         return result;
     }
 
@@ -169,47 +179,47 @@ private:
     }
 
     /// Of one frame.
-    void take_point(const episodes::Recording& recording, const PointNeeds& one,
+    void take_point(const episodes::Frames& frames, const PointNeeds& one,
                     std::vector<Collector>& collectors, Blocks& blocks) {
-        if (!read_point(model_, one.point, recording.samples(), point_)) point_.clear();
+        if (!read_point(model_, one.point, frames.samples(), point_)) point_.clear();
         classes_.clear();
         for (const std::size_t i : one.all) {
             const std::int8_t in_class =
-                collectors[i].add(recording.frames() - 1, label(recording, needs_[i]), point_);
+                collectors[i].add(frames.frames() - 1, label(frames, needs_[i]), point_);
             if (needs_[i].kind != Need::Kind::frames) classes_.push_back(in_class);
         }
         if (!point_.empty() && !classes_.empty()) blocks.add(point_, classes_);
     }
 
-    void take_labels(const episodes::Recording& recording) {
+    void take_labels(const episodes::Frames& frames) {
         frame_.resize(truth_.model.inputs.size());
         for (const Index input : where_.inputs()) {
             std::vector<double>& values = frame_[input];
             values.clear();
             if (input >= model_.inputs.size()) continue;
-            const plan::Sample& sample = recording.samples()[input];
+            const plan::Sample& sample = frames.samples()[input];
             if (sample.present) values.assign(sample.values.begin(), sample.values.end());
         }
-        for (const Index predicate : wanted_.predicates) {
-            const plan::Sample sample = episodes::sample_of(recording.label(predicate));
+        for (const Index predicate : readings_.wanted().predicates) {
+            const plan::Sample sample = episodes::sample_of(frames.label(predicate));
             frame_[truth_.inputs[predicate]].assign(sample.values.begin(), sample.values.end());
         }
         where_.step(frame_);
     }
 
-    Label label(const episodes::Recording& recording, const Need& need) const {
-        if (need.label != kNone) return recording.label(need.label);
+    Label label(const episodes::Frames& frames, const Need& need) const {
+        if (need.label != kNone) return frames.label(need.label);
         return need.where == kNone ? Label::yes : where_[need.where];
     }
 
     const check::Model& model_;
     const std::vector<Need>& needs_;
+    const Readings& readings_;
     std::vector<PointNeeds> points_;
+    std::vector<Blocks> blocks_;  ///< per point
     episodes::GroundTruth truth_;
     episodes::TruthEvaluator where_;
-    episodes::Wanted wanted_;
     std::size_t most_frames_;
-    const data::NamesInFile& names_;
     episodes::Frame frame_;
     std::vector<float> point_;
     std::vector<std::int8_t> classes_;
@@ -254,47 +264,37 @@ bool read_point(const check::Model& model, Index point, const std::vector<plan::
     for (const Index input : model.points[point].inputs) {
         const plan::Sample& sample = samples[input];
         if (!sample.present) return false;
-        for (const float x : sample.values) {
-            if (!std::isfinite(x) || !model.inputs[input].range.contains(x)) return false;
-            values.push_back(x);
-        }
+        const check::Range& range = model.inputs[input].range;
+        bool sound = true;  // without branches, several at a time
+        for (const float x : sample.values) sound &= std::isfinite(x) && range.contains(x);
+        if (!sound) return false;
+        values.insert(values.end(), sample.values.begin(), sample.values.end());
     }
     return true;
 }
 
 std::optional<Collection> collect(const check::Model& model, const std::vector<Need>& needs,
-                                  const std::vector<std::string>& paths, const Request& request,
+                                  const std::vector<Measured>& measured, const Request& request,
                                   diag::Sink& sink) {
-    const auto have_labels = episodes::labelled_in(model, paths.front(), request.names);
+    const auto have_labels = episodes::labelled_in(model, request.episodes.front(), request.names);
     if (!have_labels) {
-        sink.report(data::in_trace(have_labels.failure(), paths.front()));
+        sink.report(data::in_trace(have_labels.failure(), request.episodes.front()));
         return std::nullopt;
     }
-    const std::vector<Index> labelled = labelled_predicates(model, needs, *have_labels);
+    auto readings = Readings::read(wanted_for(model, needs, measured, *have_labels), request, sink);
+    if (!readings) return std::nullopt;
+    Collection all{std::move(*readings), {}};
+    const std::vector<std::string> paths = all.readings.paths();
     const Shares shares{std::max<std::size_t>(1, kMostFrames / paths.size()),
                         (paths.size() + kMostFrames - 1) / kMostFrames};
-    Collection all;
     all.folds.assign(std::min(kFolds, paths.size()), std::vector<Collected>(needs.size()));
-    std::set<Index> from_spec;
-    std::set<Index> from_arrays;
     const bool done = episodes::in_order<Episode>(
         paths, request, sink,
-        [&] {
-            return std::make_unique<Reader>(model, needs, labelled, shares.most, request.names);
-        },
+        [&] { return std::make_unique<Reader>(model, needs, all.readings, shares.most); },
         [&](std::size_t i, Episode&& episode) {
-            merge(all.folds[all.fold_of(i)], std::move(episode.collected), i,
-                  i % shares.every == 0);
-            from_arrays.insert(episode.from_arrays.begin(), episode.from_arrays.end());
-            for (const Index predicate : labelled)
-                if (std::find(episode.from_arrays.begin(), episode.from_arrays.end(), predicate) ==
-                    episode.from_arrays.end())
-                    from_spec.insert(predicate);
-            all.episodes.push_back(std::move(static_cast<episodes::Recorded&>(episode)));
+            merge(all.folds[all.fold_of(i)], std::move(episode), i, i % shares.every == 0);
         });
     if (!done) return std::nullopt;
-    for (const Index predicate : from_arrays)
-        if (!from_spec.contains(predicate)) all.from_arrays.push_back(predicate);
     return all;
 }
 

@@ -1,7 +1,7 @@
 // What fitting takes of the episodes: per fold the moments of points, and some of their frames.
-// Takes: a model, and episodes in order. Gives: for every fitted thing what its method needs.
-// Keeps true: all of it is read in one pass; an episode is in one fold; the number of threads and
-// the order in which episodes finish do not count.
+// Takes: a model, and episodes. Gives: for every fitted thing what its method needs. Keeps true:
+// all of it is collected in one pass; an episode is in one fold; the content of the episodes alone
+// counts, neither their names nor their order, nor the number of threads.
 #pragma once
 
 #include <optional>
@@ -11,16 +11,14 @@
 #include "check/model/model.hpp"
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
-#include "episodes/recording.hpp"
 #include "fit/algebra/moments.hpp"
 #include "fit/even_frames.hpp"
+#include "fit/readings.hpp"
 #include "fit/request.hpp"
 
 namespace etlc::fit {
 
-using check::Index;
-
-/// Episodes are dealt to so many folds, one after the other.
+/// Episodes are dealt to so many folds by their content, as episodes/folds.hpp deals them.
 inline constexpr std::size_t kFolds = 5;
 
 /// Frames of a target set are taken from so many of all episodes, or one of each.
@@ -69,16 +67,21 @@ struct Collected {
 
 /// What was read of all episodes.
 struct Collection {
-    std::vector<episodes::Recorded> episodes;   ///< in order
-    std::vector<Index> from_arrays;             ///< predicates labelled by arrays in all
+    Readings readings;
     std::vector<std::vector<Collected>> folds;  ///< by fold, then by need
 
     std::size_t fold_of(std::size_t episode) const { return episode % folds.size(); }
 };
 
-/// Nothing where the sink now says why.
+/// A predicate whose distance is measured, and the one whose labels it is to tell apart.
+struct Measured {
+    Index predicate = 0;
+    Index label = 0;
+};
+
+/// `measured`: for whom the episodes are gone through again. Nothing where the sink now says why.
 std::optional<Collection> collect(const check::Model& model, const std::vector<Need>& needs,
-                                  const std::vector<std::string>& paths, const Request& request,
+                                  const std::vector<Measured>& measured, const Request& request,
                                   diag::Sink& sink);
 
 /// The samples of a point without projections; false where one is missing or not finite.

@@ -61,7 +61,7 @@ bool chosen_by_arrays(const check::Model& model, const Fitted& fitted,
         const auto among = [&](const std::vector<Index>& all) {
             return std::find(all.begin(), all.end(), truth.predicate) != all.end();
         };
-        return among(predicates) && among(collection.from_arrays);
+        return among(predicates) && among(collection.readings.from_arrays());
     });
 }
 
@@ -81,7 +81,8 @@ fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const So
     entry.hash = fitted::content_hash(entry);
     entry.frames = solution.counts.holds;
     for (const Source* source : solution.medoids)
-        entry.medoids.push_back({collection.episodes[source->episode].hash, source->frame.step});
+        entry.medoids.push_back(
+            {collection.readings.episodes()[source->episode].hash, source->frame.step});
     return entry;
 }
 
@@ -103,9 +104,12 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     const std::vector<Index> predicates = separating_predicates(model, *labelled);
     for (const Index predicate : predicates)
         if (const auto need = plain_need(model, predicate)) needs.add(*need);
-    const auto collection = collect(model, needs.all, paths, request, sink);
+    std::vector<Measured> measured;
+    for (const Index predicate : predicates) measured.push_back({predicate, predicate});
+    const auto collection = collect(model, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    const auto recorded = episodes::recorded(collection->episodes);
+    const std::vector<episodes::Recorded>& read = collection->readings.episodes();
+    const auto recorded = episodes::recorded(read);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -114,8 +118,6 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     const FilledAll filled = fill_all(model, solver, true, !predicates.empty(), request.jobs);
     const Filled& all = *filled.all;
     if (!report(all, sink)) return std::nullopt;
-    std::vector<Measured> measured;
-    for (const Index predicate : predicates) measured.push_back({predicate, predicate});
     const auto separations = separate(filled.without, solver, measured, request, sink);
     if (!separations) return std::nullopt;
 
@@ -125,7 +127,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     for (std::size_t i = 0; i < all.solutions.size(); ++i)
         result.file.entries[all.model.fitted[i].name] =
             entry_of(all.model, all.model.fitted[i], all.solutions[i], *collection);
-    for (const episodes::Recorded& episode : collection->episodes) {
+    for (const episodes::Recorded& episode : read) {
         result.file.episodes.push_back(episode.hash);
         result.file.recordings[episode.hash] = episode.content;
     }

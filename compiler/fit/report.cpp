@@ -83,7 +83,7 @@ std::string worst_frames(const check::Model& model, const Collection& collection
     std::string text = fmt::format("Worst frames of '{}', one of an episode:\n", name);
     for (const WorstFrame& frame : separation.worst)
         text += fmt::format("  {} step {}: it {}, and ranks beyond {:.0f} % of those where it {}\n",
-                            collection.episodes[frame.episode].path, frame.step,
+                            collection.readings.episodes()[frame.episode].path, frame.step,
                             frame.positive ? "holds" : "does not hold", 100 * (1 - frame.ordered),
                             frame.positive ? "does not" : "does");
     return text;
@@ -94,10 +94,11 @@ std::string worst_frames(const check::Model& model, const Collection& collection
 std::string report(const check::Model& model, const Collection& collection,
                    const std::vector<Solution>& solutions, const Separations& separations) {
     std::uint64_t frames = 0;
-    for (const episodes::Recorded& episode : collection.episodes) frames += episode.frames;
-    std::string text =
-        fmt::format("Fitted on {}, {}:\n", counted(collection.episodes.size(), "episode"),
-                    counted(frames, "frame"));
+    for (const episodes::Recorded& episode : collection.readings.episodes())
+        frames += episode.frames;
+    std::string text = fmt::format("Fitted on {}, {}:\n",
+                                   counted(collection.readings.episodes().size(), "episode"),
+                                   counted(frames, "frame"));
     for (std::size_t i = 0; i < solutions.size(); ++i)
         text += fitted_report(model.fitted[i], solutions[i]);
     if (!separations.why_not.empty())

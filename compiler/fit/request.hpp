@@ -1,6 +1,7 @@
 // What `etlc fit` is asked for.
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <string>
 #include <vector>
@@ -18,6 +19,8 @@ struct Request {
     std::string version;  ///< of etlc
     /// Called now and then, by any thread, never by two at once.
     std::function<void(std::size_t done, std::size_t total)> progress;
+    /// Bytes of frames that are kept in memory, all episodes together; the others are read again.
+    std::size_t most_kept = std::size_t{256} << 20U;
 };
 
 }  // namespace etlc::fit

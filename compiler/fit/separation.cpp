@@ -6,9 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <set>
-#include <unordered_map>
 
-#include "episodes/leaks.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/replay.hpp"
 #include "plan/plan.hpp"
@@ -58,34 +56,22 @@ std::optional<Vector> mean_of(const Needs& needs, const std::optional<Need>& nee
 class Measurer {
 public:
     Measurer(const check::Model& model, const std::vector<std::unique_ptr<Fold>>& folds,
-             const std::unordered_map<std::string, std::size_t>& index,
-             const Collection& collection, const std::vector<Measured>& predicates,
-             const data::NamesInFile& names)
-        : folds_(folds),
-          index_(index),
-          collection_(collection),
-          predicates_(predicates),
-          no_leaks_(model, {}),
-          names_(names) {
-        std::set<Index> labels;
-        for (const Measured& one : predicates) labels.insert(one.label);
-        for (const auto& fold : folds) {
+             const Collection& collection, const std::vector<Measured>& predicates)
+        : folds_(folds), collection_(collection), predicates_(predicates) {
+        for (const auto& fold : folds)
             followers_.push_back(std::make_unique<episodes::Follower>(fold->plan));
-            wanted_.push_back(episodes::wanted(fold->model, {&fold->plan},
-                                               {labels.begin(), labels.end()}, no_leaks_));
-        }
         for (const Measured& one : predicates) plain_.push_back(plain_need(model, one.predicate));
     }
 
     diag::Result<Episode> score(const std::string& path) {
-        const std::size_t episode = index_.at(path);
+        const std::size_t episode = collection_.readings.index_of(path);
         const std::size_t at = collection_.fold_of(episode);
-        auto recording = episodes::Recording::open(wanted_[at], path, names_);
-        if (!recording) return recording.failure();
+        const auto frames = collection_.readings.open(episode);
+        if (!frames) return frames.failure();
         Episode result(predicates_.size());
-        const auto done = episodes::replay(*recording, {followers_[at].get()}, [&] {
+        const auto done = episodes::replay(**frames, {followers_[at].get()}, [&] {
             for (std::size_t i = 0; i < predicates_.size(); ++i)
-                add(*folds_[at], *followers_[at], *recording, episode, i, result[i]);
+                add(*folds_[at], *followers_[at], **frames, episode, i, result[i]);
             return true;
         });
         if (!done) return done.failure();
@@ -93,34 +79,30 @@ public:
     }
 
 private:
-    void add(const Fold& fold, const episodes::Follower& follower,
-             const episodes::Recording& recording, std::size_t episode, std::size_t i,
-             Ranked& ranked) {
-        const Label label = recording.label(predicates_[i].label);
+    void add(const Fold& fold, const episodes::Follower& follower, const episodes::Frames& frames,
+             std::size_t episode, std::size_t i, Ranked& ranked) {
+        const Label label = frames.label(predicates_[i].label);
         if (label == Label::unknown) return;
         const bool positive = label == Label::yes;
-        const std::size_t step = recording.frames() - 1;
+        const auto number = static_cast<std::uint32_t>(episode);
+        const std::size_t step = frames.frames() - 1;
         const float delta = follower.evaluator().distance(predicates_[i].predicate);
         const bool upper = fold.model.predicates[predicates_[i].predicate].upper_bound();
         if (!std::isnan(delta))
-            ranked.after.push_back({upper ? delta : -delta, positive, episode, step});
+            ranked.after.push_back({{upper ? -delta : delta, number, positive}, step});
         if (!plain_[i] || !fold.means[i] ||
-            !read_point(fold.model, plain_[i]->point, recording.samples(), point_))
+            !read_point(fold.model, plain_[i]->point, frames.samples(), point_))
             return;
         const Eigen::Map<const Eigen::VectorXf> point(point_.data(),
                                                       static_cast<Eigen::Index>(point_.size()));
         const double squared = (point.cast<double>() - *fold.means[i]).squaredNorm();
-        ranked.before.push_back({static_cast<float>(squared), positive, episode, step});
+        ranked.before.push_back({{-static_cast<float>(squared), number, positive}, step});
     }
 
     const std::vector<std::unique_ptr<Fold>>& folds_;
-    const std::unordered_map<std::string, std::size_t>& index_;
     const Collection& collection_;
     const std::vector<Measured>& predicates_;
-    episodes::Leaks no_leaks_;
-    const data::NamesInFile& names_;
     std::vector<std::unique_ptr<episodes::Follower>> followers_;  ///< per fold
-    std::vector<episodes::Wanted> wanted_;                        ///< per fold
     std::vector<std::optional<Need>> plain_;                      ///< per predicate
     std::vector<float> point_;
 };
@@ -215,15 +197,9 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
         folds.push_back(std::make_unique<Fold>(
             Fold{fold.model, plan::measuring(fold.model, measures), std::move(means)}));
     }
-    std::unordered_map<std::string, std::size_t> index;
-    std::vector<std::string> paths;
-    for (const episodes::Recorded& episode : collection.episodes) {
-        index.emplace(episode.path, paths.size());
-        paths.push_back(episode.path);
-    }
+    const std::vector<std::string> paths = collection.readings.paths();
     const auto measured = episodes::over_episodes<Episode>(paths, request, sink, [&] {
-        return std::make_unique<Measurer>(model, folds, index, collection, predicates,
-                                          request.names);
+        return std::make_unique<Measurer>(model, folds, collection, predicates);
     });
     if (!measured) return std::nullopt;
     for (std::size_t i = 0; i < predicates.size(); ++i) {

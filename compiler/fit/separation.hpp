@@ -47,12 +47,6 @@ struct Separations {
     std::vector<Separation> all;
     std::string why_not;
 };
-/// A predicate whose distance is measured, and the one whose labels it is to tell apart.
-struct Measured {
-    Index predicate = 0;
-    Index label = 0;
-};
-
 /// `folds`: filled without each fold.
 std::optional<Separations> separate(const std::vector<Filled>& folds, const Solver& solver,
                                     const std::vector<Measured>& predicates, const Request& request,

@@ -162,7 +162,7 @@ private:
                             "takes frames of both classes in two episodes at least, and a "
                             "variance within the classes; 'where' holds in {} of {}",
                             solution_.counts.episodes,
-                            counted(solver_.collection_.episodes.size(), "episode"))};
+                            counted(solver_.collection_.readings.episodes().size(), "episode"))};
         const Moments all = moments();
         solution_.constant = all.constants();
         if (fitted_.slot == Fitted::Slot::metric) {
@@ -176,23 +176,34 @@ private:
                        "classes have the same mean"};
     }
 
-    /// Each fold tested with what is fitted on the others.
+    /// Each fold tested with what is fitted on others: without it and the one that is left out. If
+    /// none is, each of them is in turn, where enough are left: the same trials are those of fits
+    /// without a fold.
     std::vector<Trial> trials() const {
+        constexpr std::size_t kEnough = 4;
+        const std::size_t folds = solver_.collection_.folds.size();
+        std::vector<std::optional<std::size_t>> left_out{part_.first};
+        if (!part_.first && folds >= kEnough) left_out.assign(folds, std::nullopt);
+        for (std::size_t f = 0; left_out.size() > 1 && f < folds; ++f) left_out[f] = f;
+        std::vector<Moments> mapped;
+        if (!maps_.empty())
+            for (const auto& fold : solver_.collection_.folds)
+                mapped.push_back(moments_of(fold[part_.need]));
         std::vector<Trial> result;
-        if (maps_.empty()) {
-            for (std::size_t f = 0; f < solver_.collection_.folds.size(); ++f)
-                if (part_.first != f) result.push_back(solver_.trial(part_, f));
-            return result;
-        }
-        std::vector<Moments> folds;
-        for (const Collected* fold : folds_) folds.push_back(moments_of(*fold));
-        for (const Moments& test : folds) {
-            Moments training(test.dimension());
-            for (const Moments& fold : folds)
-                if (&fold != &test) training.merge(fold);
-            result.push_back(fit::trials(training, {&test}).front());
-        }
+        for (const std::optional<std::size_t> without : left_out)
+            for (std::size_t test = 0; test < folds; ++test)
+                if (without != test)
+                    result.push_back(maps_.empty() ? solver_.trial({part_.need, without, {}}, test)
+                                                   : trial(mapped, without, test));
         return result;
+    }
+
+    static Trial trial(const std::vector<Moments>& folds, std::optional<std::size_t> without,
+                       std::size_t test) {
+        Moments training(folds[test].dimension());
+        for (std::size_t f = 0; f < folds.size(); ++f)
+            if (f != test && without != f) training.merge(folds[f]);
+        return fit::trials(training, {&folds[test]}).front();
     }
 
     /// As it is once it is rounded.

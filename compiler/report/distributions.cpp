@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kBins = 60;
 constexpr double kPicture = 256;  ///< parts of a side of the curves' picture
 
-using evaluate::Scored;
+using episodes::Scored;
 
 std::vector<Scored> finite_frames(const evaluate::Judgement& judgement, std::size_t i) {
     std::vector<Scored> frames;

@@ -8,7 +8,6 @@
 
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/counts.hpp"
-#include "evaluate/ranking.hpp"
 
 namespace etlc::evaluate {
 namespace {
@@ -90,30 +89,6 @@ TEST(Rates, OfClaimsThatDoNotLook) {
             expect_near(blind.recall, rates(counts).recall);
             expect_near(blind.agreement, rates(counts).agreement);
         }
-    }
-}
-
-TEST(Ranking, CountsPairsOfFrames) {
-    std::mt19937 random(3);
-    for (int round = 0; round < 300; ++round) {
-        std::vector<Scored> frames(random() % 40);
-        for (Scored& frame : frames)  // ties are common
-            frame = {static_cast<float>(random() % 8), static_cast<std::uint32_t>(random() % 5),
-                     random() % 3 == 0};
-        std::vector<std::uint32_t> weights(5);
-        for (std::uint32_t& weight : weights) weight = random() % 4;
-        double won = 0;
-        double pairs = 0;
-        for (const Scored& a : frames) {
-            for (const Scored& b : frames) {
-                if (!a.positive || b.positive) continue;
-                const double times = static_cast<double>(weights[a.episode]) * weights[b.episode];
-                pairs += times;
-                won += times * (a.score > b.score ? 1 : a.score == b.score ? 0.5 : 0);
-            }
-        }
-        expect_near(Ranking(frames).auroc(weights),
-                    pairs == 0 ? std::nullopt : std::optional(won / pairs));
     }
 }
 

@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """against_sklearn_test.py ETLC: every method of `etlc fit` on one set of episodes, compared with
-scikit-learn, or with its definition in numpy; the same bytes for any number of threads."""
+scikit-learn, or with its definition in numpy; the same bytes for any number of threads, whatever
+the files are called and in whatever order they are given."""
 import json
 import pathlib
 import re
@@ -95,11 +96,15 @@ def check_targets(fitted, entries, frames, holds, episodes):
     best = KMeans(6, n_init=10, random_state=0).fit(points).inertia_
     assert squared <= 1.02 * best, f"kmeans: {squared / best:.4f} times the objective of sklearn"
 
-    hashes = entries["episodes"]
+    assert len(set(entries["episodes"])) == len(episodes)
+    known = {}  # by hash, which episode it is
     for row, medoid in zip(fitted["anchors"], entries["entries"]["anchors"]["medoids"]):
-        z, x = episodes[hashes.index(medoid["episode"])]
         step = medoid["step"]
-        assert (z[step] == row).all(), "a medoid is the frame that the file names"
+        (found,) = [i for i, (z, _) in enumerate(episodes) if (z[step] == row).all()]
+        assert medoid["episode"] in entries["episodes"]
+        assert known.setdefault(medoid["episode"], found) == found, "one hash, one episode"
+        assert list(known.values()).count(found) == 1, "one episode, one hash"
+        z, x = episodes[found]
         around = x[max(0, step - 4) : step + 5]
         assert (around <= 0).all(), f"a medoid is 4 steps away from a change: {around}"
 
@@ -111,8 +116,8 @@ def main(etlc):
         (folder / "grasp.etl").write_text(SPEC)
         episodes = make_episodes(folder / "demos", np.random.default_rng(3))
 
-        def fit(output, *options):
-            call = [etlc, "fit", "grasp.etl", "--data", "demos", "-o", output, *options]
+        def fit(output, *options, data=("demos",)):
+            call = [etlc, "fit", "grasp.etl", "--data", *data, "-o", output, *options]
             return subprocess.run(
                 call, cwd=folder, check=True, stdout=subprocess.PIPE, text=True
             ).stdout
@@ -121,6 +126,14 @@ def main(etlc):
         assert fit("two.npz", "-j", "2") == report
         one, two = ((folder / n).read_bytes() for n in ("grasp.fitted.npz", "two.npz"))
         assert one == two, "the same bytes for 1 and 2 threads"
+        shuffled = [str(path.relative_to(folder)) for path in (folder / "demos").iterdir()]
+        shuffled.sort(key=lambda path: path[::-1])
+        for number, path in enumerate(shuffled):  # and under other names
+            (folder / path).rename(folder / f"{number:03}.npz")
+        names = [f"{number:03}.npz" for number in range(len(shuffled))]
+        for data in (names, names[::-1]):
+            fit("other.npz", data=data)
+            assert (folder / "other.npz").read_bytes() == one, "the content alone counts"
 
         frames = np.concatenate([z for z, _ in episodes]).astype(float)
         holds = np.concatenate([x <= 0 for _, x in episodes])

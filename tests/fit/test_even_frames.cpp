@@ -1,7 +1,6 @@
 // Frames taken from an episode: evenly, at most so many, and away from where a truth changes.
 #include <gtest/gtest.h>
 
-#include "episodes/auroc.hpp"
 #include "fit/even_frames.hpp"
 
 namespace etlc::fit {
@@ -42,21 +41,6 @@ TEST(EvenFrames, AreEvenlySpaced) {
         EXPECT_GE(steps[i] - steps[i - 1], 100U);
         EXPECT_LE(steps[i] - steps[i - 1], 200U);
     }
-}
-
-TEST(Auroc, CountsPairsOfAGroupAndTiesHalf) {
-    using Frames = std::vector<episodes::RankedFrame>;
-    // The least score is the likeliest positive; the second group is of another scale.
-    std::vector<Frames> groups{Frames{{1, true, 0, 0}, {2, false, 0, 1}, {2, true, 0, 2}},
-                               Frames{{70, false, 1, 0}, {80, true, 1, 1}}};
-    const auto found = episodes::auroc(groups, 2);
-    ASSERT_TRUE(found);
-    EXPECT_EQ(found->value, (1 + 0.5 + 0) / 3);
-    EXPECT_FALSE(found->interval) << "two episodes do not give one";
-    EXPECT_EQ(groups[0][0].ordered, 1);
-    EXPECT_EQ(groups[1][0].ordered, 0);
-    std::vector<Frames> alike{Frames{{1, true, 0, 0}, {2, true, 0, 1}}};
-    EXPECT_FALSE(episodes::auroc(alike, 1));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "fit/algebra/affine.hpp"
 
@@ -18,6 +19,8 @@ public:
     Vector solve(const Vector& right) const;
     /// S^-1, symmetric.
     Matrix inverse() const;
+    /// The memory, for another one.
+    Matrix release() && { return std::move(lower_); }
 
 private:
     explicit Cholesky(Matrix lower) : lower_(std::move(lower)) {}

@@ -28,13 +28,23 @@ double separation(const Moments& moments, const Vector& direction) {
     return apart / std::sqrt(variance + std::numeric_limits<double>::min());
 }
 
-/// `within`: its covariance within classes.
-std::optional<Affine> discriminant(const Moments& moments, const Matrix& within, double shrinkage) {
+void shrink(Matrix& covariance, double shrinkage) {
+    const double mean = covariance.trace() / static_cast<double>(covariance.rows());
+    covariance *= 1 - shrinkage;
+    covariance.diagonal().array() += shrinkage * mean;
+}
+
+/// `within`: its covariance within classes. `room`: memory for another such matrix.
+std::optional<Affine> discriminant(const Moments& moments, const Matrix& within, double shrinkage,
+                                   Matrix& room) {
     if (!has_both(moments)) return std::nullopt;
-    const auto cholesky = Cholesky::of(shrunk(within, shrinkage));
+    room = within;
+    shrink(room, shrinkage);
+    auto cholesky = Cholesky::of(std::move(room));
     const Vector apart = moments.mean(kHolds) - moments.mean(0);
     if (!cholesky || apart.isZero(0)) return std::nullopt;
     const Vector direction = cholesky->solve(apart);
+    room = std::move(*cholesky).release();
     return Affine{direction.transpose() / std::sqrt(direction.dot(apart)),
                   (moments.mean(0) + moments.mean(kHolds)) / 2};
 }
@@ -66,9 +76,8 @@ Components principal_components(const Variances& variances, Eigen::Index r, bool
 }
 
 Matrix shrunk(const Matrix& covariance, double shrinkage) {
-    Matrix result = (1 - shrinkage) * covariance;
-    result.diagonal().array() +=
-        shrinkage * covariance.trace() / static_cast<double>(covariance.rows());
+    Matrix result = covariance;
+    shrink(result, shrinkage);
     return result;
 }
 
@@ -83,15 +92,17 @@ std::optional<Matrix> metric(const Moments& moments, double shrinkage) {
 }
 
 std::optional<Affine> discriminant(const Moments& moments, double shrinkage) {
-    return discriminant(moments, covariance_within(moments), shrinkage);
+    Matrix room;
+    return discriminant(moments, covariance_within(moments), shrinkage, room);
 }
 
 std::vector<Trial> trials(const Moments& training, const std::vector<const Moments*>& tests) {
     std::vector<Trial> result(tests.size());
     if (!has_both(training)) return result;
     const Matrix within = covariance_within(training);
+    Matrix room;
     for (std::size_t i = 0; i < kShrinkages.size(); ++i) {
-        const auto direction = discriminant(training, within, kShrinkages[i]);
+        const auto direction = discriminant(training, within, kShrinkages[i], room);
         if (!direction) continue;
         for (std::size_t t = 0; t < tests.size(); ++t)
             if (has_both(*tests[t])) result[t][i] = separation(*tests[t], direction->a.transpose());

@@ -30,11 +30,11 @@ void Mean::merge(const Mean& other) {
     mean += static_cast<double>(other.n) / static_cast<double>(n) * (other.mean - mean);
 }
 
-Scatter Scatter::of(Eigen::Ref<Matrix> frames) {
-    Scatter result{Mean::of(frames), Matrix::Zero(frames.rows(), frames.rows())};
-    frames.colwise() -= result.all.mean;
-    add_products(frames, 1, result.lower);
-    return result;
+void Scatter::set(Eigen::Ref<Matrix> frames) {
+    all = Mean::of(frames);
+    lower.setZero(frames.rows(), frames.rows());
+    frames.colwise() -= all.mean;
+    add_products(frames, 1, lower);
 }
 
 void Scatter::merge(const Scatter& other) {

@@ -33,8 +33,8 @@ struct Scatter {
     Mean all;
     Matrix lower;
 
-    /// Changes the frames.
-    static Scatter of(Eigen::Ref<Matrix> frames);
+    /// That of these frames, which change.
+    void set(Eigen::Ref<Matrix> frames);
     void merge(const Scatter& other);
 };
 /// The class of frames at which `where` holds; the others are of class 0.

@@ -201,13 +201,13 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
                                    const Request& request, Suggested& suggested, diag::Sink& sink) {
     fix_order_of_sums();
     const Needs needs = needs_of(spec);
-    const auto collection = collect(spec, needs.all, request.episodes, request, sink);
+    const auto collection = collect(spec, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    episodes::admit(spec, episodes::recorded(collection->episodes), {}, {}, request.allow_overlap,
-                    sink);
+    episodes::admit(spec, episodes::recorded(collection->readings.episodes()), {}, {},
+                    request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
-    suggested.episodes = collection->episodes.size();
-    for (const episodes::Recorded& episode : collection->episodes)
+    suggested.episodes = collection->readings.episodes().size();
+    for (const episodes::Recorded& episode : collection->readings.episodes())
         suggested.frames += episode.frames;
     suggested.folds = collection->folds.size();
     if (suggested.folds < 2) {

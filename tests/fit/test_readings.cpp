@@ -1,0 +1,108 @@
+// What is kept of the episodes in memory changes nothing but time: with all of it kept, with none,
+// and with room for some, `etlc fit` gives the same bytes.
+#include <fmt/format.h>
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <random>
+
+#include "checking.hpp"
+#include "fit/fit.hpp"
+
+namespace etlc::fit {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kEpisodes = 7;
+constexpr std::size_t kSteps = 90;
+
+const char* const kSpec = R"(
+spec t;
+input z : f32[3];
+input x : f32;
+input seen : bool;
+projection L = fitted(discriminant, r = 1, of = z, where = p);
+target anchors = fitted(medoids, k = 3, away = 1, of = z, where = p && q);
+predicate p = min l2(L(z), anchors) <= calibrated(f1);
+predicate q = x <= 5;
+predicate both = min l2(z, anchors) + x <= 5;
+truth p = x > 0 && (H[0,2] seen || x > 1);
+truth both = x > -1;
+monitor m = F (p && q && both);
+)";
+
+/// Drifting points, some of their samples missing.
+class Episodes {
+public:
+    Episodes() : folder_(fs::temp_directory_path() / fmt::format("readings.{}", ::getpid())) {
+        fs::create_directories(folder_);
+        std::mt19937 random(5);
+        const auto number = [&] { return static_cast<double>(random() % 2000) / 1000 - 1; };
+        for (std::size_t e = 0; e < kEpisodes; ++e) {
+            request.episodes.push_back((folder_ / fmt::format("{}.csv", e)).string());
+            std::ofstream file(request.episodes.back());
+            file << "z[0],z[1],z[2],x,seen\n";
+            double x = 0;
+            for (std::size_t t = 0; t < kSteps + e; ++t) {
+                x += number();
+                const bool gone = random() % 20 == 0;
+                file << (gone ? std::string(",,")
+                              : fmt::format("{},{},{}", x + number(), number(), number() - x))
+                     << ',' << (random() % 20 == 0 ? "" : fmt::format("{}", x)) << ','
+                     << random() % 2 << '\n';
+            }
+        }
+    }
+    Episodes(const Episodes&) = delete;
+    Episodes& operator=(const Episodes&) = delete;
+    ~Episodes() { fs::remove_all(folder_); }
+
+    Request request;
+
+private:
+    fs::path folder_;
+};
+
+/// The file and the report.
+std::string fitted(const check::Model& model, const Request& request) {
+    diag::Sink sink;
+    const auto result = fit(model, request, sink);
+    if (!result) return "";
+    return fitted::write(result->file) + result->report;
+}
+
+TEST(Readings, AreTheSameFromMemoryAndFromFiles) {
+    check::Options options;
+    options.allow_unfitted = true;
+    options.allow_uncalibrated = true;
+    const Checked spec(kSpec, options);
+    ASSERT_TRUE(spec.model) << spec.diagnostics();
+    Episodes episodes;
+    const std::string all_kept = fitted(*spec.model, episodes.request);
+    ASSERT_NE(all_kept.find("both"), std::string::npos) << all_kept;
+    for (const std::size_t bytes : {std::size_t{0}, std::size_t{6000}, std::size_t{20000}}) {
+        episodes.request.most_kept = bytes;
+        for (const unsigned jobs : {1U, 3U}) {
+            episodes.request.jobs = jobs;
+            EXPECT_EQ(fitted(*spec.model, episodes.request), all_kept) << bytes << " bytes";
+        }
+    }
+}
+
+TEST(Room, IsNeverOverdrawn) {
+    Room room(100);
+    EXPECT_FALSE(room.take(11, 10));
+    EXPECT_FALSE(room.take(UINT64_MAX, 10)) << "more than there are bytes to count";
+    EXPECT_TRUE(room.take(9, 10));
+    EXPECT_FALSE(room.take(2, 10));
+    room.give_back(10);
+    EXPECT_TRUE(room.take(2, 10));
+    EXPECT_FALSE(room.take(1, 1));
+}
+
+}  // namespace
+}  // namespace etlc::fit
