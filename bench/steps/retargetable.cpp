@@ -15,7 +15,9 @@ BENCH_RETARGETABLE(example)
 BENCH_RETARGETABLE(gauge)
 BENCH_RETARGETABLE(grasp)
 BENCH_RETARGETABLE(hover)
+BENCH_RETARGETABLE(short_rows)
 
+#include "of_short_rows.hpp"
 #include "stepped.hpp"
 
 namespace bench {
@@ -56,7 +58,8 @@ Retargetable retargetable(const std::string& name) {
         take<Hover, hover::Params>(name, "hover", result) ||
         take<Belt, belt::Params>(name, "belt", result) ||
         take<Gauge, gauge::Params>(name, "gauge", result) ||
-        take<Grasp, grasp::Params>(name, "grasp", result))
+        take<Grasp, grasp::Params>(name, "grasp", result) ||
+        take<ShortRows, short_rows::Params>(name, "short_rows", result))
         return result;
     throw std::logic_error("no example is called " + name);
 }

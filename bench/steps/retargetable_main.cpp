@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "of_short_rows.hpp"
 #include "retargetable.hpp"
 #include "stepped.hpp"
 #include "timing.hpp"
@@ -46,4 +47,5 @@ int main(int argc, char** argv) {
     print<bench::Belt>(effort);
     print<bench::Gauge>(effort);
     print<bench::Grasp>(effort);
+    print<bench::ShortRows>(effort);
 }

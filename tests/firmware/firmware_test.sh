@@ -73,7 +73,8 @@ done
 cmp "$box/cortex_m4_retarget.txt" "$box/rv32_retarget.txt" || fail "the boards retarget otherwise"
 if [ "$(uname -m)" = x86_64 ] && grep -qw fma /proc/cpuinfo; then
     sh "$loop/run.sh" "$box" host retarget >/dev/null
-    cmp "$box/cortex_m4_retarget.txt" "$box/host_retarget.txt" || fail "the host retargets otherwise"
+    cmp "$box/cortex_m4_retarget.txt" "$box/host_retarget.txt" ||
+        fail "the host retargets otherwise"
 fi
 awk '$1 == "parameters" { $2 == "00000000" ? taken++ : refused++ }
      $1 == "trial" && $2 == "00000050" && $3 > "00000000" && $4 > "00000000" { differing++ }

@@ -193,7 +193,7 @@ void swap_and_keep(unsigned seed) {
         const Monitor::Atoms now = monitor.measure(sample.as<docking::Inputs>());
         const auto verdicts = monitor.judge(now);
         require_same(verdicts, twin.step(as_scalars(now, sample)), "a kept past");
-        for (unsigned m = 0; m < 8; ++m) {  // those that never begin anew by themselves
+        for (unsigned m = 0; m < 8; ++m) {  // those that never begin again by themselves
             const etlmon::Verdict& old = named(before).entries[m].verdict;
             const etlmon::Verdict& next = named(verdicts).entries[m].verdict;
             if (old.final())
