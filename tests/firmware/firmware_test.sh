@@ -123,10 +123,11 @@ END
             fail "$prefix$spec has data that changes"
         read -r text constants <<<"$("${prefix}size" -A "$box/$spec.o" | awk '
             $1 ~ /^\.text/ { t += $2 } $1 ~ /^\.s?rodata/ { c += $2 } END { print t + 0, c + 0 }')"
-        state=$(grep -o 'kStateBytes = [0-9]*' "$box/$spec.hpp" | grep -o '[0-9]*$')
+        state=$(sed -n 's/.*kStateBytes = \([0-9]*\);.*/\1/p
+                        s/.*kStateBytes = .*with_pointer(\([0-9]*\)).*/\1 + 4/p' "$box/$spec.hpp")
         stack=$(awk '{ if ($(NF - 1) > most) most = $(NF - 1) } END { print most }' "$box/$spec.su")
         printf '%-22s %-17s code %5d  constants %5d  state %4d  deepest frame %4d\n' "$prefix" \
-            "$spec" "$text" "$constants" "$state" "$stack"
+            "$spec" "$text" "$constants" "$((state))" "$stack"
     done
 }
 objects riscv64-unknown-elf- --specs=picolibc.specs -march=rv32imafc -mabi=ilp32f

@@ -33,6 +33,10 @@ void require(bool holds, const char* what) {
     std::exit(1);
 }
 
+double wide(float x) {
+    return static_cast<double>(x);
+}
+
 /// The samples of a step, some of them missing; near the targets, so that predicates turn.
 struct Sample {
     float z[32], w[7], v[33], x, y, charge;
@@ -131,7 +135,7 @@ void compare_with_plain(unsigned which) {
                 const etlmon::Verdict& y = b.entries[m].verdict;
                 if (!same_bits(x.robustness, y.robustness))
                     std::printf("%s at step %d: %g, %g\n", a.entries[m].name, step,
-                                double{x.robustness}, double{y.robustness});
+                                wide(x.robustness), wide(y.robustness));
                 require(same_bits(x.robustness, y.robustness), "robustness");
                 require(x.satisfied() == y.satisfied() && x.violated() == y.violated(), "status");
                 require(!x.final() || y.final(), "final of a retargetable class alone");
@@ -165,9 +169,9 @@ void require_same(const A& a, const B& b, const char* what) {
         if (same_bits(one.entries[m].verdict, other.entries[m].verdict)) continue;
         const auto& x = one.entries[m].verdict;
         const auto& y = other.entries[m].verdict;
-        std::printf("%s: %g [%g, %g] %u, %g [%g, %g] %u\n", one.entries[m].name,
-                    double{x.robustness}, double{x.lower}, double{x.upper}, x.status,
-                    double{y.robustness}, double{y.lower}, double{y.upper}, y.status);
+        std::printf("%s: %g [%g, %g] %u, %g [%g, %g] %u\n", one.entries[m].name, wide(x.robustness),
+                    wide(x.lower), wide(x.upper), x.status, wide(y.robustness), wide(y.lower),
+                    wide(y.upper), y.status);
         require(false, what);
     }
 }
