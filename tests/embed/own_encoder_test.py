@@ -58,6 +58,19 @@ def main():
         satisfied = [row for row in rows if "satisfied" in row.values()]
         assert len(rows) == FRAMES and len(satisfied) == FRAMES - FIRST_AT_BAY, rows
 
+    # Parameters of a retargetable class are by an encoder: those by another, with the same rows, are
+    # of the same shape, and it refuses them.
+    call(ETLC, "look.etl", "--retargetable", "-o", "look.hpp")
+    ours = pathlib.Path("look.params.bin").read_bytes()
+    pathlib.Path("encoder.py").write_text(CODE + "# changed\n")
+    call(ETLC, "embed", "look.etl", "--encoder-cmd", "/usr/bin/python3 encoder.py")
+    call(ETLC, "look.etl", "--emit", "params", "-o", "theirs.bin")
+    theirs = pathlib.Path("theirs.bin").read_bytes()
+    assert ours[:24] == theirs[:24] and ours[64:] == theirs[64:], "shape and rows are the same"
+    assert ours[24:32] != theirs[24:32], "the encoder is another"
+    encoder = int.from_bytes(ours[24:32], "little")
+    assert f"kEncoder = 0x{encoder:016x}u" in pathlib.Path("look.hpp").read_text()
+
     Image.fromarray(grey).save("bay/2.png")
     done = subprocess.run([ETLC, "run", "look.etl", "--trace", "episodes/one.npz"],
                           capture_output=True, text=True)
