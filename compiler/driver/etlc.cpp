@@ -4,8 +4,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <new>
-#include <stdexcept>
 
 #include "data/files/file.hpp"
 #include "data/traces/trace.hpp"
@@ -20,6 +18,7 @@
 #include "driver/fleet/options.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/incident/options.hpp"
+#include "driver/manual/manual.hpp"
 #include "driver/options/calibrate_options.hpp"
 #include "driver/options/command_line.hpp"
 #include "driver/options/compile_options.hpp"
@@ -35,6 +34,7 @@
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
 #include "driver/run/run.hpp"
+#include "driver/with_specs.hpp"
 #include "library/open.hpp"
 #include "library/version.hpp"
 #include "report/page.hpp"
@@ -66,36 +66,12 @@ struct Call {
     driver::IncidentRequest incident;
 };
 
-enum class SpecWarnings : std::uint8_t { told, dropped };
+using driver::SpecWarnings;
 
-/// Reads the specs and does `work` with them; the exit status.
 template <class Work>
 int with_specs(const Call& call, const std::vector<std::string>& paths, SpecWarnings of_spec,
                const Work& work) {
-    const bool warnings_are_errors = !call.warnings.empty();
-    std::vector<diag::Sink> sinks(paths.size(), diag::Sink(warnings_are_errors));
-    std::vector<source::File> files(paths.size());
-    // What was found so far is told as well.
-    const auto report_lack = [&] {
-        sinks[0].report(data::in_file(
-            {diag::Code::out_of_memory, "there is not enough memory for this"}, paths[0]));
-    };
-    try {
-        bool all_read = true;
-        for (std::size_t i = 0; i < paths.size(); ++i)
-            all_read = library::read_spec(paths[i], files[i], sinks[i]) && all_read;
-        if (all_read) work(files, sinks);
-    } catch (const std::bad_alloc&) {
-        report_lack();
-    } catch (const std::length_error&) {
-        report_lack();
-    }
-    int status = driver::kDone;
-    for (std::size_t i = 0; i < paths.size(); ++i) {
-        if (of_spec == SpecWarnings::dropped) sinks[i].drop_warnings_of_spec();
-        status = std::max(status, driver::conclude(call.diagnostics, files[i], sinks[i]));
-    }
-    return status;
+    return driver::with_specs(paths, {call.diagnostics, !call.warnings.empty(), of_spec}, work);
 }
 
 /// The same with one spec.
@@ -130,17 +106,16 @@ void name_files_beside(Call& call) {
     call.request.targets_file = std::filesystem::path(call.output.targets).filename().string();
 }
 
+/// A line for each.
+std::string other_commands();
+
 int compile_command(int argc, char** argv) {
     Call call;
     CLI::App app(
-        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class out.\n"
-        "Other commands: etlc run SPEC.etl --trace FILE, etlc fit SPEC.etl --data FILE...,\n"
-        "etlc embed SPEC.etl --data FILE... -o FOLDER,\n"
-        "etlc calibrate SPEC.etl --data FILE..., etlc evaluate SPEC.etl... --data FILE...,\n"
-        "etlc crossvalidate SPEC.etl... --data FILE..., etlc merge PART...,\n"
-        "etlc explain SPEC.etl --trace FILE, etlc incident FILE --spec SPEC.etl,\n"
-        "etlc report SPEC.etl --data FILE... -o PAGE.html,\n"
-        "etlc --explain CODE",
+        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class "
+        "out.\nOther commands:\n" +
+            other_commands() +
+            "  etlc --explain CODE\n  etlc --completion bash|zsh|fish\n  etlc --man",
         "etlc");
     app.footer(kExitStatus);
     app.set_version_flag("--version", fmt::format("etlc {}", library::kVersion));
@@ -349,21 +324,48 @@ int incident_command(int argc, char** argv) {
     });
 }
 
+struct Command {
+    std::string_view name;
+    std::string_view takes;  ///< at least
+    driver::CommandFunction call;
+};
+constexpr Command kCommands[] = {
+    {"run", "SPEC.etl --trace FILE", run_command},
+    {"embed", "SPEC.etl --data FILE... -o FOLDER", embed_command},
+    {"fit", "SPEC.etl --data FILE...", fit_command},
+    {"calibrate", "SPEC.etl --data FILE...",
+     [](int argc, char** argv) { return calibrate_command(argc, argv); }},
+    {"evaluate", "SPEC.etl... --data FILE...",
+     [](int argc, char** argv) { return evaluate_command(argc, argv, false); }},
+    {"crossvalidate", "SPEC.etl... --data FILE...",
+     [](int argc, char** argv) { return evaluate_command(argc, argv, true); }},
+    {"merge", "PART...", merge_command},
+    {"explain", "SPEC.etl --trace FILE", explain_command},
+    {"incident", "FILE --spec SPEC.etl", incident_command},
+    {"report", "SPEC.etl --data FILE... -o PAGE.html", report_command}};
+
+std::string other_commands() {
+    std::string text;
+    for (const Command& command : kCommands)
+        text += fmt::format("  etlc {} {}\n", command.name, command.takes);
+    return text;
+}
+
+std::vector<driver::CommandHelp> all_help() {
+    std::vector<driver::CommandHelp> all{driver::help_of(compile_command)};
+    for (const Command& command : kCommands) all.push_back(driver::help_of(command.call));
+    return all;
+}
+
 int execute(int argc, char** argv) {
-    const std::string_view command = argc > 1 ? argv[1] : "";
-    if (command == "run") return run_command(argc - 1, argv + 1);
-    if (command == "evaluate") return evaluate_command(argc - 1, argv + 1, false);
-    if (command == "crossvalidate") return evaluate_command(argc - 1, argv + 1, true);
-    if (command == "explain") return explain_command(argc - 1, argv + 1);
-    if (command == "report") return report_command(argc - 1, argv + 1);
-    if (command == "incident") return incident_command(argc - 1, argv + 1);
-    if (command == "embed") return embed_command(argc - 1, argv + 1);
-    if (command == "fit") return fit_command(argc - 1, argv + 1);
-    if (command == "merge") return merge_command(argc - 1, argv + 1);
-    if (command == "calibrate") return calibrate_command(argc - 1, argv + 1);
+    const std::string_view word = argc > 1 ? argv[1] : "";
+    for (const Command& command : kCommands)
+        if (command.name == word) return command.call(argc - 1, argv + 1);
     // With a spec it is an option of the class that is made.
-    if (command == "--explain" && argc == 3 && driver::is_code(argv[2]))
+    if (word == "--explain" && argc == 3 && driver::is_code(argv[2]))
         return driver::explain_code_command(argv[2]);
+    if (word == "--completion" && argc == 3) return driver::completion_command(argv[2], all_help());
+    if (word == "--man" && argc == 2) return driver::manual_command(all_help());
     return compile_command(argc, argv);
 }
 

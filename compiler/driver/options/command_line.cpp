@@ -6,6 +6,7 @@
 #include <sstream>
 
 #include "diag/render.hpp"
+#include "driver/manual/help.hpp"
 #include "driver/output.hpp"
 #include "driver/output_file.hpp"
 #include "driver/process.hpp"
@@ -42,6 +43,7 @@ int fulfil(const CLI::App& app, const CLI::Success& wish) {
 }  // namespace
 
 std::optional<int> parse_arguments(CLI::App& app, int argc, char** argv) {
+    tell_help(app, argc, argv);
     try {
         app.parse(argc, argv);
     } catch (const CLI::Success& wish) {  // --help, --version

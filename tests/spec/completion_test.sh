@@ -1,0 +1,108 @@
+#!/usr/bin/env bash
+# completion_test.sh ETLC: completion offers every command and every option that --help lists, and
+# the words that an option takes; the manual page has them too, and groff does not complain of it.
+set -euo pipefail
+etlc=$1
+box=$(mktemp -d)
+trap 'rm -rf "$box"' EXIT
+cd "$box"
+fail() { echo "FAILED: $*" >&2; exit 1; }
+
+"$etlc" --help >help
+mapfile -t commands < <(sed -n 's/^  etlc \([a-z]*\) .*/\1/p' help)
+[ "${#commands[@]}" -ge 10 ] || fail "these are all commands? ${commands[*]}"
+
+# names_in HELP: each name of each option, one a line.
+names_in() {
+    sed -n 's/^  \(-[^ ]*\).*/\1/p' "$1" | sed 's/{.*//' | tr ',' '\n' | LC_ALL=C sort
+}
+# choices_in HELP: "--values robustness boolean", one option a line.
+choices_in() {
+    sed -n 's/^  \(-[^ ]*\) [^ ]*:\([a-z0-9|][a-z0-9|]*\).*/\1 \2/p' "$1" |
+        sed 's/{[^ ]*//; s/^-[^ ]*,//' | tr '|' ' '
+}
+
+# ---- bash
+"$etlc" --completion bash >etlc.bash
+source ./etlc.bash
+# completed WORD...: what bash would offer for the last one, one a line.
+completed() {
+    COMP_WORDS=(etlc "$@") COMP_CWORD=$#
+    _etlc
+    [ "${#COMPREPLY[@]}" = 0 ] || printf '%s\n' "${COMPREPLY[@]}" | LC_ALL=C sort
+}
+expect() {
+    local expected=$1
+    shift
+    [ "$(completed "$@" | tr '\n' ' ')" = "$expected" ] ||
+        fail "etlc $* <TAB> offers $(completed "$@" | tr '\n' ' '), expected $expected"
+}
+mkdir -p here/folder
+cd here
+touch a.etl b.csv 'with blank.etl'
+expect "$(printf '%s\n' a.etl folder 'with blank.etl' "${commands[@]}" | LC_ALL=C sort |
+    tr '\n' ' ')" ''
+expect 'calibrate crossvalidate ' c
+expect 'a.etl folder with blank.etl ' run ''
+expect 'a.etl b.csv folder with blank.etl ' run a.etl --trace ''
+expect 'b.csv ' run a.etl --trace b
+expect 'folder ' embed a.etl -o ''
+expect 'robustness ' run --values r
+expect 'boolean ' run --values = b
+expect 'boolean robustness ' run --values =
+expect 'host portable ' a.etl --standalone =
+expect 'a.etl folder with blank.etl ' a.etl --standalone ''
+expect '' run --max-work ''
+expect 'bash fish zsh ' --completion ''
+rm -r -- *
+
+# ---- all that --help lists
+"$etlc" --completion zsh >_etlc
+"$etlc" --completion fish >etlc.fish
+"$etlc" --man >etlc.1
+groff -man -Tascii -P-cbou -rLL=200n -ww etlc.1 >page 2>warnings || fail "groff: $(cat warnings)"
+[ ! -s warnings ] || fail "groff: $(cat warnings)"
+section_of() { # its part of the page
+    awk -v name="   etlc${1:+ }$1" '/^[A-Z]/ {on = (name == "   etlc" && $0 == "OPTIONS")}
+        /^   [a-z]/ {on = $0 == name} on' page
+}
+checked=0
+for command in '' "${commands[@]}"; do
+    "$etlc" $command --help >"help.$command"
+    { names_in "help.$command"; [ -n "$command" ] || printf '%s\n' --completion --man; } |
+        LC_ALL=C sort >names
+    diff names <(completed $command -) || fail "bash: < etlc $command --help lists, > is offered"
+    section_of "$command" >section
+    while read -r name; do
+        grep -qE -- "^ +.*(^|[ ,])$name([ ,=[]|\$)" section || fail "the page: etlc $command $name"
+        checked=$((checked + 1))
+    done <names
+    while read -r name words; do
+        expect "$(tr ' ' '\n' <<<"$words" | LC_ALL=C sort | tr '\n' ' ')" $command "$name" = 
+    done < <(choices_in "help.$command" | grep '^--')
+    if command -v fish >/dev/null; then
+        fish --no-config -c "source etlc.fish; complete -C 'etlc $command -'; \
+            complete -C 'etlc $command --'" 2>/dev/null | sed 's/\t.*//; s/=$//' |
+            LC_ALL=C sort -u >offered
+        diff <(grep -v -- '^-.$' names) <(grep '^--' offered) ||
+            fail "fish: < etlc $command --help lists, > is offered"
+    fi
+done
+[ "$checked" -gt 150 ] || fail "only $checked options were compared"
+if command -v zsh >/dev/null; then
+    zsh -n _etlc || fail "zsh"
+    # What its functions are told: a line for each name of an option.
+    zsh -f -c '_describe() { print -l -- "$2" >/dev/null }
+        _arguments() { print -l -- "$@" }
+        words=(etlc "$1" x) CURRENT=3; source ./_etlc' zsh run >told
+    while read -r name; do
+        grep -qE -- "\)$name\[|\*$name\[|^$name\[" told || fail "zsh: etlc run $name"
+    done < <(names_in help.run)
+fi
+
+# ---- calls that are wrong
+for call in '--completion tcsh' '--completion' '--man now'; do
+    status=0
+    "$etlc" $call >out 2>err || status=$?
+    [ "$status" = 2 ] && [ ! -s out ] && [ -s err ] || fail "etlc $call: status $status"
+done
