@@ -1,8 +1,9 @@
 // A step through the C interface beside the same step of the evaluator that is behind it.
 // bench_library SPEC.etl...
-// Inputs are embeddings and scalars of float32, with random elements.
+// With random elements, which are there at every step.
 #include <etlc.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <random>
 #include <stdexcept>
@@ -10,6 +11,7 @@
 #include <vector>
 
 #include "diag/render.hpp"
+#include "etlmon/distance/widen.hpp"
 #include "library/open.hpp"
 #include "plan/evaluate/evaluator.hpp"
 #include "timing.hpp"
@@ -21,33 +23,76 @@ using namespace etlc;
 constexpr std::size_t kSteps = 1024;
 using Steps = std::vector<std::vector<plan::Sample>>;
 
-Steps random_steps(const check::Model& model) {
-    std::mt19937 random(1);
-    std::uniform_real_distribution<float> element(0, 1);
-    Steps steps(kSteps);
-    for (auto& samples : steps)
-        for (const check::Input& input : model.inputs) {
-            if (input.type != check::InputType::f32 && input.type != check::InputType::scalar)
-                throw std::runtime_error("input '" + input.name + "' is not of float32");
-            plan::Sample& sample = samples.emplace_back();
-            sample.present = true;
-            for (std::uint32_t i = 0; i < input.dimension; ++i)
-                sample.values.push_back(element(random));
-        }
-    return steps;
+/// A sample as a program has it, and as the evaluator takes it.
+struct Sample {
+    std::vector<unsigned char> bytes;
+    etlc_sample given;
+    plan::Sample taken;
+};
+
+template <class Element, class Random, class Widen>
+Sample sample_of(const check::Input& input, std::uint32_t type, Random random, Widen widen) {
+    std::vector<Element> elements;
+    for (std::uint32_t i = 0; i < input.dimension; ++i)
+        elements.push_back(static_cast<Element>(random()));
+    Sample sample;
+    const auto* const first = reinterpret_cast<const unsigned char*>(elements.data());
+    sample.bytes.assign(first, first + elements.size() * sizeof(Element));
+    sample.given = {nullptr, input.dimension, type};
+    sample.taken.present = true;
+    sample.taken.values.resize(input.dimension);
+    widen(elements.data(), sample.taken.values.data());
+    return sample;
 }
 
-/// The same, as the C interface takes them.
-std::vector<std::vector<etlc_sample>> given(const Steps& steps) {
-    std::vector<std::vector<etlc_sample>> all;
-    for (const auto& samples : steps) {
-        auto& step = all.emplace_back();
-        for (const plan::Sample& sample : samples)
-            step.push_back(
-                {sample.values.data(), static_cast<std::uint32_t>(sample.values.size()), ETLC_F32});
+Sample random_sample(const check::Input& input, std::mt19937& random) {
+    const std::uint32_t n = input.dimension;
+    std::uniform_real_distribution<float> element(0, 1);
+    const auto copy = [n](const auto* from, float* to) { std::copy(from, from + n, to); };
+    switch (input.type) {
+        case check::InputType::boolean:
+            return sample_of<std::uint8_t>(
+                input, ETLC_BOOL, [&] { return random() % 2; }, copy);
+        case check::InputType::f16:  // from 0.125 to 1
+            return sample_of<std::uint16_t>(
+                input, ETLC_F16, [&] { return 0x3000 + random() % 0xc00; },
+                [n](const std::uint16_t* from, float* to) { etlmon::widen_f16(from, to, n); });
+        case check::InputType::i8:
+            return sample_of<std::int8_t>(
+                input, ETLC_I8, [&] { return static_cast<int>(random() % 256) - 128; },
+                [n, &input](const std::int8_t* from, float* to) {
+                    etlmon::widen_i8(from, input.scale, to, n);
+                });
+        case check::InputType::f32:
+        case check::InputType::scalar: break;
     }
-    return all;
+    return sample_of<float>(
+        input, ETLC_F32, [&] { return element(random); }, copy);
 }
+
+/// The same steps for both.
+struct Trace {
+    explicit Trace(const check::Model& model) {
+        std::mt19937 random(1);
+        for (std::size_t step = 0; step < kSteps; ++step) {
+            auto& of_step = samples.emplace_back();
+            for (const check::Input& input : model.inputs)
+                of_step.push_back(random_sample(input, random));
+        }
+        for (const auto& of_step : samples) {
+            taken.emplace_back();
+            given.emplace_back();
+            for (const Sample& sample : of_step) {
+                taken.back().push_back(sample.taken);
+                given.back().push_back(
+                    {sample.bytes.data(), sample.given.count, sample.given.type});
+            }
+        }
+    }
+    std::vector<std::vector<Sample>> samples;
+    Steps taken;
+    std::vector<std::vector<etlc_sample>> given;
+};
 
 void compare(const std::string& path) {
     source::File file;
@@ -55,8 +100,7 @@ void compare(const std::string& path) {
     std::optional<pipeline::Compiled> compiled;
     if (library::read_spec(path, file, sink)) compiled = library::compile(file, {}, {}, sink);
     if (!compiled) throw std::runtime_error(diag::render_text(file, sink));
-    const Steps steps = random_steps(*compiled->model);
-    const auto samples = given(steps);
+    const Trace trace(*compiled->model);
 
     plan::Evaluator evaluator(compiled->plan);
     etlc_options options = ETLC_OPTIONS;
@@ -66,12 +110,13 @@ void compare(const std::string& path) {
     std::vector<etlc_verdict> verdicts(compiled->plan.monitors.size());
     const auto series = bench::measure({{"evaluator",
                                          [&] {
-                                             for (const auto& step : steps) evaluator.step(step);
+                                             for (const auto& step : trace.taken)
+                                                 evaluator.step(step);
                                          },
                                          kSteps},
                                         {"etlc_step",
                                          [&] {
-                                             for (const auto& step : samples)
+                                             for (const auto& step : trace.given)
                                                  etlc_step(session, step.data(), step.size(),
                                                            verdicts.data(), verdicts.size());
                                          },

@@ -213,13 +213,14 @@ class Monitor:
         self, one: Input, elements: np.ndarray, sample: Any, place: int
     ) -> Callable[[Any], None]:
         name, missing = one.name, self._missing
-        as_element = conversion.as_bool if one.dtype == np.bool_ else conversion.as_number
-        fast = (bool,) if one.dtype == np.bool_ else (float, np.float32, np.float64)
+        is_bool = one.dtype == np.bool_
+        as_element = conversion.as_bool if is_bool else conversion.as_number
+        fast = (bool, np.bool_) if is_bool else (float, np.float32, np.float64)
         view = memoryview(elements)
 
         def put(value: Any) -> None:
             if value.__class__ in fast:
-                view[0] = value
+                view[0] = bool(value) if is_bool else value
             elif value is None:
                 self._mark_missing(name, sample)
                 return
