@@ -184,7 +184,8 @@ ETLC_EXPORT etlc_status etlc_find(etlc_session session, uint32_t kind, const cha
 
 /* ---- stepping ------------------------------------------------------------------------------- */
 
-/* One input at one step. Its elements are read during the call and never kept. */
+/* One input at one step. Its elements are aligned for their type, are read during the call, and are
+ * never kept. */
 typedef struct etlc_sample {
   const void *data; /* null: missing */
   uint32_t count;   /* elements: the input's dimension */

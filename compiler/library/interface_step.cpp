@@ -28,6 +28,16 @@ etlc_status check_elements(const check::Input& input, std::uint32_t type, std::u
     return ETLC_OK;
 }
 
+etlc_status check_aligned(const check::Input& input, const void* data, std::int64_t stride) {
+    const auto place = reinterpret_cast<std::uintptr_t>(data);
+    const std::uint32_t bytes = kBytes[type_of(input)];
+    if (place % bytes == 0 && stride % static_cast<std::int64_t>(bytes) == 0) return ETLC_OK;
+    return refuse(ETLC_WRONG_VALUE,
+                  "input '{}' begins at {:#x} with a stride of {} bytes: its elements of {} bytes "
+                  "are not aligned",
+                  input.name, place, stride, bytes);
+}
+
 etlc_status check_bool(const check::Input& input, const void* data) {
     const std::uint8_t found = *static_cast<const std::uint8_t*>(data);
     if (input.type != check::InputType::boolean || found <= 1) return ETLC_OK;
@@ -97,13 +107,9 @@ etlc_status check_column(const check::Input& input, const etlc_column& column,
     if (const etlc_status status = check_elements(input, column.type, column.count);
         status != ETLC_OK)
         return status;
-    const auto place = reinterpret_cast<std::uintptr_t>(column.data);
-    const std::uint32_t bytes = kBytes[column.type];
-    if (place % bytes != 0 || column.stride % static_cast<std::int64_t>(bytes) != 0)
-        return refuse(ETLC_WRONG_VALUE,
-                      "input '{}' begins at {:#x} with a stride of {} bytes: its elements of {} "
-                      "bytes are not aligned",
-                      input.name, place, column.stride, bytes);
+    if (const etlc_status status = check_aligned(input, column.data, column.stride);
+        status != ETLC_OK)
+        return status;
     if (input.type != check::InputType::boolean) return ETLC_OK;
     const auto* flag = static_cast<const std::uint8_t*>(column.data);
     for (std::uint64_t step = 0; step < steps; ++step, flag += column.stride) {
@@ -144,6 +150,9 @@ etlc_status etlc_step(etlc_session session, const etlc_sample* samples, size_t s
             if (samples[i].data == nullptr) continue;
             if (const etlc_status status =
                     check_elements(inputs[i], samples[i].type, samples[i].count);
+                status != ETLC_OK)
+                return status;
+            if (const etlc_status status = check_aligned(inputs[i], samples[i].data, 0);
                 status != ETLC_OK)
                 return status;
             if (const etlc_status status = check_bool(inputs[i], samples[i].data);

@@ -241,7 +241,10 @@ class Monitor:
 
         def put(value: Any) -> None:
             if value.__class__ is np.ndarray and value.dtype == dtype and value.shape == shape:
-                view[:] = value
+                try:
+                    view[:] = value
+                except ValueError:  # it is not aligned: its buffer says another type
+                    elements[:] = value
             elif value is None:
                 self._mark_missing(name, sample)
                 return

@@ -145,6 +145,27 @@ class Stepping(unittest.TestCase):
             found = etlc.Monitor(text=DOCK).step(**samples(**{"charge": 0.75, **others}))
             self.assertEqual(repr(found), repr(expected), others)
 
+    def test_arrays_that_lie_elsewhere_give_the_same(self):
+        expected = etlc.Monitor(text=DOCK).step(**samples())
+        fixed = np.array([1, 0, 0], "f4")
+        fixed.flags.writeable = False
+        unaligned = np.zeros(1, [("pad", "u1"), ("z", "f4", 3)])["z"][0]
+        unaligned[:] = fixed
+        self.assertFalse(unaligned.flags.aligned)
+        grid = np.zeros((3, 3), "f4", order="F")
+        grid[1] = fixed
+        wide = np.array([1, 0, 0], np.longdouble)
+        for z in (fixed, unaligned, grid[1], grid.T[:, 1], wide):
+            found = etlc.Monitor(text=DOCK).step(**samples(z=z))
+            self.assertEqual(repr(found), repr(expected), z)
+
+    def test_what_float32_cannot_hold_is_missing(self):
+        dock = etlc.Monitor(text=DOCK)
+        dock.step(**samples(z=np.array([1e300, 0, 0]), charge=1e300))
+        dock.run(z=np.full((1, 3), -1e300), charge=np.array([np.float64(1e300)]))
+        self.assertEqual(dock.sample_counts("z")["missing"], 1)
+        self.assertEqual(dock.sample_counts("charge")["missing"], 1)
+
     def test_restarts_finishes_and_resets(self):
         dock = etlc.Monitor(text=DOCK)
         dock.step(**samples())
@@ -224,12 +245,23 @@ class Running(unittest.TestCase):
         twice = np.repeat(arrays["z"], 2, axis=0)
         packed = np.zeros(40, [("pad", "u1"), ("z", "f4", 3), ("byte", "i1", 2)])
         packed["z"], packed["byte"] = arrays["z"], arrays["byte"]
+        fixed = arrays["z"].copy()
+        fixed.flags.writeable = False
+        grid = np.zeros((40, 3, 2), "f4")
+        grid[:, :, 1] = arrays["z"]
         for z in (
             np.asfortranarray(arrays["z"]), wide[:, 2:5], twice[::2], packed["z"],
             np.ascontiguousarray(arrays["z"][::-1])[::-1], arrays["z"].astype("f8"),
-            arrays["z"].astype(">f4"), arrays["z"].tolist(),
+            arrays["z"].astype(">f4"), arrays["z"].tolist(), fixed, grid[:, :, 1],
+            arrays["z"].astype(np.longdouble),
         ):  # fmt: skip
             self.expect_same(etlc.Monitor(text=DOCK).run(arrays, z=z), stepped)
+        same = {"z": np.broadcast_to(np.array([1, 0, 0], "f4"), (40, 3))}
+        held = {"z": np.tile(np.array([1, 0, 0], "f4"), (40, 1))}
+        self.assertEqual(
+            etlc.Monitor(text=DOCK).run(arrays, **same).table.tobytes(),
+            etlc.Monitor(text=DOCK).run(arrays, **held).table.tobytes(),
+        )
         others = {"byte": packed["byte"], "stop": arrays["stop"].astype("i8")}
         self.expect_same(etlc.Monitor(text=DOCK).run(arrays, **others), stepped)
 
@@ -440,6 +472,9 @@ class Refusing(unittest.TestCase):
             lambda: dock.step(**samples()), lambda: dock.run(z=np.zeros((1, 3), "f4")),
             dock.reset, dock.finish, lambda: dock.position("visits"),
             lambda: dock.measure("at_bay"), lambda: dock.restart("visits"),
+            lambda: dock.observe("at_bay", 1.0, True), lambda: dock.sample_counts("z"),
+            lambda: dock.explain("visits"), lambda: dock.incidents, dock.close_incidents,
+            lambda: dock.lost_incidents, dock.forget_incidents,
         ):  # fmt: skip
             with self.assertRaisesRegex(etlc.ClosedError, "not open"):
                 call()

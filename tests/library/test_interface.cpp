@@ -144,6 +144,35 @@ TEST(Interface, WhatIsNotFiniteOrNotThereCountsAsMissing) {
     EXPECT_EQ(counts.missing, 1U);
 }
 
+TEST(Interface, EveryKindOfNotFiniteCountsAsMissing) {
+    Opened dock(options_of(kDock));
+    int missing = 0;
+    for (const float x : {NAN, -NAN, INFINITY, -INFINITY}) {
+        Seen seen;
+        seen.z[2] = x;
+        seen.charge = x;
+        for (const int half : {0x7e00, 0xfe00, 0x7c00, 0xfc00}) {
+            seen.half[1] = static_cast<std::uint16_t>(half);
+            ASSERT_EQ(dock.step(seen.samples()), ETLC_OK) << etlc_message();
+            ++missing;
+        }
+    }
+    for (const std::uint32_t input : {0U, 1U, 3U}) {
+        etlc_counts counts{};
+        ASSERT_EQ(etlc_count(dock, input, &counts), ETLC_OK);
+        EXPECT_EQ(counts.missing, static_cast<std::uint64_t>(missing)) << input;
+    }
+    float rows[2][3] = {{1, 0, NAN}, {1, 0, 0}};
+    etlc_column columns[6] = {};
+    columns[0] = {rows, nullptr, sizeof rows[0], 3, ETLC_F32};
+    std::vector<etlc_verdict> verdicts(6);
+    ASSERT_EQ(etlc_reset(dock), ETLC_OK);
+    ASSERT_EQ(etlc_run(dock, columns, 6, 2, verdicts.data(), 6), ETLC_OK);
+    etlc_counts counts{};
+    ASSERT_EQ(etlc_count(dock, 0, &counts), ETLC_OK);
+    EXPECT_EQ(counts.missing, 1U);
+}
+
 TEST(Interface, AlarmsRestartsAndResets) {
     Opened dock(options_of(kDock));
     Seen seen;

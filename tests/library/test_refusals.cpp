@@ -249,6 +249,9 @@ TEST(Refusals, SamplesOfOtherShapesAndTypes) {
     refused(2, {seen.z, 1, ETLC_F32}, ETLC_WRONG_TYPE, "expected 1 (ETLC_BOOL)");
     refused(3, {seen.half, 2, ETLC_I8}, ETLC_WRONG_TYPE, "expected 2 (ETLC_F16)");
     refused(4, {seen.byte, 2, ETLC_F32}, ETLC_WRONG_TYPE, "expected 3 (ETLC_I8)");
+    const char* const odd = reinterpret_cast<const char*>(seen.z) + 1;
+    refused(0, {odd, 3, ETLC_F32}, ETLC_WRONG_VALUE, "of 4 bytes are not aligned");
+    refused(3, {odd, 2, ETLC_F16}, ETLC_WRONG_VALUE, "of 2 bytes are not aligned");
     const std::uint8_t two = 2;
     refused(2, {&two, 1, ETLC_BOOL}, ETLC_WRONG_VALUE, "'stop' is the bool 2");
     std::vector<etlc_sample> fewer = seen.samples();
@@ -283,6 +286,11 @@ TEST(Refusals, ColumnsOfOtherShapesAndStrides) {
     expect_refused(run(0, {values, nullptr, 12, 3, ETLC_F32}, 5), ETLC_WRONG_NUMBER,
                    "room for 5 verdicts, expected 2 x 3");
     EXPECT_EQ(run(0, {values, nullptr, 0, 3, ETLC_F32}), ETLC_OK) << "the same at every step";
+    const etlc_column none[6] = {};
+    EXPECT_EQ(etlc_run(dock, none, 6, 0, verdicts, 0), ETLC_OK) << "no step";
+    expect_refused(etlc_run(dock, none, 6, ~std::uint64_t{0}, verdicts, 6), ETLC_WRONG_NUMBER,
+                   "room for 6 verdicts");
+    expect_refused(etlc_run(dock, none, 5, 2, verdicts, 6), ETLC_WRONG_NUMBER, "5 columns");
     EXPECT_EQ(run(0, {values + 3, nullptr, -12, 3, ETLC_F32}), ETLC_OK) << "backwards";
 }
 
