@@ -49,8 +49,10 @@ clashing 'namespace & { struct Inside; }' >namespaces.txt
 if [ -n "${ETLC_UPDATE:-}" ]; then
     "$check_names" field <namespaces.txt >new.txt  # the others are refused as fields already
     { grep -oE '"[^"]+"' "$table" | tr -d '"' || true; cat new.txt; } | LC_ALL=C sort -u |
-        sed 's/.*/"&",/' | tr '\n' ' ' | fold -s -w 98 | sed 's/^/    /; s/ *$//' >updated.inc
-    echo >>updated.inc
+        sed 's/.*/"&",/' | awk '  # as clang-format lays them out
+            NR > 1 && length(line) + 1 + length($0) > 100 { print line; line = "   " }
+            { line = line (NR > 1 ? " " : "") $0 }
+            END { print line }' >updated.inc
     cp updated.inc "$table"
     exit 0
 fi
