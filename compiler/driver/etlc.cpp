@@ -18,6 +18,7 @@
 #include "driver/fleet/options.hpp"
 #include "driver/incident/incident.hpp"
 #include "driver/incident/options.hpp"
+#include "driver/language_server.hpp"
 #include "driver/manual/manual.hpp"
 #include "driver/options/calibrate_options.hpp"
 #include "driver/options/command_line.hpp"
@@ -339,6 +340,7 @@ constexpr Command kCommands[] = {
      [](int argc, char** argv) { return evaluate_command(argc, argv, false); }},
     {"crossvalidate", "SPEC.etl... --data FILE...",
      [](int argc, char** argv) { return evaluate_command(argc, argv, true); }},
+    {"lsp", "", driver::language_server_command},
     {"merge", "PART...", merge_command},
     {"explain", "SPEC.etl --trace FILE", explain_command},
     {"incident", "FILE --spec SPEC.etl", incident_command},
@@ -347,7 +349,8 @@ constexpr Command kCommands[] = {
 std::string other_commands() {
     std::string text;
     for (const Command& command : kCommands)
-        text += fmt::format("  etlc {} {}\n", command.name, command.takes);
+        text += fmt::format("  etlc {}{}{}\n", command.name, command.takes.empty() ? "" : " ",
+                            command.takes);
     return text;
 }
 

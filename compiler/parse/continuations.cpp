@@ -70,27 +70,24 @@ private:
 class Probe {
 public:
     Probe(Tokens tokens, std::size_t end_offset) : tokens_(std::move(tokens)) {
-        auto last = std::make_unique<antlr4::CommonToken>(EtlLexer::IDENTIFIER);
-        last->setStartIndex(end_offset);
-        last->setStopIndex(end_offset);
-        probe_ = last.get();
-        tokens_.push_back(std::move(last));
-        auto eof = std::make_unique<antlr4::CommonToken>(static_cast<std::size_t>(Token::EOF));
-        eof->setStartIndex(end_offset);
-        tokens_.push_back(std::move(eof));
+        first_ = add(EtlLexer::IDENTIFIER, end_offset);
+        second_ = add(EtlLexer::IDENTIFIER, end_offset);
+        add(Token::EOF, end_offset);
     }
 
-    bool is_too_deep() const { return too_deep_at(tokens_, {0, tokens_.size() - 1}).has_value(); }
+    bool is_too_deep() const { return too_deep_at(tokens_, {0, tokens_.size() - 2}).has_value(); }
 
-    /// Nothing: it does not. Else the rules in which it stands, from the innermost, where it alone
-    /// tells.
-    std::optional<std::vector<std::size_t>> rules_of(std::size_t type) {
-        probe_->setType(type);
-        SliceStream stream(tokens_, {0, tokens_.size() - 1});
+    /// Nothing: it does not. Else the rules in which it stands, from the innermost. Where it could
+    /// be a name or another word, it is taken for a name, unless `following` tells.
+    std::optional<std::vector<std::size_t>> rules_of(std::size_t type,
+                                                     std::optional<std::size_t> following = {}) {
+        first_->setType(type);
+        second_->setType(following.value_or(EtlLexer::IDENTIFIER));
+        SliceStream stream(tokens_, {0, tokens_.size() - (following ? 1 : 2)});
         EtlParser parser(&stream);
         parser.removeErrorListeners();
         parser.setErrorHandler(std::make_shared<Stop>());
-        Watch watch(probe_);
+        Watch watch(first_);
         parser.addParseListener(&watch);
         try {
             parser.declaration();
@@ -101,8 +98,18 @@ public:
     }
 
 private:
+    antlr4::CommonToken* add(std::size_t type, std::size_t offset) {
+        auto token = std::make_unique<antlr4::CommonToken>(type);
+        token->setStartIndex(offset);
+        token->setStopIndex(offset);
+        auto* const added = token.get();
+        tokens_.push_back(std::move(token));
+        return added;
+    }
+
     Tokens tokens_;
-    antlr4::CommonToken* probe_;
+    antlr4::CommonToken* first_;
+    antlr4::CommonToken* second_;
 };
 
 bool has(const std::vector<std::size_t>& rules, std::size_t rule) {
@@ -184,19 +191,40 @@ bool is_typed(const Token& token, std::uint32_t offset, const source::File& befo
     return word && span_of(token).end == offset;
 }
 
+bool is_name_in(const std::vector<std::size_t>& rules) {
+    return !rules.empty() && rules.front() == EtlParser::RuleName;
+}
+
+/// Whether it is a word of the language here. A contextual word may be a name, which only what
+/// follows tells: what follows distances, functions and operators.
+bool is_word(Probe& probe, std::size_t type) {
+    const auto rules = probe.rules_of(type);
+    if (!rules) return false;
+    if (!is_name_in(*rules)) return true;
+    if (type < EtlLexer::RISE || (type > EtlLexer::HELD && type < EtlLexer::DISTANCE)) return false;
+    for (const std::size_t next :
+         {EtlLexer::LPAREN, EtlLexer::LBRACKET, EtlLexer::DISTANCE, EtlLexer::TRUE}) {
+        const auto longer = probe.rules_of(type, next);
+        if (longer && !longer->empty() && !is_name_in(*longer)) return true;
+    }
+    return false;
+}
+
 /// Fills in what the grammar says.
 void ask(Continuations& found, Tokens tokens, std::uint32_t offset) {
     const std::size_t declaration = tokens.empty() ? Token::EOF : tokens.front()->getType();
+    const std::size_t previous = tokens.empty() ? Token::EOF : tokens.back()->getType();
     Probe probe(std::move(tokens), offset);
     if (probe.is_too_deep()) return;
     for (std::size_t type = EtlLexer::SPEC; type < EtlLexer::IDENTIFIER; ++type) {
-        const auto rules = probe.rules_of(type);
-        // A contextual word that is taken as a name is none of the language here.
-        if (!rules || (!rules->empty() && rules->front() == EtlParser::RuleName)) continue;
+        if (!is_word(probe, type)) continue;
         for (std::string& word : spellings(type)) found.words.push_back(std::move(word));
     }
     if (const auto rules = probe.rules_of(EtlLexer::IDENTIFIER))
         found.role = role_in(*rules, declaration);
+    // Within [px, py].
+    const bool in_vector = previous == EtlLexer::LBRACKET || previous == EtlLexer::COMMA;
+    if (found.role == Role::point && in_vector) found.role = Role::scalar;
     const auto number = probe.rules_of(EtlLexer::NUMBER);
     found.number = number.has_value();
     found.in_interval = number && has(*number, EtlParser::RuleBound);
@@ -208,6 +236,7 @@ Continuations continuations_at(const source::File& file, std::uint32_t offset) {
     const source::File before(file.path(), std::string(file.text().substr(0, offset)));
     Continuations found;
     found.typed = {offset, offset};
+    found.begin = offset;
     Tokens tokens = tokens_of(before);
     tokens.pop_back();  // EOF
     const std::uint32_t end = tokens.empty() ? 0 : span_of(*tokens.back()).end;
@@ -222,6 +251,7 @@ Continuations continuations_at(const source::File& file, std::uint32_t offset) {
     if (std::any_of(tokens.begin(), tokens.end(), [](const auto& t) { return is_mistake(*t); }))
         return found;
     if (!tokens.empty()) {
+        found.begin = span_of(*tokens.front()).begin;
         found.declaration = text_of(*tokens.front(), before);
         if (tokens.back()->getType() == EtlLexer::NUMBER)
             found.number_before = text_of(*tokens.back(), before);

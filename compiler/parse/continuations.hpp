@@ -36,6 +36,7 @@ struct Continuations {
     Role role = Role::none;
     bool number = false;        ///< one may stand there
     bool in_interval = false;   ///< and is a bound
+    std::uint32_t begin = 0;    ///< of the declaration; the place, where none has begun
     std::string declaration;    ///< the word that began this declaration, "let"; empty: none has
     std::string number_before;  ///< the number before the place, of which a unit may follow
 };

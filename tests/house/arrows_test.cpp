@@ -39,8 +39,10 @@ const std::map<std::string, Names> kArrows = {
     {"evaluate", {"episodes", "pipeline"}},
     {"report", {"explain", "fit", "evaluate"}},
     {"library", {"parse", "explain", "pipeline"}},
+    {"lsp", {"library"}},
     {"driver",
-     {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report"}},
+     {"library", "parse", "emit", "explain", "embed", "fit", "calibrate", "evaluate", "report",
+      "lsp"}},
 };
 
 /// The typed model is where the syntax tree ends: these do not see it, although arrows lead there.

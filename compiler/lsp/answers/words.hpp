@@ -1,0 +1,31 @@
+// What the words of the language mean, in a line each.
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+namespace etlc::lsp {
+
+struct WordInfo {
+    enum class Kind : std::uint8_t {
+        declaration,
+        keyword,
+        type,
+        unit,
+        operation,
+        aggregation,
+        function,
+        distance,
+    };
+    std::string_view word;
+    Kind kind;
+    std::string_view form;  ///< how it is written: "F[a, b] f"
+    std::string_view meaning;
+};
+
+const std::vector<WordInfo>& all_words();
+/// Null: no word of the language.
+const WordInfo* find_word(std::string_view word);
+
+}  // namespace etlc::lsp

@@ -1,0 +1,281 @@
+#include "lsp/protocol/session.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "lsp/answers/diagnostics.hpp"
+
+namespace etlc::lsp {
+
+namespace {
+
+bool is_id(const Json& id) {
+    return id.is_string() || id.is_number_integer();
+}
+
+bool is_true(const Json* found) {
+    return found != nullptr && found->is_boolean() && found->get<bool>();
+}
+
+/// The client's encodings are in the order of its wishes; bytes are what etlc counts in.
+Encoding encoding_for(const Json& params) {
+    const Json* const offered = find_path(params, "capabilities/general/positionEncodings");
+    if (offered == nullptr || !offered->is_array()) return Encoding::utf16;
+    const bool has_utf8 = std::find(offered->begin(), offered->end(), "utf-8") != offered->end();
+    return has_utf8 ? Encoding::utf8 : Encoding::utf16;
+}
+
+Json capabilities(Encoding encoding) {
+    return {{"positionEncoding", encoding == Encoding::utf8 ? "utf-8" : "utf-16"},
+            {"textDocumentSync",
+             {{"openClose", true}, {"change", 2}, {"save", {{"includeText", false}}}}},
+            {"hoverProvider", true},
+            {"definitionProvider", true},
+            {"referencesProvider", true},
+            {"documentHighlightProvider", true},
+            {"renameProvider", {{"prepareProvider", true}}},
+            {"completionProvider", {{"triggerCharacters", {"[", "(", ","}}}},
+            {"documentSymbolProvider", true},
+            {"codeActionProvider", {{"codeActionKinds", {"quickfix"}}}},
+            {"documentFormattingProvider", true}};
+}
+
+Client client_of(const Json& params) {
+    Client client;
+    const Json* const document = find_path(params, "capabilities/textDocument");
+    if (document == nullptr) return client;
+    client.related_places = is_true(find_path(*document, "publishDiagnostics/relatedInformation"));
+    client.hierarchical_symbols =
+        is_true(find_path(*document, "documentSymbol/hierarchicalDocumentSymbolSupport"));
+    const Json* const formats = find_path(*document, "hover/contentFormat");
+    client.hover_in_markdown =
+        formats != nullptr && formats->is_array() &&
+        std::find(formats->begin(), formats->end(), "markdown") != formats->end();
+    return client;
+}
+
+}  // namespace
+
+void Session::receive(const Frame& frame) {
+    if (!frame.mistake.empty())
+        return respond_error(nullptr, ErrorCode::parse_error, frame.mistake);
+    if (nests_too_deep(frame.content))
+        return respond_error(nullptr, ErrorCode::parse_error, "the message nests too deep");
+    const Json message = Json::parse(frame.content, nullptr, false);
+    if (message.is_discarded())
+        return respond_error(nullptr, ErrorCode::parse_error, "the message is not JSON");
+    receive(message);
+}
+
+void Session::receive(const Json& message) {
+    const Json* const id = find(message, "id");
+    const Json* const method = find(message, "method");
+    const Json* const version = find(message, "jsonrpc");
+    const bool is_response =
+        find(message, "result") != nullptr || find(message, "error") != nullptr;
+    if (method == nullptr && id != nullptr && is_response) return;  // of nothing that we asked
+    const Json known_id = id != nullptr && is_id(*id) ? *id : Json();
+    const bool is_sound = version != nullptr && *version == "2.0" && method != nullptr &&
+                          method->is_string() && (id == nullptr || is_id(*id));
+    if (!is_sound)
+        return respond_error(known_id, ErrorCode::invalid_request,
+                             "this is no request or notification of JSON-RPC 2.0");
+    static const Json kNone = Json::object();
+    const Json* const params = find(message, "params");
+    const auto& name = method->get_ref<const std::string&>();
+    if (id != nullptr)
+        answer(*id, name, params != nullptr ? *params : kNone);
+    else
+        take_note(name, params != nullptr ? *params : kNone);
+}
+
+void Session::answer(const Json& id, const std::string& method, const Json& params) {
+    try {
+        Json result = result_of(method, params);
+        send_({{"jsonrpc", "2.0"}, {"id", id}, {"result", std::move(result)}});
+    } catch (const Refusal& refusal) {
+        respond_error(id, refusal.code, refusal.message);
+    } catch (const std::bad_alloc&) {
+        respond_error(id, ErrorCode::request_failed, "there is not enough memory for this");
+    }
+}
+
+Json Session::result_of(const std::string& method, const Json& params) {
+    if (life_ == Life::new_born && method != "initialize")
+        throw Refusal{ErrorCode::server_not_initialized, "expected 'initialize' first"};
+    if (life_ == Life::shut_down)
+        throw Refusal{ErrorCode::invalid_request, "expected 'exit' after 'shutdown'"};
+    const auto found = requests().find(method);
+    if (found == requests().end())
+        throw Refusal{ErrorCode::method_not_found, fmt::format("there is no '{}' here", method)};
+    return (this->*found->second)(params);
+}
+
+void Session::take_note(const std::string& method, const Json& params) {
+    if (method == "exit") return exit(params);
+    if (life_ != Life::running) return;
+    const auto found = notifications().find(method);
+    if (found == notifications().end()) return;
+    try {
+        (this->*found->second)(params);
+    } catch (const Refusal& refusal) {
+        log(fmt::format("{}: {}", method, refusal.message));
+    } catch (const std::bad_alloc&) {
+        log(fmt::format("{}: there is not enough memory for this", method));
+    }
+}
+
+void Session::respond_error(const Json& id, ErrorCode code, const std::string& message) {
+    send_({{"jsonrpc", "2.0"},
+           {"id", id},
+           {"error", {{"code", static_cast<std::int32_t>(code)}, {"message", message}}}});
+}
+
+void Session::log(const std::string& message) {
+    send_({{"jsonrpc", "2.0"},
+           {"method", "window/logMessage"},
+           {"params", {{"type", 2}, {"message", message}}}});
+}
+
+const std::map<std::string_view, Session::Request>& Session::requests() {
+    static const std::map<std::string_view, Request> all{
+        {"initialize", &Session::initialize},
+        {"shutdown", &Session::shutdown},
+        {"textDocument/hover", &Session::hover},
+        {"textDocument/definition", &Session::definition},
+        {"textDocument/references", &Session::references},
+        {"textDocument/documentHighlight", &Session::highlights},
+        {"textDocument/prepareRename", &Session::prepare_rename},
+        {"textDocument/rename", &Session::rename},
+        {"textDocument/completion", &Session::completion},
+        {"textDocument/documentSymbol", &Session::symbols},
+        {"textDocument/codeAction", &Session::code_actions},
+        {"textDocument/formatting", &Session::formatting},
+    };
+    return all;
+}
+
+const std::map<std::string_view, Session::Notification>& Session::notifications() {
+    static const std::map<std::string_view, Notification> all{
+        {"textDocument/didOpen", &Session::opened},
+        {"textDocument/didChange", &Session::changed},
+        {"textDocument/didSave", &Session::saved},
+        {"textDocument/didClose", &Session::closed},
+        {"workspace/didChangeWatchedFiles", &Session::files_changed},
+    };
+    return all;
+}
+
+// ---- the life of a session ----------------------------------------------------------------------
+
+Json Session::initialize(const Json& params) {
+    if (life_ != Life::new_born)
+        throw Refusal{ErrorCode::invalid_request, "the session is initialized already"};
+    life_ = Life::running;
+    encoding_ = encoding_for(params);
+    client_ = client_of(params);
+    return {{"capabilities", capabilities(encoding_)}, {"serverInfo", {{"name", "etlc"}}}};
+}
+
+Json Session::shutdown(const Json& /*params*/) {
+    life_ = Life::shut_down;
+    return nullptr;
+}
+
+void Session::exit(const Json& /*params*/) {
+    exit_status_ = status_at_end();
+}
+
+// ---- documents ----------------------------------------------------------------------------------
+
+Document& Session::document_of(const Json& params) {
+    const auto found = documents_.find(uri_of(params));
+    if (found == documents_.end())
+        throw Refusal{ErrorCode::invalid_params, "this document is not open"};
+    return found->second;
+}
+
+namespace {
+
+/// Versions are for the client alone.
+std::int64_t version_of(const Json& document) {
+    const Json* const found = find(document, "version");
+    return found != nullptr && found->is_number_integer() ? found->get<std::int64_t>() : 0;
+}
+
+}  // namespace
+
+void Session::opened(const Json& params) {
+    const Json& document = member(params, "textDocument");
+    const std::string& uri = text_of(document, "uri");
+    documents_.insert_or_assign(
+        uri, Document(uri, text_of(document, "text"), version_of(document), encoding_));
+}
+
+void Session::changed(const Json& params) {
+    Document& document = document_of(params);
+    const Json& changes = member(params, "contentChanges");
+    if (!changes.is_array())
+        throw Refusal{ErrorCode::invalid_params, "'contentChanges' is not a list"};
+    document.set_version(version_of(member(params, "textDocument")));
+    for (const Json& change : changes) {
+        const std::string& text = text_of(change, "text");
+        const Json* const range = find(change, "range");
+        if (range == nullptr || range->is_null())
+            document.replace(text);
+        else
+            document.replace(range_of(*range), text);
+    }
+}
+
+void Session::saved(const Json& params) {
+    document_of(params).forget();  // thresholds may have been made for it since
+}
+
+void Session::closed(const Json& params) {
+    const std::string uri = document_of(params).uri();
+    documents_.erase(uri);
+    send_({{"jsonrpc", "2.0"},
+           {"method", "textDocument/publishDiagnostics"},
+           {"params", {{"uri", uri}, {"diagnostics", Json::array()}}}});
+}
+
+void Session::files_changed(const Json& /*params*/) {
+    for (auto& [uri, document] : documents_) document.forget();
+}
+
+void Session::publish(Document& document) {
+    document.is_news = false;
+    const Analysis& analysis = document.analysis();
+    send_({{"jsonrpc", "2.0"},
+           {"method", "textDocument/publishDiagnostics"},
+           {"params",
+            {{"uri", document.uri()},
+             {"version", document.version()},
+             {"diagnostics", diagnostics_of(analysis, document.planned(), document.uri(),
+                                            client_.related_places)}}}});
+}
+
+void Session::catch_up() {
+    if (life_ != Life::running) return;
+    for (auto& [uri, document] : documents_)
+        if (document.is_news) publish(document);
+}
+
+bool Session::has_idle_work() const {
+    return life_ == Life::running &&
+           std::any_of(documents_.begin(), documents_.end(),
+                       [](const auto& entry) { return !entry.second.is_planned; });
+}
+
+void Session::do_idle_work() {
+    for (auto& [uri, document] : documents_) {
+        if (document.is_planned) continue;
+        document.plan();
+        break;  // messages may have come
+    }
+    catch_up();
+}
+
+}  // namespace etlc::lsp
