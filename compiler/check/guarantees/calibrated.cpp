@@ -40,8 +40,7 @@ const Method* find_method(Context& c, const ast::Name& name) {
     auto& error = c.report(Code::unknown_method, name.span,
                            fmt::format("'{}' is not a calibration method; expected {}", name.text,
                                        diag::alternatives(names)));
-    if (const auto near = diag::nearest_name(name.text, names))
-        diag::did_you_mean(error, *near);
+    if (const auto near = diag::nearest_name(name.text, names)) diag::did_you_mean(error, *near);
     return nullptr;
 }
 
