@@ -13,9 +13,6 @@ namespace etlc::lsp {
 
 namespace {
 
-/// A client that is quiet for so long is not typing.
-constexpr int kIdleMilliseconds = 250;
-
 /// False where nobody reads any more.
 bool write_all(int out, std::string_view bytes) {
     while (!bytes.empty()) {
@@ -67,7 +64,9 @@ private:
     /// Waits for more input; false where there is none yet.
     bool rest() {
         const bool has_work = session_.has_idle_work();
-        if (wait_for(in_, has_work ? kIdleMilliseconds : -1) != Ready::nothing) return true;
+        if (wait_for(in_, has_work ? static_cast<int>(session_.pause().count()) : -1) !=
+            Ready::nothing)
+            return true;
         session_.do_idle_work();
         return false;
     }

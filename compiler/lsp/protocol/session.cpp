@@ -269,10 +269,19 @@ bool Session::has_idle_work() const {
                        [](const auto& entry) { return !entry.second.is_planned; });
 }
 
+std::chrono::milliseconds Session::pause() const {
+    using std::chrono::milliseconds;
+    return std::clamp(4 * last_planning_, milliseconds(250), milliseconds(10'000));
+}
+
 void Session::do_idle_work() {
+    using Clock = std::chrono::steady_clock;
     for (auto& [uri, document] : documents_) {
         if (document.is_planned) continue;
+        const Clock::time_point start = Clock::now();
         document.plan();
+        last_planning_ =
+            std::chrono::duration_cast<std::chrono::milliseconds>(Clock::now() - start);
         break;  // messages may have come
     }
     catch_up();

@@ -4,6 +4,7 @@
 // `exit`; findings of a document are published for its last state, and cleared when it closes.
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <map>
 #include <optional>
@@ -34,6 +35,8 @@ public:
     void catch_up();
     /// Work for when the client has been quiet for a moment: what only planning finds.
     bool has_idle_work() const;
+    /// How long it has to be quiet: longer where planning took long, since no message is read then.
+    std::chrono::milliseconds pause() const;
     void do_idle_work();
 
     /// Once the client has said `exit`.
@@ -89,6 +92,7 @@ private:
     Encoding encoding_ = Encoding::utf16;
     Client client_;
     std::map<std::string, Document> documents_;
+    std::chrono::milliseconds last_planning_{0};
 };
 
 }  // namespace etlc::lsp
