@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # stored_test.sh ETLC VALUES CXX FLAG...: a monitor whose target sets lie in a file gives the
 # verdicts and telemetry of the same monitor with its sets spelled out, bit for bit: every distance
-# and aggregation, sets in every layout, the runtime included and pasted in. VALUES: robustness, or
+# and aggregation, contrasts of searched sets, sets in every layout, the runtime included and pasted in. VALUES: robustness, or
 # boolean, where a distance is measured on demand.
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
@@ -15,6 +15,7 @@ cd "$box"
 "$cxx" -std=c++17 -O1 "$here/stored/arrays.cpp" -o arrays
 ./arrays wide.npy 1400 384   # more than 64 KiB: read in one stream
 ./arrays middle.npy 300 33
+./arrays others.npy 420 33
 ./arrays narrow.npy 400 7
 ./arrays scalars.npy 300 2
 ./arrays map.npy 16 384
@@ -27,6 +28,7 @@ input x : f32;
 input y : f32;
 target wide_set = load("wide.npy");
 target middle_set = load("middle.npy");
+target others = load("others.npy");
 target narrow_set = load("narrow.npy");
 target scalar_set = load("scalars.npy");
 projection P = load("map.npy");
@@ -49,16 +51,25 @@ add projected "min l2(P(wide), wide_set)" 5
 add projected_scalars "mean l1(T([x, y]), scalar_set)" 1
 : >names.inc
 for p in $predicates; do echo "PREDICATE($p)" >>names.inc; done
+contrast() {
+  echo "predicate $1 = min $2(middle, middle_set) - min $2(middle, others) <= $3;" >>stored.etl
+  echo "CONTRAST($1, middle_set, others)" >>names.inc
+  predicates+=" $1"
+}
+contrast l2_contrast l2 0.5
+contrast l2sq_contrast l2sq 0
+contrast cosine_contrast cosine 0.1
 echo "monitor touched = F (l2_wide && F (l2_middle || l2_narrow));" >>stored.etl
 echo "monitor every = G ($(sed 's/^ //; s/ / || /g' <<<"$predicates"));" >>stored.etl
 echo "sliding monitor none = F[0,2] !($(sed 's/^ //; s/ / \&\& /g' <<<"$predicates"));" >>stored.etl
-printf 'MONITOR(touched) MONITOR(every) MONITOR(none)\n#undef PREDICATE\n#undef MONITOR\n' \
-  >>names.inc
+echo 'MONITOR(touched) MONITOR(every) MONITOR(none)' >>names.inc
+printf '#undef %s\n' PREDICATE CONTRAST MONITOR >>names.inc
 
 options=(--values "$values" --max-code 10000000 --inline-targets)
 "$etlc" stored.etl -o inlined.hpp --namespace inlined "${options[@]}" 100000000
 "$etlc" stored.etl -o stored.hpp "${options[@]}" 0
 grep -q 'inline constexpr float' inlined.hpp
+[ "$(grep -c 'Search<420, 33>' stored.hpp)" = 3 ]  # so both sides of a contrast are searched
 [ ! -e inlined.targets.bin ]
 [ "$(wc -c <stored.hpp)" -lt 400000 ]
 "$etlc" stored.etl -o pasted.hpp --standalone "${options[@]}" 0

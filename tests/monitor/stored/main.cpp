@@ -80,6 +80,7 @@ void expect_unknown(stored::Monitor&& monitor, const char* what) {
     const auto v = monitor.step(in);
 #define MONITOR(name) say((v.name.unknown() || !v.name.decided()) && !v.name.final(), what);
 #define PREDICATE(name) say(etlmon::is_nan(monitor.distance_##name()), what);
+#define CONTRAST(name, near, far) PREDICATE(name)
 #include "names.inc"
     say(monitor.missing_steps() == 1, what);
 }
@@ -94,8 +95,9 @@ int main(int, char** argv) {
     const auto* bytes = reinterpret_cast<const std::uint8_t*>(file.targets().rows());
     say(stored::Monitor::valid(bytes, size), "its bytes are valid");
 
-    const std::vector<float> wide = rows_of("wide.npy"), middle = rows_of("middle.npy"),
-                             narrow = rows_of("narrow.npy");
+    const std::vector<float> wide = rows_of("wide.npy"), narrow = rows_of("narrow.npy");
+    std::vector<float> middle = rows_of("middle.npy");  // measured from two sets
+    for (const float x : rows_of("others.npy")) middle.push_back(x);
     for (unsigned seed = 1; seed <= SEEDS; ++seed) {
         const auto a = trace(384, seed, wide), b = trace(33, seed + 100, middle),
                    c = trace(7, seed + 200, narrow);

@@ -56,6 +56,9 @@ std::vector<std::uint32_t> run(Monitor& monitor, const std::vector<Sample>& wide
 #define MONITOR(name) keep(words, v.name);
 #define PREDICATE(name) \
     keep(words, monitor.distance_##name()), keep(words, monitor.nearest_##name());
+#define CONTRAST(name, near, far)                                                           \
+    keep(words, monitor.distance_##name()), keep(words, monitor.nearest_##name##_##near()), \
+        keep(words, monitor.nearest_##name##_##far());
 #include "names.inc"
         keep(words, monitor.missing_steps());
     }
