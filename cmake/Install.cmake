@@ -5,7 +5,7 @@ set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
 
 install(TARGETS etlc EXPORT etlcTargets RUNTIME)
 # Where etlc looks for it, from bin/.
-install(TARGETS etlc_read_hdf5 RUNTIME DESTINATION libexec/etlc)
+install(TARGETS etlc_read_hdf5 etlc_read_parquet RUNTIME DESTINATION libexec/etlc)
 if(TARGET etlc_embed_worker)
   install(TARGETS etlc_embed_worker RUNTIME DESTINATION libexec/etlc)
 endif()

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Makes the wheel: the package, libetlc, the command, and the libraries that these load.
 
-make_wheel.py PYPROJECT LIBRARY COMMAND HDF5_READER FOLDER: the wheel goes into FOLDER.
+make_wheel.py PYPROJECT LIBRARY COMMAND READER... FOLDER: the wheel goes into FOLDER.
 Needs setuptools and wheel, and patchelf, which makes each file look for libraries beside it.
 """
 
@@ -31,13 +31,14 @@ def libraries_of(program):
     return {name: path for name, path in found.items() if not THERE.match(name)}
 
 
-def stage(folder, library, command, reader):
+def stage(folder, library, command, readers):
     """What is not Python, below `folder`, with paths that hold wherever it is unpacked."""
     places = {
         library: (folder / "lib" / "libetlc.so.1", "$ORIGIN"),
         command: (folder / "bin" / "etlc", "$ORIGIN/../lib"),
-        reader: (folder / "libexec" / "etlc" / Path(reader).name, "$ORIGIN/../../lib"),
     }
+    for reader in readers:
+        places[reader] = (folder / "libexec" / "etlc" / Path(reader).name, "$ORIGIN/../../lib")
     for program in list(places):
         for name, path in libraries_of(program).items():
             places[path] = (folder / "lib" / name, "$ORIGIN")
@@ -49,12 +50,12 @@ def stage(folder, library, command, reader):
         subprocess.run(["patchelf", "--set-rpath", run_path, place], check=True)
 
 
-def main(pyproject, library, command, reader, folder):
+def main(pyproject, library, command, *readers, folder):
     here = Path(__file__).parent
     with tempfile.TemporaryDirectory() as box:
         source = Path(box)
         shutil.copytree(here / "etlc", source / "etlc", ignore=shutil.ignore_patterns("__pyc*"))
-        stage(source / "etlc" / "_native", library, command, reader)
+        stage(source / "etlc" / "_native", library, command, readers)
         shutil.copy(pyproject, source)
         shutil.copy(here / "setup.py", source)
         dist = Path(folder)
@@ -69,4 +70,4 @@ def main(pyproject, library, command, reader, folder):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    main(*sys.argv[1:-1], folder=sys.argv[-1])

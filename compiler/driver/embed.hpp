@@ -4,6 +4,7 @@
 // whole; those of all shards are those of one process.
 #pragma once
 
+#include <map>
 #include <string>
 #include <vector>
 
@@ -18,9 +19,12 @@ namespace etlc::driver {
 struct EmbedRequest {
     embed::Request embed;           ///< its version is set here
     std::vector<std::string> data;  ///< recordings
-    std::string output;             ///< folder of the episodes
-    std::string embedded;           ///< the file of embeddings; empty: beside the spec
-    ShardRequest shard;             ///< which recordings; the first encodes the targets as well
+    std::string groups;             ///< of .h5 files, which are recordings
+    /// Cameras of data sets and arrays, by input; of "" that of all inputs.
+    std::map<std::string, std::string> cameras;
+    std::string output;    ///< folder of the episodes
+    std::string embedded;  ///< the file of embeddings; empty: beside the spec
+    ShardRequest shard;    ///< which recordings; the first encodes the targets as well
     std::vector<check::Setting> settings;
 };
 

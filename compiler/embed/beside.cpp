@@ -82,6 +82,27 @@ diag::Result<std::vector<Channel>> channels_of(const check::Model& model, const 
     return channels;
 }
 
+/// Every `stride`-th step of a trace.
+diag::Result<std::vector<Array>> read_arrays(data::Trace& trace,
+                                             const std::vector<Channel>& channels,
+                                             std::uint64_t stride) {
+    std::vector<Array> arrays;
+    for (const Channel& channel : channels)
+        arrays.push_back({channel.name, channel.width, {}, channel.kind == Channel::Kind::vector});
+    data::Sample sample;
+    for (std::uint64_t step = 0;; ++step) {
+        const auto more = trace.next(sample);
+        if (!more) return more.failure();
+        if (!*more) return arrays;
+        if (step % stride != 0) continue;
+        for (std::size_t c = 0; c < arrays.size(); ++c)
+            for (const double value : sample.values[c])
+                arrays[c].values.push_back(sample.present[c]
+                                               ? static_cast<float>(value)
+                                               : std::numeric_limits<float>::quiet_NaN());
+    }
+}
+
 }  // namespace
 
 diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const std::string& path) {
@@ -89,19 +110,29 @@ diag::Result<std::vector<Array>> arrays_beside(const check::Model& model, const 
     if (!channels) return channels.failure();
     const auto trace = data::open_trace(path, *channels);
     if (!trace) return trace.failure();
-    std::vector<Array> arrays;
-    for (const Channel& channel : *channels) arrays.push_back({channel.name, channel.width, {}});
-    data::Sample sample;
-    for (;;) {
-        const auto more = (*trace)->next(sample);
-        if (!more) return more.failure();
-        if (!*more) return arrays;
-        for (std::size_t c = 0; c < arrays.size(); ++c)
-            for (const double value : sample.values[c])
-                arrays[c].values.push_back(sample.present[c]
-                                               ? static_cast<float>(value)
-                                               : std::numeric_limits<float>::quiet_NaN());
+    return read_arrays(**trace, *channels, 1);
+}
+
+diag::Result<std::vector<Array>> arrays_in(const check::Model& model, const Recording& recording,
+                                           const data::NamesInFile& names) {
+    std::vector<Channel> channels;
+    for (const check::Input& input : model.inputs) {
+        if (input.encoder != check::kNone) continue;
+        Channel channel{input.name, Channel::Kind::scalar, 1, false};
+        if (input.type == check::InputType::boolean) channel.kind = Channel::Kind::boolean;
+        if (input.is_embedding()) {
+            channel.kind = Channel::Kind::vector;
+            channel.width = input.dimension;
+        }
+        channels.push_back(std::move(channel));
     }
+    for (const auto& [name, in_file] : names)
+        if (name.starts_with("truth."))
+            channels.push_back({name, Channel::Kind::boolean, 1, false});
+    if (channels.empty()) return std::vector<Array>{};
+    const auto trace = data::open_trace(recording.columns, data::renamed(channels, names));
+    if (!trace) return trace.failure();
+    return read_arrays(**trace, channels, recording.stride);
 }
 
 }  // namespace etlc::embed

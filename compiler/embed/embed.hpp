@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 #include "embed/encoder.hpp"
 #include "embed/recordings.hpp"
@@ -19,7 +20,8 @@ namespace etlc::embed {
 
 struct Request {
     Running running;
-    std::string version;  ///< of etlc
+    std::string version;      ///< of etlc
+    data::NamesInFile names;  ///< of inputs and labels in data sets and arrays
 };
 
 /// The encoders as they are now, without any embedding: their models and settings, those of a .json
@@ -34,7 +36,8 @@ bool embed_targets(const check::Model& model, const Request& request, embedded::
 /// Gets the bytes of each episode; false where they cannot be kept, which is reported.
 using Keep = std::function<bool(const Recording&, const std::string& bytes)>;
 
-/// Makes an episode of each recording. False where it cannot.
+/// Makes an episode of each recording: the inputs by encoders, and those that it has columns of.
+/// False where it cannot.
 bool embed_recordings(const check::Model& model, const embedded::File& file,
                       const std::vector<Recording>& recordings, const Request& request,
                       const Keep& keep, diag::Sink& sink);

@@ -1,7 +1,10 @@
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <iterator>
 #include <map>
 #include <memory>
+#include <utility>
 
 #include "data/arrays/npz_writer.hpp"
 #include "data/files/file.hpp"
@@ -50,9 +53,11 @@ public:
         std::map<Index, std::unique_ptr<Encoder>> encoders;
         for (const Index input : inputs_)
             if (!start(model_.inputs[input].encoder, encoders)) return false;
-        for (std::size_t r = 0; r < recordings_.size(); ++r)
+        for (std::size_t r = 0; r < recordings_.size(); ++r) {
             for (const Index input : inputs_)
                 if (!add(*encoders.at(model_.inputs[input].encoder), r, input)) return false;
+            if (inputs_.empty() && !failed_) write(r);
+        }
         for (const auto& [index, encoder] : encoders)
             if (auto trouble = encoder->finish()) return fail(trouble->failure, model_path(index));
         return !failed_;
@@ -114,38 +119,50 @@ private:
     /// The episode is written once it has all its inputs.
     void take(std::size_t recording, Index input, std::vector<float> rows) {
         made_[recording][input] = std::move(rows);
-        if (made_[recording].size() < inputs_.size() || failed_) return;
-        const std::map<Index, std::vector<float>> made = std::move(made_[recording]);
-        const Recording& from = recordings_[recording];
-        std::vector<data::ArchiveMember> members = {
-            {"embedded.json", embedded::write_marks(marks_)}};
-        const std::uint64_t steps =
-            made.begin()->second.size() / model_.inputs[made.begin()->first].dimension;
-        const auto add_array = [&](const std::string& name, std::uint32_t width, bool is_vector,
-                                   const std::vector<float>& values) {
-            if (values.size() != steps * width && !failed_)
-                failed_ = !fail({Code::trace_shape,
-                                 fmt::format("'{}' has {}, '{}' has {}", name,
-                                             diag::counted(values.size() / width, "step"),
-                                             model_.inputs[made.begin()->first].name, steps)},
-                                from.beside.empty() ? from.path : from.beside);
-            std::vector<std::uint64_t> shape = {values.size() / width};
-            if (is_vector) shape.push_back(width);
-            members.push_back({name + ".npy", data::npy_bytes(shape, values)});
-        };
-        for (const auto& [index, values] : made)
-            add_array(model_.inputs[index].name, model_.inputs[index].dimension, true, values);
-        if (!from.beside.empty()) {
-            const auto arrays = arrays_beside(model_, from.beside);
-            if (!arrays) {
-                sink_.report(data::in_trace(arrays.failure(), from.beside));
-                failed_ = true;
-                return;
-            }
-            for (const Array& array : *arrays)
-                add_array(array.name, array.width, array.width > 1, array.values);
+        if (made_[recording].size() == inputs_.size() && !failed_) write(recording);
+    }
+
+    void write(std::size_t r) {
+        const Recording& from = recordings_[r];
+        std::vector<Array> arrays;
+        for (auto& [index, values] : made_[r]) {
+            const check::Input& input = model_.inputs[index];
+            arrays.push_back({input.name, input.dimension, std::move(values), true});
+        }
+        made_[r].clear();
+        if (!add_columns(from, arrays)) {
+            failed_ = true;
+            return;
+        }
+        std::vector<data::ArchiveMember> members;
+        if (!marks_.empty()) members.push_back({"embedded.json", embedded::write_marks(marks_)});
+        const std::uint64_t steps = arrays.empty() ? 0 : steps_of(arrays[0]);
+        for (const Array& array : arrays) {
+            if (steps_of(array) != steps && !failed_)
+                failed_ =
+                    !fail({Code::trace_shape, fmt::format("'{}' has {}, '{}' has {}", array.name,
+                                                          diag::counted(steps_of(array), "step"),
+                                                          arrays[0].name, steps)},
+                          from.beside.empty() ? from.path : from.beside);
+            std::vector<std::uint64_t> shape = {steps_of(array)};
+            if (array.is_vector) shape.push_back(array.width);
+            members.push_back({array.name + ".npy", data::npy_bytes(shape, array.values)});
         }
         if (!failed_) failed_ = !keep_(from, data::npz_bytes(members));
+    }
+
+    static std::uint64_t steps_of(const Array& array) { return array.values.size() / array.width; }
+
+    /// What the recording has besides frames. False where it cannot be read.
+    bool add_columns(const Recording& from, std::vector<Array>& arrays) {
+        const auto add = [&](diag::Result<std::vector<Array>> read, const std::string& path) {
+            if (!read) sink_.report(data::in_trace(read.failure(), path));
+            if (read) std::move(read->begin(), read->end(), std::back_inserter(arrays));
+            return bool(read);
+        };
+        if (!from.columns.empty() && !add(arrays_in(model_, from, request_.names), from.columns))
+            return false;
+        return from.beside.empty() || add(arrays_beside(model_, from.beside), from.beside);
     }
 
     bool fail(const diag::Failure& failure, const std::string& path) {

@@ -8,6 +8,8 @@
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
 #include "data/frames/images.hpp"
+#include "data/traces/trace.hpp"
+#include "embed/sets.hpp"
 
 namespace etlc::embed {
 
@@ -18,7 +20,8 @@ using diag::Code;
 using diag::Failure;
 
 constexpr std::string_view kExpected =
-    "expected a video, a folder of images, or a folder or pattern of these";
+    "expected a video, a folder of images, a data set, an .npz or .h5 file of images, or a folder "
+    "or pattern of these";
 
 /// "drives/ep3.csv" of "drives/ep3.mp4", or of the folder "drives/ep3".
 std::string beside(const fs::path& folder, const std::string& name) {
@@ -59,49 +62,85 @@ std::vector<std::string> sorted_entries(const std::string& folder) {
     return paths;
 }
 
-/// Of a folder its images as one recording; else the videos and folders of images in it.
-std::vector<Recording> in_folder(const std::string& folder, double rate, bool below) {
-    const std::vector<std::string> entries = sorted_entries(folder);
-    std::vector<std::string> frames;
-    std::copy_if(entries.begin(), entries.end(), std::back_inserter(frames), data::is_image);
-    if (!frames.empty()) return {images(folder, std::move(frames))};
-    std::vector<Recording> found;
-    std::error_code error;
-    for (const std::string& path : entries) {
-        if (data::is_video(path)) found.push_back(video(path, rate));
-        if (!below || !fs::is_directory(path, error)) continue;
-        for (Recording& recording : in_folder(path, rate, false))
-            found.push_back(std::move(recording));
-    }
-    return found;
-}
+class Finder {
+public:
+    Finder(const Search& search, diag::Sink& sink) : search_(search), sink_(sink) {}
 
-diag::Result<std::vector<Recording>> recordings_at(const std::string& path, double rate) {
-    std::error_code error;
-    if (fs::is_directory(path, error)) {
-        auto found = in_folder(path, rate, true);
-        if (!found.empty()) return found;
-        return Failure{Code::unreadable_video, fmt::format("holds no recording, {}", kExpected)};
+    diag::Result<std::vector<Recording>> at(const std::string& path) {
+        std::error_code error;
+        if (const auto set = data::dataset_path(path))
+            return recordings_in_dataset(*set, search_, sink_);
+        if (fs::is_directory(path, error)) {
+            auto found = in_folder(path, true);
+            if (!found || !found->empty()) return found;
+            return Failure{Code::unreadable_video,
+                           fmt::format("holds no recording, {}", kExpected)};
+        }
+        if (is_arrays(path) && !data::why_unreadable(data::trace_file(path)))
+            return recordings_in_arrays(path, search_);
+        if (!data::why_unreadable(path)) return std::vector<Recording>{video(path, search_.rate)};
+        return matching(path);
     }
-    if (!data::why_unreadable(path)) return std::vector<Recording>{video(path, rate)};
-    std::vector<Recording> all;
-    const auto matches = data::paths_matching(path);
-    for (const std::string& match : matches.value_or(std::vector<std::string>{})) {
-        auto found = recordings_at(match, rate);
-        if (!found) continue;
-        for (Recording& recording : *found) all.push_back(std::move(recording));
+
+private:
+    /// Of a folder its images as one recording; else the videos, data sets and folders of images in
+    /// it; else its archives of arrays.
+    diag::Result<std::vector<Recording>> in_folder(const std::string& folder, bool below) {
+        const std::vector<std::string> entries = sorted_entries(folder);
+        std::vector<std::string> frames;
+        std::copy_if(entries.begin(), entries.end(), std::back_inserter(frames), data::is_image);
+        if (!frames.empty()) return std::vector<Recording>{images(folder, std::move(frames))};
+        std::vector<Recording> found;
+        std::error_code error;
+        for (const std::string& path : entries) {
+            if (data::is_video(path)) found.push_back(video(path, search_.rate));
+            if (!below || !fs::is_directory(path, error)) continue;
+            const auto set = data::dataset_path(path);
+            auto inside =
+                set ? recordings_in_dataset(*set, search_, sink_) : in_folder(path, false);
+            if (!inside) return inside;
+            add(found, std::move(*inside));
+        }
+        for (const std::string& path : entries) {
+            if (!found.empty() && found.back().columns.empty()) break;
+            if (!is_arrays(path)) continue;
+            auto inside = recordings_in_arrays(path, search_);
+            if (!inside) return inside;
+            add(found, std::move(*inside));
+        }
+        return found;
     }
-    if (!all.empty()) return all;
-    return Failure{Code::unreadable_video, fmt::format("no such recording, {}", kExpected)};
-}
+
+    diag::Result<std::vector<Recording>> matching(const std::string& pattern) {
+        std::vector<Recording> all;
+        const auto matches = data::paths_matching(pattern);
+        for (const std::string& match : matches.value_or(std::vector<std::string>{}))
+            if (auto found = at(match)) add(all, std::move(*found));
+        if (!all.empty()) return all;
+        return Failure{Code::unreadable_video, fmt::format("no such recording, {}", kExpected)};
+    }
+
+    static void add(std::vector<Recording>& all, std::vector<Recording> more) {
+        for (Recording& recording : more) all.push_back(std::move(recording));
+    }
+
+    const Search& search_;
+    diag::Sink& sink_;
+};
 
 }  // namespace
 
-std::vector<Recording> find_recordings(const std::vector<std::string>& arguments, double rate,
-                                       diag::Sink& sink) {
+std::string Search::camera(const std::string& input) const {
+    const auto own = cameras.find(input);
+    const auto any = own != cameras.end() ? own : cameras.find("");
+    return any == cameras.end() ? "" : any->second;
+}
+
+std::vector<Recording> find_recordings(const Search& search, diag::Sink& sink) {
+    Finder finder(search, sink);
     std::vector<Recording> recordings;
-    for (const std::string& argument : arguments) {
-        auto found = recordings_at(argument, rate);
+    for (const std::string& argument : search.arguments) {
+        auto found = finder.at(argument);
         if (!found) {
             sink.report(data::in_file(found.failure(), argument));
             continue;

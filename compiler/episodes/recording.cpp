@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "data/datasets/trace.hpp"
 #include "data/quote.hpp"
 #include "embedded/embedded.hpp"
 
@@ -129,6 +130,7 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
                                         const data::NamesInFile& names) {
     if (auto failure = other_encoder(wanted, path, names)) return *failure;
+    if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
     auto recording = open(wanted, [&](const std::vector<Channel>& channels) {
         return data::open_trace(path, data::renamed(channels, names));
     });

@@ -4,6 +4,7 @@ tests/unit/data and from here."""
 import pathlib
 import random
 import struct
+import sys
 import zipfile
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -179,3 +180,27 @@ for name, text in {
 CHOICES = random.Random(15)
 for n in range(12):
     seed("fuzz_compile", f"deep_{n}", CHOICES.randbytes(40 << (n // 2)))
+
+# Parquet, as the tests of data sets write it.
+sys.path.insert(0, str(HERE.parent / "datasets"))
+import parquet_writer as parquet  # pylint: disable=wrong-import-position
+
+COLUMNS = {
+    "q": (parquet.FLOAT, [[0.5, None, 2.0], None, [], [1.0]] * 5),
+    "k": (parquet.INT64, [i // 3 for i in range(20)]),
+    "b": (parquet.BOOL, [i % 3 == 0 for i in range(20)]),
+    "t": (parquet.TEXT, [None if i == 4 else f"t{i % 2}" for i in range(20)])}
+for name, how in {
+    "plain": {"codec": parquet.NONE, "page_rows": 8},
+    "dictionary": {"codec": parquet.NONE, "dictionary": True, "group_rows": 9},
+    "snappy": {"codec": parquet.SNAPPY},
+    "zstd_v2": {"codec": parquet.ZSTD, "version": 2, "dictionary": True},
+    "plain_v2": {"codec": parquet.NONE, "version": 2},
+    "checksums": {"codec": parquet.NONE, "checksums": True},
+    "gzip": {"codec": parquet.NONE, "codec_said": parquet.GZIP},
+    "delta": {"codec": parquet.NONE, "encoding": parquet.DELTA},
+    "claims": {"codec": parquet.NONE, "claims": 2**31 - 1},
+}.items():
+    seed("fuzz_parquet", f"{name}.parquet", parquet.Writer(**how).write(COLUMNS))
+seed("fuzz_parquet", "nested.parquet",
+     parquet.Writer(codec=parquet.NONE).write(COLUMNS, nested=("q",)))

@@ -20,7 +20,7 @@ python3 "$test" "$(dirname "$test")/../spec" >"$box/log" 2>&1 ||
     { cat "$box/log"; fail "the tests of the package"; }
 native=$(python3 -c 'import etlc; print(etlc._library.NATIVE)')
 [[ $native == "$box/venv/"* ]] || fail "another etlc is imported: $native"
-for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-hdf5; do
+for program in lib/libetlc.so.1 bin/etlc libexec/etlc/etlc-read-{hdf5,parquet}; do
     others=$(ldd "$native/$program" | awk '$2 == "=>" {print $3}' | grep -v "^$native/" |
         grep -vE '/(lib(c|m|gcc_s|stdc\+\+|resolv))\.so[.0-9]*$' || true)
     [ -z "$others" ] || fail "$program loads from outside of the wheel: $others"

@@ -9,6 +9,7 @@
 #include <set>
 #include <system_error>
 
+#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/files/paths.hpp"
@@ -49,7 +50,7 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
 }
 
 /// What matches; folders among it stand for the traces in them.
-diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
+diag::Result<std::vector<std::string>> matching(const std::string& pattern, diag::Sink& sink) {
     const auto paths = paths_matching(pattern);
     if (!paths)
         return diag::Failure{Code::unreadable_trace, "a folder of this pattern cannot be read"};
@@ -57,6 +58,12 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
         return diag::Failure{Code::unreadable_trace, "no file matches this pattern"};
     std::vector<std::string> files;
     for (const std::string& path : *paths) {
+        if (is_dataset(path)) {
+            const auto inside = find_dataset_episodes({path}, sink);
+            if (!inside) return inside;
+            files.insert(files.end(), inside->begin(), inside->end());
+            continue;
+        }
         if (!is_directory(path)) {
             files.push_back(path);
             continue;
@@ -71,11 +78,13 @@ diag::Result<std::vector<std::string>> matching(const std::string& pattern) {
 }
 
 /// A path that exists is what it says, whatever characters are in it.
-diag::Result<std::vector<std::string>> expand(const std::string& argument) {
+diag::Result<std::vector<std::string>> expand(const std::string& argument, diag::Sink& sink) {
+    if (const auto set = dataset_path(argument)) return find_dataset_episodes(*set, sink);
     if (is_directory(argument)) return in_folder(argument);
     const auto why = why_unreadable(argument);
     if (!why) return std::vector<std::string>{argument};
-    if (argument.find_first_of(kPatternCharacters) != std::string::npos) return matching(argument);
+    if (argument.find_first_of(kPatternCharacters) != std::string::npos)
+        return matching(argument, sink);
     return diag::Failure{Code::unreadable_trace, *why};
 }
 
@@ -86,7 +95,7 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
     std::vector<std::string> episodes;
     std::set<std::string> seen;
     for (const std::string& argument : arguments) {
-        auto files = expand(argument);
+        auto files = expand(argument, sink);
         if (!files) {
             sink.report(in_file(files.failure(), argument));
             continue;

@@ -16,11 +16,13 @@
 
 namespace etlc::data {
 
-/// Every episode of the arguments: a file as it stands; of a folder the files in it whose ending is
-/// that of a trace; of a pattern ("runs/*/ep?.npz", as the shell's) the files that match. Each
-/// argument's are sorted by path, bytewise; a path that comes up again stands once. `groups`: of
-/// .h5 files each group that matches is an episode ("data/*"), as FILE:GROUP, which open_trace
-/// takes; empty: the file is one. An argument without an episode is reported, E0801.
+/// Every episode of the arguments: a file as it stands; of a data set its episodes, as
+/// FOLDER:NUMBER (FOLDER:FIRST:END names some of them), where what it lacks is a warning; of a
+/// folder the files in it whose ending is that of a trace; of a pattern ("runs/*/ep?.npz", as the
+/// shell's) the files that match. Each argument's are sorted by path, bytewise; a path that comes
+/// up again stands once. `groups`: of .h5 files each group that matches is an episode ("data/*"),
+/// as FILE:GROUP, which open_trace takes; empty: the file is one. An argument without an episode is
+/// reported, E0801.
 std::vector<std::string> find_episodes(const std::vector<std::string>& arguments,
                                        const std::string& groups, diag::Sink& sink);
 

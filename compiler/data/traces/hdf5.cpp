@@ -1,111 +1,33 @@
 #include "data/traces/hdf5.hpp"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
-#include <array>
+#include <algorithm>
 #include <charconv>
-#include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <optional>
-#include <system_error>
 
-#include "data/files/child.hpp"
-#include "data/files/file.hpp"
+#include "data/arrays/npy_header.hpp"
+#include "data/frames/protocol.hpp"
 #include "data/quote.hpp"
+#include "data/records/records.hpp"
 #include "data/traces/array_trace.hpp"
 #include "data/traces/hdf5_protocol.hpp"
 
 namespace etlc::data {
 namespace {
 
-namespace fs = std::filesystem;
 using diag::Code;
 using diag::Failure;
-using hdf5::Cause;
-using hdf5::Tag;
+using records::Tag;
 
-constexpr std::string_view kReader = "etlc-read-hdf5";
-
-std::string find_reader() {
-    if (const char* const path = std::getenv("ETLC_HDF5_READER")) return path;
-    return helper_path(kReader);
+diag::Result<std::shared_ptr<Records>> start(const std::string& path,
+                                             const std::vector<std::string>& arguments,
+                                             Code no_channel = Code::no_such_channel) {
+    const Records::Codes codes = {Code::unreadable_trace, Code::malformed_trace_array, no_channel,
+                                  Code::trace_elements};
+    return Records::start("etlc-read-hdf5", "ETLC_HDF5_READER", "HDF5", codes, path, arguments);
 }
-
-Code code_of(char cause) {
-    switch (static_cast<Cause>(cause)) {
-        case Cause::channel: return Code::no_such_channel;
-        case Cause::elements: return Code::trace_elements;
-        case Cause::array:
-        case Cause::file: break;
-    }
-    return Code::malformed_trace_array;
-}
-
-/// The reader's records, of which none is trusted.
-class Records {
-public:
-    static diag::Result<std::shared_ptr<Records>> start(const std::string& path,
-                                                        const std::vector<std::string>& arguments) {
-        if (auto why = why_unreadable(path)) return Failure{Code::unreadable_trace, *why};
-        std::error_code error;
-        if (!fs::is_regular_file(path, error))
-            return Failure{Code::unreadable_trace, "is not a regular file, as HDF5 needs it"};
-        const std::string reader = find_reader();
-        auto child =
-            Child::start(reader, arguments, {.max_silence_seconds = hdf5::kMaxSilenceSeconds});
-        if (!child)
-            return Failure{
-                Code::unreadable_trace,
-                fmt::format("{} cannot be run, which reads HDF5 files", in_quotes(reader))};
-        return std::shared_ptr<Records>(new Records(std::move(child)));
-    }
-
-    /// The next record; its bytes are in `bytes()`. What the reader says is wrong is a failure.
-    diag::Result<Tag> next() {
-        std::array<char, 5> head{};
-        std::uint32_t length = 0;
-        if (!child_->read(head.data(), head.size())) return stopped();
-        std::memcpy(&length, head.data() + 1, sizeof length);
-        if (length > hdf5::kMaxRecordBytes) return nonsense();
-        bytes_.resize(length);
-        if (!child_->read(bytes_.data(), length)) return stopped();
-        const auto tag = static_cast<Tag>(head[0]);
-        if (tag == Tag::failure) {
-            if (length < 2) return nonsense();
-            return Failure{code_of(bytes_[0]), escaped(std::string_view(bytes_).substr(1))};
-        }
-        return tag;
-    }
-
-    const std::string& bytes() const { return bytes_; }
-
-    static Failure nonsense() {
-        return {Code::malformed_trace_array,
-                "is damaged: what came back from reading it makes no sense"};
-    }
-
-private:
-    explicit Records(std::unique_ptr<Child> child) : child_(std::move(child)) {}
-
-    Failure stopped() {
-        return {Code::malformed_trace_array,
-                fmt::format("is damaged or too much to read: the process that read it {}",
-                            child_->ending())};
-    }
-
-    /// The reader's own words; a name from the file in them has been escaped there, yet it may be
-    /// under its control.
-    static std::string escaped(std::string_view text) {
-        std::string result;
-        for (const char c : text.substr(0, 1000)) result += c >= 0x20 && c < 0x7f ? c : '?';
-        return result;
-    }
-
-    std::unique_ptr<Child> child_;
-    std::string bytes_;
-};
 
 /// One line of a `shapes` record.
 struct Shape {
@@ -163,7 +85,7 @@ public:
             if (!tag) return tag.failure();
             if (*tag != Tag::rows || records_->bytes().empty() ||
                 records_->bytes().size() % bytes != 0)
-                return Records::nonsense();
+                return records_->nonsense();
             at_ = 0;
         }
         std::memcpy(row_.data(), records_->bytes().data() + at_, bytes);
@@ -171,7 +93,7 @@ public:
         if (++taken_ < steps_) return row_.data();
         const auto tag = records_->next();  // what is wrong at the very end is wrong too
         if (!tag) return tag.failure();
-        if (*tag != Tag::end) return Records::nonsense();
+        if (*tag != Tag::end) return records_->nonsense();
         return row_.data();
     }
 
@@ -200,6 +122,41 @@ private:
     std::uint64_t step_ = 0;
 };
 
+/// Images of which the records hold one after the other, cut anywhere.
+class RecordedFrames final : public FrameSource {
+public:
+    RecordedFrames(std::shared_ptr<Records> records, const std::vector<std::uint64_t>& shape)
+        : records_(std::move(records)), shape_(shape) {}
+
+    diag::Result<bool> next(Frame& frame) override {
+        if (taken_ == shape_[0]) {
+            const auto tag = records_->next();
+            if (!tag) return tag.failure();
+            if (*tag != Tag::end) return records_->nonsense();
+            return false;
+        }
+        frame.height = static_cast<std::uint32_t>(shape_[1]);
+        frame.width = static_cast<std::uint32_t>(shape_[2]);
+        frame.rgb.clear();
+        const std::size_t size = std::size_t{3} * frame.height * frame.width;
+        while (frame.rgb.size() < size) {
+            const auto tag = records_->next();
+            if (!tag) return tag.failure();
+            const std::string& bytes = records_->bytes();
+            if (*tag != Tag::rows || bytes.empty() || bytes.size() > size - frame.rgb.size())
+                return records_->nonsense();
+            frame.rgb += bytes;
+        }
+        ++taken_;
+        return true;
+    }
+
+private:
+    std::shared_ptr<Records> records_;
+    std::vector<std::uint64_t> shape_;
+    std::uint64_t taken_ = 0;
+};
+
 }  // namespace
 
 bool is_hdf5(const std::string& path) {
@@ -208,14 +165,14 @@ bool is_hdf5(const std::string& path) {
 
 diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
                                                  const std::string& pattern) {
-    auto records = Records::start(path, {"list", path, pattern});
+    auto records = start(path, {"list", path, pattern});
     if (!records) return records.failure();
     std::vector<std::string> names;
     for (;;) {
         const auto tag = (*records)->next();
         if (!tag) return tag.failure();
         if (*tag == Tag::end) break;
-        if (*tag != Tag::name || names.size() == hdf5::kMaxNames) return Records::nonsense();
+        if (*tag != Tag::name || names.size() == hdf5::kMaxNames) return (*records)->nonsense();
         const std::string& name = (*records)->bytes();
         if (in_quotes(name) != "'" + name + "'")
             return Failure{
@@ -238,12 +195,12 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
         arguments.insert(arguments.end(),
                          {std::to_string(channel.width), channel.name,
                           std::string(channel.optional ? hdf5::kOptional : hdf5::kNeeded)});
-    auto records = Records::start(path, arguments);
+    auto records = start(path, arguments);
     if (!records) return records.failure();
     const auto tag = (*records)->next();
     if (!tag) return tag.failure();
     const auto shapes = parse_shapes((*records)->bytes(), channels.size());
-    if (*tag != Tag::shapes || !shapes) return Records::nonsense();
+    if (*tag != Tag::shapes || !shapes) return (*records)->nonsense();
 
     std::vector<Feed> feeds;
     std::vector<std::size_t> offsets;
@@ -253,7 +210,7 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
         const Shape& shape = (*shapes)[c];
         offsets.push_back(width);
         feeds.push_back({channels[c], 0, nullptr});
-        if (shape.absent && !channels[c].optional) return Records::nonsense();
+        if (shape.absent && !channels[c].optional) return (*records)->nonsense();
         if (shape.absent) continue;
         if (auto failure = check_array(shape.dimensions, shape.bools, channels[c])) return *failure;
         feeds[c].steps = steps = shape.dimensions[0];
@@ -263,6 +220,26 @@ diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
     for (std::size_t c = 0; c < channels.size(); ++c)
         if (!(*shapes)[c].absent) feeds[c].rows = std::make_unique<ChannelRows>(joint, offsets[c]);
     return open_array_trace(std::move(feeds));
+}
+
+diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& path,
+                                                            const std::string& group,
+                                                            const std::string& name) {
+    auto records = start(path, {"images", path, group, name}, Code::no_such_camera);
+    if (!records) return records.failure();
+    const auto tag = (*records)->next();
+    if (!tag) return tag.failure();
+    const auto shapes = parse_shapes((*records)->bytes(), 1);
+    if (*tag != Tag::shapes || !shapes) return (*records)->nonsense();
+    const std::vector<std::uint64_t>& shape = (*shapes)[0].dimensions;
+    if (shape.size() != 4 || shape[1] == 0 || shape[2] == 0 || shape[3] != 3 ||
+        std::max(shape[1], shape[2]) > frames::kMaxExtent ||
+        shape[1] * shape[2] > frames::kMaxPixels)
+        return Failure{Code::trace_shape,
+                       fmt::format("the images have shape {}, expected (steps, rows, columns, 3)",
+                                   shape_text(shape))};
+    return std::unique_ptr<FrameSource>(
+        std::make_unique<RecordedFrames>(std::move(*records), shape));
 }
 
 }  // namespace etlc::data

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "data/frames/frames.hpp"
 #include "data/traces/trace.hpp"
 
 namespace etlc::data {
@@ -23,5 +24,11 @@ diag::Result<std::vector<std::string>> list_hdf5(const std::string& path,
 diag::Result<std::unique_ptr<Trace>> open_hdf5_trace(const std::string& path,
                                                      const std::string& group,
                                                      const std::vector<Channel>& channels);
+
+/// Images, steps x rows x columns x 3 of uint8; an empty name is the only dataset of images in the
+/// group.
+diag::Result<std::unique_ptr<FrameSource>> open_hdf5_images(const std::string& path,
+                                                            const std::string& group,
+                                                            const std::string& name);
 
 }  // namespace etlc::data

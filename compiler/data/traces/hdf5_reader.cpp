@@ -4,12 +4,8 @@
 // leads to another file.
 #include <fnmatch.h>
 #include <hdf5.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <charconv>
 #include <cstdlib>
 #include <cstring>
@@ -18,79 +14,18 @@
 #include <utility>
 #include <vector>
 
+#include "data/records/sender.hpp"
 #include "data/traces/hdf5_protocol.hpp"
 
 namespace {
 
 using namespace etlc::data::hdf5;
+using namespace etlc::data::records;
 
 constexpr std::size_t kChunkCacheBytes = 64U << 20U;  ///< of each dataset
 constexpr std::size_t kMaxListed = 8;                 ///< names in a message
 
-// ---- what goes out ------------------------------------------------------------------------------
-
-[[noreturn]] void quit(int status) {
-    ::_exit(status);  // what a damaged file did to the library's own tidying up is of no interest
-}
-
-void write_all(const char* bytes, std::size_t n) {
-    while (n > 0) {
-        const ssize_t written = ::write(STDOUT_FILENO, bytes, n);
-        if (written < 0 && errno == EINTR) continue;
-        if (written <= 0) quit(1);
-        bytes += written;
-        n -= static_cast<std::size_t>(written);
-    }
-}
-
-/// Each record may take its share of processor time, so that long files may and endless loops may
-/// not.
-void allow_time() {
-    rusage used{};
-    ::getrusage(RUSAGE_SELF, &used);
-    const auto seconds = static_cast<rlim_t>(used.ru_utime.tv_sec + used.ru_stime.tv_sec);
-    const rlimit limit{seconds + kMaxBlockSeconds, RLIM_INFINITY};
-    ::setrlimit(RLIMIT_CPU, &limit);
-}
-
-void send(Tag tag, const char* bytes, std::size_t n) {
-    char head[5] = {static_cast<char>(tag)};
-    const auto length = static_cast<std::uint32_t>(n);
-    std::memcpy(head + 1, &length, sizeof length);
-    write_all(head, sizeof head);
-    write_all(bytes, n);
-    allow_time();
-}
-
-void send(Tag tag, const std::string& text) {
-    send(tag, text.data(), text.size());
-}
-
-[[noreturn]] void fail(Cause cause, const std::string& text) {
-    send(Tag::failure, static_cast<char>(cause) + text);
-    quit(0);
-}
-
-[[noreturn]] void done() {
-    send(Tag::end, "", 0);
-    quit(0);
-}
-
 // ---- files and links ----------------------------------------------------------------------------
-
-void limit_resources() {
-    const rlimit memory{kMaxMemoryBytes, kMaxMemoryBytes};
-    const rlimit nothing{0, 0};
-    const rlimit files{64, 64};
-    ::setrlimit(RLIMIT_AS, &memory);
-    ::setrlimit(RLIMIT_CORE, &nothing);
-    ::setrlimit(RLIMIT_FSIZE, &nothing);
-    ::setrlimit(RLIMIT_NOFILE, &files);
-    ::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0);
-    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE",
-             1);  // file systems that are read-only, or that cannot lock
-    allow_time();
-}
 
 hid_t open_file(const char* path) {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -332,6 +267,81 @@ void read(hid_t file, const std::string& path, std::vector<Channel>& channels) {
     send_rows(channels, some->shape[0], width);
 }
 
+// ---- images -------------------------------------------------------------------------------------
+
+bool holds_images(hid_t dataset) {
+    const hid_t type = H5Dget_type(dataset);
+    const hid_t space = H5Dget_space(dataset);
+    hsize_t shape[H5S_MAX_RANK] = {};
+    return H5Tget_class(type) == H5T_INTEGER && H5Tget_size(type) == 1 &&
+           H5Tget_sign(type) == H5T_SGN_NONE && H5Sget_simple_extent_ndims(space) == 4 &&
+           H5Sget_simple_extent_dims(space, shape, nullptr) == 4 && shape[3] == 3;
+}
+
+/// The datasets of images in a group and below it.
+void find_images(hid_t group, const std::string& prefix, int depth,
+                 std::vector<std::string>& found) {
+    constexpr int kMostNested = 8;
+    if (depth > kMostNested || found.size() > kMaxListed) return;
+    for (const std::string& name : members(group)) {
+        H5L_info_t info{};
+        if (H5Lget_info(group, name.c_str(), &info, H5P_DEFAULT) < 0 || info.type != H5L_TYPE_HARD)
+            continue;
+        const hid_t member = H5Oopen(group, name.c_str(), H5P_DEFAULT);
+        if (member < 0) continue;
+        if (H5Iget_type(member) == H5I_GROUP)
+            find_images(member, prefix + name + "/", depth + 1, found);
+        if (H5Iget_type(member) == H5I_DATASET && holds_images(member))
+            found.push_back(prefix + name);
+        H5Oclose(member);
+    }
+}
+
+std::string only_images(hid_t group) {
+    std::vector<std::string> found;
+    find_images(group, "", 0, found);
+    if (found.empty())
+        fail(Cause::channel,
+             "has no dataset of images, (steps, rows, columns, 3) of uint8" + listed(group));
+    if (found.size() == 1) return found[0];
+    std::string names;
+    for (std::size_t i = 0; i < std::min(found.size(), kMaxListed); ++i)
+        names += (i > 0 ? ", '" : "'") + found[i] + "'";
+    fail(Cause::channel,
+         "has the datasets of images " + names + "; name one: --camera " + found[0]);
+}
+
+void send_images(hid_t file, const std::string& path, const std::string& name) {
+    const hid_t group = open_object(file, path);
+    if (group < 0) fail(Cause::channel, "no group '" + path + "'" + listed(file));
+    Channel channel;
+    channel.name = name.empty() ? only_images(group) : name;
+    open_channel(group, channel);
+    if (!holds_images(channel.dataset))
+        fail(Cause::elements, "dataset " + channel.quoted() +
+                                  " holds no images, expected (steps, rows, columns, 3) of uint8");
+    send(Tag::shapes, shape_line(channel));
+    constexpr hsize_t kMostBytes = 256U << 20U;
+    const auto& shape = channel.shape;
+    if (shape[1] > kMostBytes || shape[2] > kMostBytes || shape[1] * shape[2] > kMostBytes / 3)
+        quit(0);  // etlc says why
+    const hsize_t size = shape[1] * shape[2] * 3;
+    std::vector<char> image(size);
+    const hid_t memory_space = H5Screate_simple(1, &size, nullptr);
+    for (hsize_t step = 0; step < shape[0]; ++step) {
+        const hid_t file_space = H5Dget_space(channel.dataset);
+        const hsize_t start[4] = {step, 0, 0, 0};
+        const hsize_t count[4] = {1, shape[1], shape[2], 3};
+        if (H5Sselect_hyperslab(file_space, H5S_SELECT_SET, start, nullptr, count, nullptr) < 0 ||
+            H5Dread(channel.dataset, H5T_NATIVE_UINT8, memory_space, file_space, H5P_DEFAULT,
+                    image.data()) < 0)
+            fail(Cause::array, "dataset " + channel.quoted() + why_unread(channel));
+        H5Sclose(file_space);
+        for (hsize_t at = 0; at < size; at += kMaxRecordBytes)
+            send(Tag::rows, image.data() + at, std::min<hsize_t>(kMaxRecordBytes, size - at));
+    }
+}
+
 std::vector<Channel> parse_channels(char** words, int count) {
     std::vector<Channel> channels;
     for (int i = 0; i + 3 <= count; i += 3) {
@@ -348,12 +358,18 @@ std::vector<Channel> parse_channels(char** words, int count) {
 
 int main(int argc, char** argv) {
     const std::string command = argc >= 4 ? argv[1] : "";
-    if (command != "list" && command != "read") return 2;
+    const bool is_known =
+        command == "list" || command == "read" || (command == "images" && argc == 5);
+    if (!is_known) return 2;
     limit_resources();
+    ::setenv("HDF5_USE_FILE_LOCKING", "FALSE",
+             1);  // file systems that are read-only, or that cannot lock
     try {
         const hid_t file = open_file(argv[2]);
         if (command == "list") {
             list(file, "", parts_of(argv[3]), 0);
+        } else if (command == "images") {
+            send_images(file, argv[3], argv[4]);
         } else {
             std::vector<Channel> channels = parse_channels(argv + 4, argc - 4);
             read(file, argv[3], channels);

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/traces/hdf5.hpp"
 #include "data/traces/trace_formats.hpp"
@@ -73,6 +74,7 @@ std::string trace_endings() {
 }
 
 std::string trace_file(const std::string& path) {
+    if (const auto set = dataset_path(path)) return set->folder;
     return path.substr(0, group_mark(path));
 }
 
@@ -94,6 +96,7 @@ diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path)
 diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
                                                 const std::vector<Channel>& channels) {
     if (path == kStandardInput) return open_csv_trace(standard_input(), channels);
+    if (dataset_path(path)) return open_dataset_trace(path, channels);
     if (const Format* format = format_of(trace_file(path))) return format->open(path, channels);
     return diag::Failure{diag::Code::unknown_trace_format,
                          "unknown kind of trace, expected " + trace_endings()};

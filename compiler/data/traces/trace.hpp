@@ -1,9 +1,10 @@
 // Recorded traces and episodes, read a step at a time.
 // Takes: the columns wanted and a file (.npz, .csv or .h5; FILE.h5:GROUP is the episode in a group
-// of it). Gives: one sample a step, missing ones marked. Keeps true: memory does not grow with the
-// number of steps (.csv is streamed; of an .npz member only a buffer is held, a Fortran-ordered T x
-// D array is first unpacked to an unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a
-// process of its own, data/traces/hdf5.hpp).
+// of it, FOLDER:3 an episode of a data set, data/datasets/trace.hpp). Gives: one sample a step,
+// missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed;
+// of an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an
+// unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a process of its own,
+// data/traces/hdf5.hpp).
 #pragma once
 
 #include <cstdint>
@@ -59,7 +60,8 @@ std::string trace_endings();
 /// The path of a trace that comes on standard input, as CSV. It is read once.
 inline constexpr std::string_view kStandardInput = "-";
 
-/// Of FILE.h5:GROUP the file, of any other path the path itself.
+/// Of FILE.h5:GROUP the file, of an episode of a data set its folder, of any other path the path
+/// itself.
 std::string trace_file(const std::string& path);
 
 /// A trace that ends before its first step: neither verdicts nor thresholds come of it.

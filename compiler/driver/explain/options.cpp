@@ -34,7 +34,8 @@ std::string mistake_in_time(const std::string& found) {
 
 void add_explain_options(CLI::App& app, ExplainRequest& request) {
     app.add_option("--trace", request.trace,
-                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it")
+                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it, "
+                   "FOLDER:3 one of a data set")
         ->type_name("FILE")
         ->required();
     add_map_option(app, request.names);

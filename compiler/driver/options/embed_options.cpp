@@ -1,17 +1,52 @@
 #include "driver/options/embed_options.hpp"
 
+#include <map>
+#include <string>
+#include <vector>
+
 #include "driver/fleet/options.hpp"
 #include "driver/options/options.hpp"
+#include "driver/options/recording_options.hpp"
 #include "driver/options/spec_options.hpp"
 
 namespace etlc::driver {
 
+namespace {
+
+/// NAME, the camera of all inputs, or INPUT=NAME.
+void add_camera_option(CLI::App& app, std::map<std::string, std::string>& cameras) {
+    const auto read = [&cameras](const std::vector<std::string>& words) {
+        for (const std::string& word : words) {
+            const std::size_t sign = word.find('=');
+            const std::string input = sign == std::string::npos ? "" : word.substr(0, sign);
+            const std::string camera = sign == std::string::npos ? word : word.substr(sign + 1);
+            if (camera.empty() || sign == 0)
+                throw CLI::ValidationError("--camera takes NAME or INPUT=NAME, not '" + word + "'");
+            if (!cameras.emplace(input, camera).second)
+                throw CLI::ValidationError(
+                    "--camera names " + (input.empty() ? "two cameras" : "'" + input + "' twice"));
+        }
+    };
+    app.add_option_function<std::vector<std::string>>(
+           "--camera", read,
+           "the camera of a data set, or the array of images: observation.images.top; where inputs "
+           "have different ones, z=observation.images.top")
+        ->type_name("[INPUT=]NAME");
+}
+
+}  // namespace
+
 void add_embed_options(CLI::App& app, EmbedRequest& request) {
     add_set_option(app, request.settings);
     app.add_option("--data", request.data,
-                   "recordings to make episodes of: videos, folders of images, folders and "
-                   "'patterns' of these")
+                   "recordings to make episodes of: videos, folders of images, data sets, .npz and "
+                   ".h5 files of images, folders and 'patterns' of these")
         ->type_name("FILE...");
+    add_camera_option(app, request.cameras);
+    add_map_option(app, request.embed.names);
+    app.add_option("--episodes", request.groups,
+                   "groups of .h5 files that are recordings: 'data/*'")
+        ->type_name("PATTERN");
     app.add_option("-o,--output", request.output, "folder where the episodes go, as .npz")
         ->type_name("FOLDER");
     app.add_option("--embedded", request.embedded,

@@ -21,8 +21,9 @@ void add_map_option(CLI::App& app, data::NamesInFile& names) {
 
 void add_episode_options(CLI::App& app, std::vector<std::string>& data, std::string& groups,
                          std::string& allow_overlap, unsigned& jobs) {
-    app.add_option("--data", data,
-                   "episodes: files (" + data::trace_endings() + "), folders, 'patterns'")
+    app.add_option(
+           "--data", data,
+           "episodes: files (" + data::trace_endings() + "), folders, data sets, 'patterns'")
         ->type_name("FILE...")
         ->required();
     app.add_option("--episodes", groups, "groups of .h5 files that are episodes: 'data/*'")

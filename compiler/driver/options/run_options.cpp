@@ -6,7 +6,8 @@ namespace etlc::driver {
 
 void add_run_options(CLI::App& app, RunRequest& run, bool& lets) {
     app.add_option("--trace", run.trace,
-                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it; "
+                   "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it, "
+                   "FOLDER:3 one of a data set; "
                    "- is CSV on standard input, a step as soon as its row is there")
         ->type_name("FILE")
         ->required();

@@ -1,0 +1,351 @@
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <set>
+
+#include "data/datasets/dataset.hpp"
+#include "data/datasets/tasks.hpp"
+#include "data/datasets/template.hpp"
+#include "data/files/file.hpp"
+#include "data/files/paths.hpp"
+#include "data/parquet/table.hpp"
+#include "data/quote.hpp"
+
+namespace etlc::data {
+namespace {
+
+using diag::Code;
+using diag::Failure;
+using Json = nlohmann::json;
+
+constexpr const char* kInfo = "meta/info.json";
+constexpr std::uint64_t kMaxInfoBytes = 64U << 20U;
+constexpr std::uint64_t kMaxEpisodesBytes = 512U << 20U;
+constexpr double kMaxWhole = 9007199254740992;  // 2^53
+
+Failure wrong(const std::string& file, const std::string& why) {
+    return {Code::unreadable_dataset, fmt::format("{} {}", file, why)};
+}
+
+/// What is wrong in a file of the folder.
+Failure in_part(const std::string& file, Failure failure) {
+    failure.message = fmt::format("{}: {}", file, failure.message);
+    return failure;
+}
+
+std::optional<std::uint64_t> whole(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_number()) return std::nullopt;
+    const double value = found->get<double>();
+    if (!(value >= 0) || value > kMaxWhole || value != std::floor(value)) return std::nullopt;
+    return static_cast<std::uint64_t>(value);
+}
+
+std::optional<std::string> text(const Json& object, const char* key) {
+    const auto found = object.find(key);
+    if (found == object.end() || !found->is_string()) return std::nullopt;
+    return found->get<std::string>();
+}
+
+}  // namespace
+
+/// Fills a data set in.
+class DatasetReader {
+public:
+    explicit DatasetReader(const std::string& folder) : set_(std::make_shared<Dataset>()) {
+        set_->folder_ = folder;
+    }
+
+    diag::Result<std::shared_ptr<Dataset>> read() {
+        if (auto failure = read_info()) return *failure;
+        if (auto failure = major_ == 2 ? read_lines() : read_tables()) return *failure;
+        auto& episodes = set_->episodes_;
+        std::sort(episodes.begin(), episodes.end(),
+                  [](const auto& a, const auto& b) { return a.index < b.index; });
+        for (std::size_t i = 1; i < episodes.size(); ++i)
+            if (episodes[i].index == episodes[i - 1].index)
+                return wrong(place_, fmt::format("has episode {} twice", episodes[i].index));
+        if (episodes.empty()) return wrong(place_, "has no episode");
+        compare();
+        return std::move(set_);
+    }
+
+private:
+    std::optional<Failure> read_info() {
+        const auto bytes = read_file(set_->path_of(kInfo), kMaxInfoBytes, Code::unreadable_dataset);
+        if (!bytes) return in_part(kInfo, bytes.failure());
+        info_ = Json::parse(*bytes, nullptr, false);
+        if (!info_.is_object()) return wrong(kInfo, "is not JSON, or no object");
+        const auto version = text(info_, "codebase_version");
+        if (!version) return wrong(kInfo, "does not say its codebase_version");
+        if (*version != "v2.0" && *version != "v2.1" && *version != "v3.0")
+            return wrong(kInfo, fmt::format("is of the version {}, expected v2.0, v2.1 or v3.0; "
+                                            "LeRobot converts others",
+                                            in_quotes(*version)));
+        major_ = (*version)[1] - '0';
+        const auto fps = info_.find("fps");
+        if (fps == info_.end() || !fps->is_number() || !(fps->get<double>() > 0) ||
+            !(fps->get<double>() < 1e6))
+            return wrong(kInfo, "does not say how many rows it has a second (fps)");
+        set_->fps_ = fps->get<double>();
+        const auto features = info_.find("features");
+        if (features == info_.end() || !features->is_object())
+            return wrong(kInfo, "does not list its features");
+        for (const auto& [name, feature] : features->items()) {
+            const auto type = feature.is_object() ? text(feature, "dtype") : std::nullopt;
+            if (!type)
+                return wrong(kInfo, fmt::format("does not say the dtype of {}", in_quotes(name)));
+            set_->features_.push_back({name, *type});
+        }
+        return std::nullopt;
+    }
+
+    /// meta/episodes.jsonl: an object a line.
+    std::optional<Failure> read_lines() {
+        place_ = "meta/episodes.jsonl";
+        const auto bytes =
+            read_file(set_->path_of(place_), kMaxEpisodesBytes, Code::unreadable_dataset);
+        if (!bytes) return in_part(place_, bytes.failure());
+        std::uint32_t line = 0;
+        for (std::size_t at = 0; at < bytes->size();) {
+            const std::size_t end = std::min(bytes->find('\n', at), bytes->size());
+            const std::string_view words = std::string_view(*bytes).substr(at, end - at);
+            at = end + 1;
+            ++line;
+            if (words.find_first_not_of(" \t\r") == std::string_view::npos) continue;
+            const Json json = Json::parse(words, nullptr, false);
+            const auto index = json.is_object() ? whole(json, "episode_index") : std::nullopt;
+            const auto length = json.is_object() ? whole(json, "length") : std::nullopt;
+            if (!index || !length)
+                return wrong(place_, fmt::format("line {} is not an object with episode_index and "
+                                                 "length",
+                                                 line));
+            DatasetEpisode episode{*index, *length, {}, {}, {}};
+            const auto tasks = json.find("tasks");
+            if (tasks != json.end() && tasks->is_array())
+                for (const Json& task : *tasks)
+                    if (task.is_string()) episode.tasks.push_back(task.get<std::string>());
+            if (auto failure = place_lines(episode)) return failure;
+            set_->episodes_.push_back(std::move(episode));
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Failure> place_lines(DatasetEpisode& episode) {
+        const std::uint64_t chunk_size = whole(info_, "chunks_size").value_or(0);
+        if (chunk_size == 0) return wrong(kInfo, "does not say its chunks_size");
+        PathNames names{
+            {{"episode_index", episode.index}, {"episode_chunk", episode.index / chunk_size}}, {}};
+        const auto rows = path("data_path", names);
+        if (!rows) return rows.failure();
+        episode.rows = *rows;
+        for (const std::string& camera : set_->cameras()) {
+            names.words["video_key"] = camera;
+            const auto video = path("video_path", names);
+            if (!video) return video.failure();
+            episode.clips[camera] = {*video, 0, 0, true};
+        }
+        return std::nullopt;
+    }
+
+    /// Of info.json a template, filled in.
+    diag::Result<std::string> path(const char* key, const PathNames& names) {
+        const auto pattern = text(info_, key);
+        if (!pattern) return wrong(kInfo, fmt::format("does not give its {}", key));
+        auto path = path_from(*pattern, names);
+        if (!path) return in_part(kInfo, path.failure());
+        return path;
+    }
+
+    /// meta/episodes/*/*.parquet: a row an episode.
+    std::optional<Failure> read_tables() {
+        place_ = "meta/episodes";
+        const std::string prefix = set_->folder() + "/";
+        const auto files = paths_matching(literal(prefix) + "meta/episodes/*/*.parquet");
+        if (!files || files->empty()) return wrong(place_, "holds no Parquet files of episodes");
+        for (const std::string& file : *files) {
+            const std::string part = file.substr(prefix.size());
+            if (auto failure = read_table(file)) return in_part(part, *failure);
+        }
+        return std::nullopt;
+    }
+
+    std::optional<Failure> read_table(const std::string& file) {
+        const std::vector<std::string> cameras = set_->cameras();
+        std::vector<std::string> names = {"episode_index", "length", "data/chunk_index",
+                                          "data/file_index", "tasks"};
+        for (const std::string& camera : cameras)
+            for (const char* what : {"chunk_index", "file_index", "from_timestamp", "to_timestamp"})
+                names.push_back(fmt::format("videos/{}/{}", camera, what));
+        auto table = Table::open(file, names);
+        if (!table) return table.failure();
+        for (std::size_t i = 0; i < names.size(); ++i) {
+            const Table::Column& column = (*table)->columns()[i];
+            if (names[i] == "tasks") continue;
+            if (!column.is_there || column.is_text || column.is_list)
+                return Failure{Code::unreadable_dataset,
+                               fmt::format("has no column {} of numbers", in_quotes(names[i]))};
+        }
+        std::vector<Table::Cell> cells;
+        for (;;) {
+            const auto more = (*table)->next(cells);
+            if (!more) return more.failure();
+            if (!*more) return std::nullopt;
+            DatasetEpisode episode;
+            for (std::size_t i = 0; i < names.size(); ++i)
+                if (names[i] != "tasks" && (cells[i].is_null || !(cells[i].numbers[0] >= 0) ||
+                                            cells[i].numbers[0] > kMaxWhole))
+                    return Failure{Code::unreadable_dataset,
+                                   fmt::format("has a row whose {} is no number from 0 on",
+                                               in_quotes(names[i]))};
+            const auto number = [&](std::size_t i) {
+                return static_cast<std::uint64_t>(cells[i].numbers[0]);
+            };
+            episode.index = number(0);
+            episode.length = number(1);
+            episode.tasks = cells[4].texts;
+            PathNames at{{{"chunk_index", number(2)}, {"file_index", number(3)}}, {}};
+            const auto rows = path("data_path", at);
+            if (!rows) return rows.failure();
+            episode.rows = *rows;
+            for (std::size_t c = 0; c < cameras.size(); ++c) {
+                const std::size_t first = 5 + 4 * c;
+                at.numbers = {{"chunk_index", number(first)}, {"file_index", number(first + 1)}};
+                at.words["video_key"] = cameras[c];
+                const auto video = path("video_path", at);
+                if (!video) return video.failure();
+                episode.clips[cameras[c]] = {*video, cells[first + 2].numbers[0],
+                                             cells[first + 3].numbers[0], false};
+            }
+            set_->episodes_.push_back(std::move(episode));
+        }
+    }
+
+    /// What the metadata say in two places.
+    void compare() {
+        std::uint64_t rows = 0;
+        for (const DatasetEpisode& episode : set_->episodes_) rows += episode.length;
+        const auto check = [&](const char* key, std::uint64_t found, const char* noun) {
+            const auto promised = whole(info_, key);
+            if (promised && *promised != found)
+                set_->contradictions_.push_back(fmt::format("{} promises {}, {} lists {}", kInfo,
+                                                            diag::counted(*promised, noun), place_,
+                                                            diag::counted(found, noun)));
+        };
+        check("total_episodes", set_->episodes_.size(), "episode");
+        check("total_frames", rows, "row");
+        compare_tasks();
+        find_strangers();
+    }
+
+    /// A data set without the list of its tasks is read all the same.
+    void compare_tasks() {
+        auto& contradictions = set_->contradictions_;
+        const auto list = read_tasks(set_->folder(), major_);
+        if (!list) return contradictions.push_back(list.failure().message);
+        const auto promised = whole(info_, "total_tasks");
+        if (promised && *promised != list->tasks.size())
+            contradictions.push_back(fmt::format("{} promises {}, {} lists {}", kInfo,
+                                                 diag::counted(*promised, "task"), list->file,
+                                                 diag::counted(list->tasks.size(), "task")));
+        std::set<std::string> strange;
+        for (const DatasetEpisode& episode : set_->episodes_)
+            strange.insert(episode.tasks.begin(), episode.tasks.end());
+        for (const std::string& task : list->tasks) strange.erase(task);
+        if (!strange.empty())
+            contradictions.push_back(
+                fmt::format("{} does not list {}, of which {} says that episodes show it",
+                            list->file, listed({strange.begin(), strange.end()}), place_));
+    }
+
+    /// Files of rows that no episode is in.
+    void find_strangers() {
+        const std::string prefix = set_->folder() + "/";
+        const auto files = paths_matching(literal(prefix) + "data/*/*.parquet");
+        std::vector<std::string> known;
+        for (const DatasetEpisode& episode : set_->episodes_) known.push_back(episode.rows);
+        std::sort(known.begin(), known.end());
+        std::vector<std::string> strange;
+        for (const std::string& file : files.value_or(std::vector<std::string>{}))
+            if (!std::binary_search(known.begin(), known.end(), file.substr(prefix.size())))
+                strange.push_back(file.substr(prefix.size()));
+        if (!strange.empty())
+            set_->contradictions_.push_back(fmt::format("{} {}, of which the metadata say nothing",
+                                                        strange.size() == 1 ? "holds" : "hold",
+                                                        listed(strange)));
+    }
+
+    std::shared_ptr<Dataset> set_;
+    Json info_;
+    int major_ = 0;
+    std::string place_;  ///< of the episodes
+};
+
+diag::Result<std::shared_ptr<Dataset>> Dataset::read(const std::string& folder) {
+    return within_memory([&] { return DatasetReader(folder).read(); });
+}
+
+diag::Result<std::shared_ptr<Dataset>> Dataset::known(const std::string& folder) {
+    static std::mutex lock;
+    static std::map<std::string, std::shared_ptr<Dataset>> sets;
+    const std::lock_guard guard(lock);
+    const auto found = sets.find(folder);
+    if (found != sets.end()) return found->second;
+    auto set = read(folder);
+    if (set) sets[folder] = *set;
+    return set;
+}
+
+std::vector<std::string> Dataset::cameras() const {
+    std::vector<std::string> names;
+    for (const Feature& feature : features_)
+        if (feature.type == "video") names.push_back(feature.name);
+    return names;
+}
+
+const DatasetEpisode* Dataset::episode(std::uint64_t index) const {
+    const auto found = std::lower_bound(
+        episodes_.begin(), episodes_.end(), index,
+        [](const DatasetEpisode& episode, std::uint64_t i) { return episode.index < i; });
+    return found != episodes_.end() && found->index == index ? &*found : nullptr;
+}
+
+bool is_dataset(const std::string& folder) {
+    std::error_code error;
+    return std::filesystem::exists(folder + "/" + kInfo, error);
+}
+
+std::optional<DatasetPath> dataset_path(const std::string& path) {
+    std::error_code error;
+    if (is_dataset(path)) {
+        const std::size_t end = path.find_last_not_of('/');
+        return DatasetPath{end == std::string::npos ? path : path.substr(0, end + 1)};
+    }
+    if (std::filesystem::exists(path, error)) return std::nullopt;
+    std::vector<std::uint64_t> numbers;
+    std::string folder = path;
+    while (numbers.size() < 2 && !is_dataset(folder)) {
+        const std::size_t colon = folder.rfind(':');
+        if (colon == std::string::npos) return std::nullopt;
+        std::uint64_t number = 0;
+        const char* const end = folder.data() + folder.size();
+        const auto [rest, failed] = std::from_chars(folder.data() + colon + 1, end, number);
+        if (failed != std::errc() || rest != end) return std::nullopt;
+        numbers.push_back(number);
+        folder.resize(colon);
+    }
+    if (!is_dataset(folder)) return std::nullopt;
+    if (numbers.size() == 1) return DatasetPath{folder, numbers[0], numbers[0] + 1};
+    return DatasetPath{folder, numbers[1], numbers[0]};
+}
+
+std::string episode_path(const std::string& folder, std::uint64_t index) {
+    return fmt::format("{}:{:06}", folder, index);
+}
+
+}  // namespace etlc::data

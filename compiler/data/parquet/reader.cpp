@@ -1,0 +1,100 @@
+// etlc-read-parquet: reads Parquet files in a process of its own, since they may be hostile.
+// Takes: arguments as parquet/protocol.hpp says. Gives: records on standard output. Keeps true: its
+// own memory, files and time are limited before a byte of the file is looked at.
+#include <fcntl.h>
+#include <sys/mman.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <cstring>
+#include <new>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "data/parquet/chunk.hpp"
+#include "data/parquet/protocol.hpp"
+#include "data/parquet/rows.hpp"
+#include "data/records/sender.hpp"
+
+namespace {
+
+using namespace etlc::data;
+using records::Cause;
+using records::Tag;
+
+/// The whole file; a page of it comes into memory when it is read.
+std::string_view map_file(const char* path) {
+    const int descriptor = ::open(path, O_RDONLY | O_CLOEXEC);
+    struct stat status {};
+    if (descriptor < 0 || ::fstat(descriptor, &status) != 0)
+        records::fail(Cause::file, "cannot be read");
+    const auto size = static_cast<std::size_t>(status.st_size);
+    if (size == 0) records::fail(Cause::file, "is empty");
+    void* const bytes = ::mmap(nullptr, size, PROT_READ, MAP_PRIVATE, descriptor, 0);
+    if (bytes == MAP_FAILED) records::fail(Cause::file, "cannot be read");
+    return {static_cast<const char*>(bytes), size};
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+    bytes.append(reinterpret_cast<const char*>(&value), sizeof value);
+}
+
+void append_cell(std::string& bytes, const parquet::Cell& cell, const parquet::Column& column) {
+    if (cell.is_null) return append(bytes, parquet::kNullCell);
+    append(bytes, static_cast<std::uint32_t>(cell.count(column)));
+    for (const double number : cell.numbers) append(bytes, number);
+    for (const std::string& text : cell.texts) {
+        append(bytes, static_cast<std::uint32_t>(text.size()));
+        bytes += text;
+    }
+}
+
+void read(std::string_view file, const std::string& key, double value,
+          const std::vector<std::string>& names) {
+    parquet::Rows rows(file, names);
+    if (!key.empty()) rows.keep(key, value);
+    std::string shapes;
+    for (const parquet::Column* column : rows.columns()) {
+        if (column == nullptr) {
+            shapes += "absent\n";
+            continue;
+        }
+        const bool is_bool = column->physical == parquet::Physical::boolean;
+        shapes += column->is_text() ? "text" : is_bool ? "bool" : "number";
+        shapes += column->is_list ? " list\n" : "\n";
+    }
+    records::send(Tag::shapes, shapes);
+    std::string block;
+    std::vector<parquet::Cell> cells;
+    while (rows.next(cells)) {
+        std::size_t i = 0;
+        for (const parquet::Column* column : rows.columns())
+            if (column != nullptr) append_cell(block, cells[i++], *column);
+        if (block.size() > records::kMaxRecordBytes)
+            records::fail(Cause::file, "has a row of more bytes than are read");
+        if (block.size() < records::kBlockBytes) continue;
+        records::send(Tag::rows, block);
+        block.clear();
+    }
+    if (!block.empty()) records::send(Tag::rows, block);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+    if (argc < 5 || std::string_view(argv[1]) != "read") return 2;
+    const std::string_view file = map_file(argv[2]);
+    records::limit_resources(file.size());
+    try {
+        read(file, argv[3], std::strtod(argv[4], nullptr), {argv + 5, argv + argc});
+    } catch (const parquet::Refused& refused) {
+        records::fail(refused.cause(), refused.what());
+    } catch (const std::bad_alloc&) {
+        records::fail(Cause::file, "takes more memory than reading it may");
+    }
+    records::done();
+}

@@ -1,0 +1,136 @@
+#!/usr/bin/env python3
+"""image_arrays_test.py ETLC HDF5: arrays of images in .npz and .h5 files, and GIFs, become episodes
+of the same embeddings as the pixels; the arrays beside them become its other inputs."""
+import os
+import subprocess
+import sys
+import tempfile
+import zlib
+
+import numpy as np
+
+ETLC = os.path.abspath(sys.argv[1])
+HDF5 = os.path.abspath(sys.argv[2])
+STEPS, ROWS, COLUMNS = 6, 7, 5
+ENCODER = """
+import struct, sys, zlib
+write = sys.stdout.buffer.write
+write(struct.pack("<I", 2))
+while head := sys.stdin.buffer.read(8):
+    height, width = struct.unpack("<II", head)
+    crc = zlib.crc32(sys.stdin.buffer.read(height * width * 3))
+    write(struct.pack("<ff", crc & 0xffff, crc >> 16))
+"""
+SPEC = """spec seen;
+encoder see = load("see.py");
+input z : f32[2] by see;
+target none = [[0, 0]];
+{}monitor m = F l2(z, none) <= 1;
+"""
+OTHERS = """input q : f32[3];
+input grip : f32;
+target home = [[0, 0, 0]];
+monitor n = F (l2(q, home) <= grip);
+"""
+
+
+def checksums(frames):
+    crc = np.array([zlib.crc32(frame.tobytes()) for frame in frames], np.uint32)
+    return np.stack([crc & 0xFFFF, crc >> 16], 1).astype(np.float32)
+
+
+def embed(*words, spec="others.etl", status=0):
+    done = subprocess.run([ETLC, "embed", spec, "-o", "out", "--encoder-cmd",
+                           f"{sys.executable} see.py", *words], capture_output=True, text=True)
+    assert done.returncode == status, (words, done.stdout, done.stderr)
+    return done.stderr
+
+
+def check(path, images, q, grip):
+    made = np.load(path)
+    assert np.array_equal(made["z"], checksums(images)), path
+    assert np.array_equal(made["q"], q) and np.array_equal(made["grip"], grip), path
+
+
+def archives(random):
+    images = random.integers(0, 256, (STEPS, ROWS, COLUMNS, 3), dtype=np.uint8)
+    other = random.integers(0, 256, (STEPS, ROWS, COLUMNS, 3), dtype=np.uint8)
+    q = random.normal(size=(STEPS, 3)).astype(np.float32)
+    grip = random.normal(size=STEPS).astype(np.float32)
+    os.mkdir("runs")
+    np.savez("runs/one.npz", image=images, q=q, grip=grip)
+    np.savez_compressed("runs/two.npz", image=images[::-1].copy(), q=q, grip=grip)
+    embed("--data", "runs")
+    check("out/one.npz", images, q, grip)
+    check("out/two.npz", images[::-1], q, grip)
+    np.savez("many.npz", image=images, wrist=other, state=q, grip=grip)
+    embed("--data", "many.npz", "--camera", "wrist", "--map", "q=state")
+    check("out/many.npz", other, q, grip)
+
+    np.savez("floats.npz", image=images / 255, q=q, grip=grip)
+    np.savez("grey.npz", image=images[..., 0], q=q, grip=grip)
+    np.savez("short.npz", image=images[1:], q=q, grip=grip)
+    np.savez("turned.npz", image=np.asfortranarray(images), q=q, grip=grip)
+    with open("runs/one.npz", "rb") as whole, open("cut.npz", "wb") as cut:
+        cut.write(whole.read()[:900])
+    for words, code, said in (
+            (["many.npz"], "E0852", "has the arrays of images 'image' and 'wrist'; name one"),
+            (["many.npz", "--camera", "top"], "E0852", "top"),
+            (["floats.npz"], "E0852", "has no array of images"),
+            (["floats.npz", "--camera", "image"], "E0808", "elements of float64, expected uint8"),
+            (["grey.npz", "--camera", "image"], "E0807", "has shape (6, 7, 5), expected"),
+            (["turned.npz", "--camera", "image"], "E0806", "Fortran order"),
+            (["short.npz"], "E0807", "'q' has 6 steps, 'z' has 5"),
+            (["cut.npz"], "E0806", "cut.npz")):
+        found = embed("--data", *words, status=1)
+        assert f"[{code}]" in found and said in found, (code, said, found)
+
+
+def groups():
+    """As robomimic has them: the file is made by images_hdf5.cpp."""
+    subprocess.run([HDF5, "demos.h5"], check=True)
+    embed("--data", "demos.h5", "--episodes", "data/*", "--camera", "obs/agentview_image",
+          "--map", "q=obs/eef_pos", "grip=actions")
+    for demo in range(2):
+        step, row, column, channel = np.ogrid[:4, :6, :8, :3]
+        images = ((37 * demo + 11 * step + 5 * row + 3 * column + channel) % 256).astype(np.uint8)
+        q = np.array([[demo + step + i / 2 for i in range(3)] for step in range(4)])
+        check(f"out/demos-demo_{demo}.npz", images, q, np.arange(4) / 4 + demo)
+    for words, code, said in (
+            (["demos.h5:data/demo_0"], "E0852",
+             "has the datasets of images 'obs/agentview_image', 'obs/eye_in_hand_image'; name one"),
+            (["demos.h5:data/demo_0", "--camera", "obs/eef_pos"], "E0808", "holds no images"),
+            (["demos.h5:data/demo_0", "--camera", "obs/top"], "E0852", "no dataset 'obs/top'"),
+            (["demos.h5:data/demo_7", "--camera", "obs/top"], "E0852", "no group 'data/demo_7'")):
+        found = embed("--data", *words, "--map", "q=obs/eef_pos", "grip=actions", status=1)
+        assert f"[{code}]" in found and said in found, (code, said, found)
+
+
+def moving_pictures():
+    """A GIF is a video: its frames are those of ffmpeg."""
+    def call(*words):
+        return subprocess.run(["ffmpeg", "-v", "error", *words], check=True,
+                              capture_output=True).stdout
+
+    call("-f", "lavfi", "-i", "testsrc2=size=32x24:rate=10:duration=1", "drive.gif")
+    raw = call("-i", "drive.gif", "-fps_mode", "passthrough", "-f", "rawvideo", "-pix_fmt",
+               "rgb24", "-")
+    frames = np.frombuffer(raw, np.uint8).reshape(-1, 24, 32, 3)
+    embed("--data", "drive.gif", spec="seen.etl")
+    assert np.array_equal(np.load("out/drive.npz")["z"], checksums(frames)) and len(frames) == 10
+
+
+def main():
+    for name, text in (("see.py", ENCODER), ("seen.etl", SPEC.format("")),
+                       ("others.etl", SPEC.format(OTHERS))):
+        with open(name, "w", encoding="utf-8") as file:
+            file.write(text)
+    archives(np.random.default_rng(2))
+    groups()
+    moving_pictures()
+
+
+with tempfile.TemporaryDirectory() as box:
+    os.chdir(box)
+    main()
+    os.chdir("/")

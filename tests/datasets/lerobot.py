@@ -1,0 +1,158 @@
+"""Data sets as LeRobot writes them, made for tests: `write(folder, release, lengths)`."""
+import json
+import os
+import subprocess
+
+import numpy as np
+
+import parquet_writer as parquet
+
+FPS, STATE, ACTION, SIDES = 10, 4, 2, (48, 64)
+CAMERAS = ("observation.images.top", "observation.images.wrist")
+TASKS = ("pick the cube", "place it in the bin")
+PATHS = {
+    "v2.1": ("data/chunk-{episode_chunk:03d}/episode_{episode_index:06d}.parquet",
+             "videos/chunk-{episode_chunk:03d}/{video_key}/episode_{episode_index:06d}.mp4"),
+    "v3.0": ("data/chunk-{chunk_index:03d}/file-{file_index:03d}.parquet",
+             "videos/{video_key}/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4")}
+
+
+def call(*words):
+    done = subprocess.run(words, capture_output=True)
+    assert done.returncode == 0, (words, done.stderr)
+    return done.stdout
+
+
+def video(path, frames, seed):
+    os.makedirs(os.path.dirname(path), exist_ok=True)
+    made = (f"testsrc2=size={SIDES[1]}x{SIDES[0]}:rate={FPS},hue=h={40 * seed},"
+            f"trim=end_frame={frames}")
+    call("ffmpeg", "-v", "error", "-y", "-f", "lavfi", "-i", made, "-pix_fmt", "yuv420p", "-c:v",
+         "libx264", "-g", "5", path)
+
+
+def raw_frames(path):
+    """The frames as ffmpeg has them."""
+    raw = call("ffmpeg", "-v", "error", "-i", path, "-f", "rawvideo", "-pix_fmt", "rgb24", "-")
+    return np.frombuffer(raw, np.uint8).reshape(-1, *SIDES, 3)
+
+
+def rows_of(lengths):
+    """The columns of all episodes, and the states, actions and labels as arrays by episode."""
+    random = np.random.default_rng(5)
+    columns = {"observation.state": (parquet.FLOAT, []), "action": (parquet.FLOAT, []),
+               "next.success": (parquet.BOOL, []), "note": (parquet.TEXT, []),
+               "timestamp": (parquet.FLOAT, []), "frame_index": (parquet.INT64, []),
+               "episode_index": (parquet.INT64, []), "index": (parquet.INT64, []),
+               "task_index": (parquet.INT64, [])}
+    truth = []
+    for episode, length in enumerate(lengths):
+        state = random.normal(size=(length, STATE)).astype(np.float32)
+        action = random.integers(-3, 4, (length, ACTION)).astype(np.float32) / 4
+        success = np.arange(length) >= length - 3
+        truth.append((state, action, success))
+        for step in range(length):
+            row = {"observation.state": [float(x) for x in state[step]],
+                   "action": [float(x) for x in action[step]],
+                   "next.success": bool(success[step]), "note": f"step {step % 3}",
+                   "timestamp": float(np.float32(step / FPS)), "frame_index": step,
+                   "episode_index": episode, "index": len(columns["index"][1]),
+                   "task_index": episode % len(TASKS)}
+            for name, value in row.items():
+                columns[name][1].append(value)
+    return columns, truth
+
+
+def info_of(version, lengths):
+    features = {"observation.state": {"dtype": "float32", "shape": [STATE]},
+                "action": {"dtype": "float32", "shape": [ACTION]},
+                "next.success": {"dtype": "bool", "shape": [1]},
+                "note": {"dtype": "string", "shape": [1]},
+                "timestamp": {"dtype": "float32", "shape": [1]}}
+    for name in ("frame_index", "episode_index", "index", "task_index"):
+        features[name] = {"dtype": "int64", "shape": [1]}
+    for camera in CAMERAS:
+        features[camera] = {"dtype": "video", "shape": [*SIDES, 3]}
+    rows, videos = PATHS[version]
+    return {"codebase_version": version, "robot_type": "test", "total_episodes": len(lengths),
+            "total_frames": sum(lengths), "total_tasks": len(TASKS), "chunks_size": 1000,
+            "fps": FPS, "splits": {"train": f"0:{len(lengths)}"}, "data_path": rows,
+            "video_path": videos, "features": features}
+
+
+def write_json(path, value):
+    with open(path, "w", encoding="utf-8") as file:
+        json.dump(value, file, indent=4)
+
+
+def write_21(folder, lengths, columns, how):
+    with open(f"{folder}/meta/episodes.jsonl", "w", encoding="utf-8") as file:
+        for episode, length in enumerate(lengths):
+            file.write(json.dumps({"episode_index": episode, "length": length,
+                                   "tasks": [TASKS[episode % len(TASKS)]]}) + "\n")
+    with open(f"{folder}/meta/tasks.jsonl", "w", encoding="utf-8") as file:
+        for number, task in enumerate(TASKS):
+            file.write(json.dumps({"task_index": number, "task": task}) + "\n")
+    os.makedirs(f"{folder}/data/chunk-000")
+    first = 0
+    for episode, length in enumerate(lengths):
+        own = {name: (kind, values[first:first + length])
+               for name, (kind, values) in columns.items()}
+        parquet.write(f"{folder}/data/chunk-000/episode_{episode:06}.parquet", own, **how)
+        first += length
+        for number, camera in enumerate(CAMERAS):
+            video(f"{folder}/videos/chunk-000/{camera}/episode_{episode:06}.mp4", length,
+                  2 * episode + number)
+
+
+def episode_table(lengths):
+    """Two files of rows, of which the second has the last episode; one video for all."""
+    begins = [sum(lengths[:i]) for i in range(len(lengths))]
+    files = [int(i == len(lengths) - 1) for i in range(len(lengths))]
+    zeros = [0] * len(lengths)
+    table = {"episode_index": (parquet.INT64, list(range(len(lengths)))),
+             "tasks": (parquet.TEXT, [[TASKS[i % len(TASKS)]] for i in range(len(lengths))]),
+             "length": (parquet.INT64, list(lengths)), "data/chunk_index": (parquet.INT64, zeros),
+             "data/file_index": (parquet.INT64, files),
+             "stats/action/mean": (parquet.DOUBLE, [[0.5]] * len(lengths))}
+    for camera in CAMERAS:
+        ends = [begin + length for begin, length in zip(begins, lengths)]
+        table[f"videos/{camera}/chunk_index"] = (parquet.INT64, zeros)
+        table[f"videos/{camera}/file_index"] = (parquet.INT64, zeros)
+        table[f"videos/{camera}/from_timestamp"] = (parquet.DOUBLE, [x / FPS for x in begins])
+        table[f"videos/{camera}/to_timestamp"] = (parquet.DOUBLE, [x / FPS for x in ends])
+    return table
+
+
+def write_30(folder, lengths, columns, how):
+    os.makedirs(f"{folder}/meta/episodes/chunk-000")
+    os.makedirs(f"{folder}/data/chunk-000")
+    parquet.write(f"{folder}/meta/episodes/chunk-000/file-000.parquet", episode_table(lengths),
+                  nested=("stats/action/mean",), **how)
+    parquet.write(f"{folder}/meta/tasks.parquet",
+                  {"task_index": (parquet.INT64, [0, 1]),
+                   "__index_level_0__": (parquet.TEXT, list(TASKS))}, **how)
+    begin = sum(lengths[:-1])
+    for file, part in enumerate((slice(0, begin), slice(begin, None))):
+        own = {name: (kind, values[part]) for name, (kind, values) in columns.items()}
+        parquet.write(f"{folder}/data/chunk-000/file-{file:03}.parquet", own, group_rows=lengths[0],
+                      **how)
+    for number, camera in enumerate(CAMERAS):
+        video(f"{folder}/videos/{camera}/chunk-000/file-000.mp4", sum(lengths), number)
+
+
+def write(folder, release, lengths, **how):
+    """Gives the states, actions and labels of each episode."""
+    os.makedirs(f"{folder}/meta")
+    columns, truth = rows_of(lengths)
+    write_json(f"{folder}/meta/info.json", info_of(release, lengths))
+    (write_21 if release == "v2.1" else write_30)(folder, lengths, columns, how)
+    return truth
+
+
+def frames_of(folder, version, lengths, episode, camera):
+    if version == "v2.1":
+        return raw_frames(f"{folder}/videos/chunk-000/{camera}/episode_{episode:06}.mp4")
+    begin = sum(lengths[:episode])
+    return raw_frames(f"{folder}/videos/{camera}/chunk-000/file-000.mp4")[
+        begin:begin + lengths[episode]]

@@ -1,0 +1,160 @@
+#!/usr/bin/env python3
+"""parquet_test.py ETLC: etlc-read-parquet gives the cells that were written, in every form that it
+takes; what it does not take, and what is damaged, it names."""
+import itertools
+import math
+import os
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+import parquet_writer as parquet
+
+READER = os.path.join(os.path.dirname(os.path.abspath(sys.argv[1])), "etlc-read-parquet")
+ROWS = 257
+NULL = 0xFFFFFFFF
+
+
+def records(path, *words):
+    done = subprocess.run([READER, "read", path, *words], capture_output=True)
+    found, at = [], 0
+    while at < len(done.stdout):
+        tag, size = struct.unpack_from("<cI", done.stdout, at)
+        found.append((tag, done.stdout[at + 5:at + 5 + size]))
+        at += 5 + size
+    return found
+
+
+def refusal(path, *names):
+    tag, text = records(path, "", "0", *names)[-1]
+    assert tag == b"F", (tag, names)
+    return text[1:].decode()
+
+
+def read(path, names, key="", value=0):
+    found = records(path, key, str(value), *names)
+    assert found[0][0] == b"S" and found[-1][0] == b"E", found[-1]
+    shapes = found[0][1].decode().splitlines()
+    data, at, rows = b"".join(body for tag, body in found if tag == b"R"), 0, []
+    while at < len(data):
+        row = []
+        for shape in shapes:
+            if shape == "absent":
+                continue
+            count = struct.unpack_from("<I", data, at)[0]
+            at += 4
+            if count == NULL:
+                row.append(None)
+                continue
+            cell = []
+            for _ in range(count):
+                if shape.startswith("text"):
+                    size = struct.unpack_from("<I", data, at)[0]
+                    cell.append(data[at + 4:at + 4 + size].decode())
+                    at += 4 + size
+                else:
+                    cell.append(struct.unpack_from("<d", data, at)[0])
+                    at += 8
+            row.append(cell if shape.endswith("list") else cell[0])
+        rows.append(row)
+    return shapes, rows
+
+
+def columns():
+    real = [float(np.float32(random.random())) for _ in range(ROWS)]
+    return {
+        "t": (parquet.TEXT, [f"task {i % 3}" if i % 11 else None for i in range(ROWS)]),
+        "f": (parquet.FLOAT, [random.choice(real[:20]) for _ in range(ROWS)]),
+        "d": (parquet.DOUBLE, [random.random() if i % 7 else None for i in range(ROWS)]),
+        "i": (parquet.INT64, [i // 9 for i in range(ROWS)]),
+        "k": (parquet.INT32, [-i for i in range(ROWS)]),
+        "b": (parquet.BOOL, [i % 5 < 2 for i in range(ROWS)]),
+        "l": (parquet.FLOAT, [random.sample(real, 6) for _ in range(ROWS)]),
+        "v": (parquet.FLOAT, [None if i % 13 == 0 else [None if j == 2 else float(j)
+                                                        for j in range(i % 5)]
+                              for i in range(ROWS)]),
+        "s": (parquet.TEXT, [[f"x{j}" for j in range(i % 3)] for i in range(ROWS)])}
+
+
+def same(a, b):
+    if isinstance(a, list) and isinstance(b, list):
+        return len(a) == len(b) and all(same(x, y) for x, y in zip(a, b))
+    return a == b or (a is None and isinstance(b, float) and math.isnan(b))
+
+
+def forms_are_read():
+    for codec, dictionary, version, page, group in itertools.product(
+            (parquet.NONE, parquet.SNAPPY, parquet.ZSTD), (False, True), (1, 2), (1000, 50),
+            (10**6, 100)):
+        made = columns()
+        parquet.write("t.parquet", made, codec=codec, dictionary=dictionary, version=version,
+                      page_rows=page, group_rows=group, checksums=codec != parquet.NONE)
+        shapes, rows = read("t.parquet", [*made, "absent"])
+        assert shapes == ["text", "number", "number", "number", "number", "bool", "number list",
+                          "number list", "text list", "absent"], shapes
+        assert len(rows) == ROWS
+        for place, (name, (_, values)) in enumerate(made.items()):
+            found = [row[place] for row in rows]
+            for wanted, cell in zip(values, found):
+                assert (cell is None) == (wanted is None) and same(wanted, cell), \
+                    (codec, dictionary, version, page, group, name, wanted, cell)
+        _, some = read("t.parquet", ["i", "k"], "i", 7)
+        assert some == [[7, -i] for i in range(63, 72)], some
+
+
+def others_are_named():
+    column = {"q": (parquet.FLOAT, [float(i % 4) for i in range(100)]),
+              "l": (parquet.FLOAT, [[1.0, 2.0]] * 100)}
+    for words, how in (
+            ("column 'q' is packed by GZIP, expected UNCOMPRESSED, SNAPPY or ZSTD",
+             {"codec": parquet.NONE, "codec_said": parquet.GZIP}),
+            ("column 'q' is encoded as DELTA_BINARY_PACKED, expected PLAIN, RLE or a dictionary",
+             {"encoding": parquet.DELTA}),
+            ("place 3 in a dictionary of 3", {"dictionary": True, "bad_place": True}),
+            ("fewer rows than its row group", {"claims": 40}),
+            ("column 'q' ends in the", {"claims": 2**31 - 1})):
+        made = dict(column)
+        if "bad_place" in how:
+            made["q"] = (parquet.FLOAT, [float(i % 3) for i in range(100)])
+        parquet.write("t.parquet", made, **how)
+        assert words in refusal("t.parquet", "q"), (words, refusal("t.parquet", "q"))
+    parquet.write("t.parquet", column, nested=("l",))
+    assert refusal("t.parquet", "l") == ("column 'l' has lists nested in lists, expected a number, "
+                                         "a text or a list of them")
+    assert read("t.parquet", ["q"])[1][5] == [1.0], "other columns are read"
+
+
+def damage_is_named():
+    whole = parquet.Writer(checksums=True).write({"q": (parquet.FLOAT, [0.5] * 100)})
+    claim = whole[:-8] + struct.pack("<I", 2**31) + b"PAR1"
+    turned = bytearray(whole)
+    turned[60] ^= 1
+    for bytes_, words in ((b"", "is empty"), (b"version 1", "does not begin with PAR1"),
+                          (whole[:-3], "is cut"), (whole[:20], "is cut"),
+                          (b"PARE" + whole[4:], "is encrypted"),
+                          (whole[:-4] + b"PARE", "is encrypted"),
+                          (claim, "has a footer of 2147483648 bytes"),
+                          (bytes(turned), "checksum")):
+        with open("t.parquet", "wb") as file:
+            file.write(bytes_)
+        assert words in refusal("t.parquet", "q"), (words, refusal("t.parquet", "q"))
+    for _ in range(300):  # and whatever else happens to a file, it is told
+        broken = bytearray(whole)
+        for _ in range(random.randrange(1, 4)):
+            broken[random.randrange(len(broken))] = random.randrange(256)
+        with open("t.parquet", "wb") as file:
+            file.write(broken)
+        assert records("t.parquet", "", "0", "q")[-1][0] in (b"E", b"F")
+
+
+with tempfile.TemporaryDirectory() as box:
+    os.chdir(box)
+    random.seed(3)
+    forms_are_read()
+    others_are_named()
+    damage_is_named()
+    os.chdir("/")

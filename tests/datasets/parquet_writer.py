@@ -1,0 +1,210 @@
+"""Writes Parquet files for tests, from the format's own page (apache/parquet-format) and sharing
+nothing with the reader. `write(path, columns, **how)`: each column is (type, values); values of a
+list column are lists, None is a null."""
+import struct
+import zlib
+
+import snappy
+import zstandard
+
+BOOL, INT32, INT64, FLOAT, DOUBLE, TEXT = 0, 1, 2, 4, 5, 6
+PLAIN, RLE, DELTA, RLE_DICTIONARY = 0, 3, 5, 8
+NONE, SNAPPY, GZIP, ZSTD = 0, 1, 2, 6
+FORMATS = {INT32: "<i", INT64: "<q", FLOAT: "<f", DOUBLE: "<d"}
+
+
+def varint(n):
+    out = b""
+    while n >= 0x80:
+        out += bytes([n & 0x7F | 0x80])
+        n >>= 7
+    return out + bytes([n])
+
+
+def zigzag(n):
+    return varint(n << 1 if n >= 0 else (-n << 1) - 1)
+
+
+class I32(int):
+    """An integer of 32 bits; int itself is one of 64."""
+
+
+def thrift(value):
+    """(type, bytes) of a value: a dict is a struct of fields by number."""
+    if isinstance(value, bool):
+        return (1 if value else 2), b""
+    if isinstance(value, I32):
+        return 5, zigzag(value)
+    if isinstance(value, int):
+        return 6, zigzag(value)
+    if isinstance(value, (str, bytes)):
+        raw = value.encode() if isinstance(value, str) else value
+        return 8, varint(len(raw)) + raw
+    if isinstance(value, list):
+        items = [thrift(item) for item in value]
+        kind = items[0][0] if items else 12
+        head = bytes([len(items) << 4 | kind]) if len(items) < 15 else \
+            bytes([0xF0 | kind]) + varint(len(items))
+        return 9, head + b"".join(raw for _, raw in items)
+    out, last = b"", 0
+    for number in sorted(value):
+        kind, raw = thrift(value[number])
+        near = number - last
+        out += (bytes([near << 4 | kind]) if near <= 15 else bytes([kind]) + zigzag(number)) + raw
+        last = number
+    return 12, out + b"\0"
+
+
+def hybrid(values, bits):
+    """Runs of eight or more are runs, all else is packed, eight numbers a group."""
+    out, at = b"", 0
+
+    def run(i):
+        end = i
+        while end < len(values) and values[end] == values[i]:
+            end += 1
+        return end - i
+
+    while at < len(values):
+        if run(at) >= 8:
+            n = run(at)
+            out += varint(n << 1) + values[at].to_bytes((bits + 7) // 8, "little")
+            at += n
+            continue
+        end = at
+        while end < len(values) and ((end - at) % 8 or run(end) < 8):
+            end += 1
+        group = values[at:end] + [0] * (-(end - at) % 8)
+        word = sum(value << bits * i for i, value in enumerate(group))
+        out += varint(len(group) // 8 << 1 | 1) + word.to_bytes(len(group) * bits // 8, "little")
+        at = end
+    return out
+
+
+def plain(kind, values):
+    if kind == BOOL:
+        bits = sum(int(value) << i for i, value in enumerate(values))
+        return bits.to_bytes((len(values) + 7) // 8, "little")
+    if kind == TEXT:
+        return b"".join(struct.pack("<I", len(v.encode())) + v.encode() for v in values)
+    return b"".join(struct.pack(FORMATS[kind], value) for value in values)
+
+
+def packed(codec, raw):
+    if codec == SNAPPY:
+        return snappy.compress(raw)
+    return zstandard.ZstdCompressor().compress(raw) if codec == ZSTD else raw
+
+
+def levels(rows, is_list):
+    """Of rows the repetitions, the definitions, and the values that are there."""
+    repetitions, definitions, there = [], [], []
+    for row in rows:
+        items = row if is_list else [row]
+        if row is None or not items:
+            repetitions.append(0)
+            definitions.append(0 if row is None else 1)
+            continue
+        for i, item in enumerate(items):
+            repetitions.append(min(i, 1))
+            definitions.append((3 if is_list else 1) - (item is None))
+            if item is not None:
+                there.append(item)
+    return repetitions, definitions, there
+
+
+class Writer:
+    def __init__(self, codec=SNAPPY, dictionary=False, version=1, page_rows=1000, group_rows=10**6,
+                 checksums=False, encoding=None, claims=None, codec_said=None, bad_place=False):
+        self.codec, self.dictionary, self.version = codec, dictionary, version
+        self.page_rows, self.group_rows, self.checksums = page_rows, group_rows, checksums
+        self.encoding, self.claims, self.codec_said = encoding, claims, codec_said
+        self.bad_place = bad_place
+        self.out = b"PAR1"
+
+    def page(self, head, raw, body):
+        head.update({2: I32(len(raw)), 3: I32(len(body))})
+        if self.checksums:
+            crc = zlib.crc32(body)
+            head[4] = I32(crc - (1 << 32) if crc >= 1 << 31 else crc)
+        self.out += thrift(head)[1] + body
+
+    def chunk(self, name, kind, rows, is_list):
+        begin, dictionary, dictionary_at = len(self.out), None, None
+        if self.dictionary and kind != BOOL:
+            dictionary = sorted(set(levels(rows, is_list)[2]))
+            raw = plain(kind, dictionary)
+            dictionary_at = begin
+            self.page({1: I32(2), 7: {1: I32(len(dictionary)), 2: I32(PLAIN)}}, raw,
+                      packed(self.codec, raw))
+        data_at, count = len(self.out), 0
+        for first in range(0, len(rows), self.page_rows):
+            repetitions, definitions, there = levels(rows[first:first + self.page_rows], is_list)
+            bits = 2 if is_list else 1
+            parts = [hybrid(repetitions, 1)] if is_list else [b""]
+            parts.append(hybrid(definitions, bits))
+            encoding, values = PLAIN, b""
+            if dictionary is not None:
+                encoding, width = RLE_DICTIONARY, max(1, (len(dictionary) - 1).bit_length())
+                places = [dictionary.index(value) for value in there]
+                if self.bad_place:
+                    places = [2**width - 1 for _ in places]
+                values = bytes([width]) + hybrid(places, width)
+            elif kind == BOOL and self.version == 2:
+                encoding, runs = RLE, hybrid([int(value) for value in there], 1)
+                values = struct.pack("<I", len(runs)) + runs
+            else:
+                values = plain(kind, there)
+            said = I32(encoding if self.encoding is None else self.encoding)
+            claimed = I32(len(repetitions) if self.claims is None else self.claims)
+            count += int(claimed)
+            if self.version == 1:
+                sized = [struct.pack("<I", len(part)) + part for part in parts if part]
+                raw = b"".join(sized) + values
+                self.page({1: I32(0), 5: {1: claimed, 2: said, 3: I32(RLE), 4: I32(RLE)}}, raw,
+                          packed(self.codec, raw))
+            else:
+                raw = b"".join(parts)
+                self.page({1: I32(3), 8: {1: claimed, 2: I32(definitions.count(0)),
+                                          3: I32(self.page_rows), 4: said, 5: I32(len(parts[1])),
+                                          6: I32(len(parts[0])), 7: self.codec != NONE}},
+                          raw + values, raw + packed(self.codec, values))
+        path = [name, "list", "element"] if is_list else [name]
+        codec = self.codec if self.codec_said is None else self.codec_said
+        about = {1: I32(kind), 2: [I32(PLAIN)], 3: path, 4: I32(codec), 5: count,
+                 6: len(self.out) - begin, 7: len(self.out) - begin, 9: data_at}
+        if dictionary_at is not None:
+            about[11] = dictionary_at
+        return {2: begin, 3: about}
+
+    def write(self, columns, nested=()):
+        """`nested`: columns of lists in lists, which are only declared."""
+        schema = [{4: "schema", 5: I32(len(columns))}]
+        shapes = {}
+        for name, (kind, values) in columns.items():
+            is_list = any(isinstance(value, list) for value in values)
+            shapes[name] = is_list
+            leaf = {1: I32(kind), 3: I32(1), 4: "element" if is_list else name}
+            if kind == TEXT:
+                leaf[6] = I32(0)
+            if is_list:
+                schema += [{3: I32(1), 4: name, 5: I32(1), 6: I32(3)},
+                           {3: I32(2), 4: "list", 5: I32(1)}]
+                if name in nested:
+                    schema += [{3: I32(1), 4: "element", 5: I32(1), 6: I32(3)},
+                               {3: I32(2), 4: "list", 5: I32(1)}]
+            schema.append(leaf)
+        total = len(next(iter(columns.values()))[1])
+        groups = []
+        for first in range(0, total, self.group_rows):
+            rows = min(self.group_rows, total - first)
+            chunks = [self.chunk(name, kind, values[first:first + rows], shapes[name])
+                      for name, (kind, values) in columns.items()]
+            groups.append({1: chunks, 2: 0, 3: rows})
+        footer = thrift({1: I32(2), 2: schema, 3: total, 4: groups, 6: "tests"})[1]
+        return self.out + footer + struct.pack("<I", len(footer)) + b"PAR1"
+
+
+def write(path, columns, nested=(), **how):
+    with open(path, "wb") as file:
+        file.write(Writer(**how).write(columns, nested))

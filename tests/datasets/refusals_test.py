@@ -1,0 +1,216 @@
+#!/usr/bin/env python3
+"""refusals_test.py ETLC: data sets that lie, lack something or are damaged. What lacks is named and
+left out, and the rest is read; what cannot be read at all is an error."""
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+
+import lerobot
+import parquet_writer as parquet
+
+ETLC = os.path.abspath(sys.argv[1])
+LENGTHS = (9, 8, 7)
+TOP, WRIST = lerobot.CAMERAS
+ENCODER = """
+import struct, sys
+write = sys.stdout.buffer.write
+write(struct.pack("<I", 1))
+while head := sys.stdin.buffer.read(8):
+    height, width = struct.unpack("<II", head)
+    write(struct.pack("<f", sys.stdin.buffer.read(height * width * 3)[0]))
+"""
+PLAIN = "spec plain;\nrate {} Hz;\ninput q : {};\nmonitor m = F {} > 1;\n"
+SEEN = """spec seen;
+rate 10 Hz;
+encoder see = load("see.py");
+input z : f32[1] by see;
+target none = [[0]];
+monitor m = F l2(z, none) <= 1;
+"""
+
+
+def embed(spec, *words, status):
+    shutil.rmtree("out", ignore_errors=True)
+    done = subprocess.run([ETLC, "embed", spec, *words, "-o", "out", "--encoder-cmd",
+                           f"{sys.executable} see.py"], capture_output=True, text=True)
+    assert done.returncode == status, (words, done.stdout, done.stderr)
+    return done.stderr
+
+
+def change(path, make):
+    with open(path, encoding="utf-8") as file:
+        value = json.load(file)
+    make(value)
+    lerobot.write_json(path, value)
+
+
+def write(path, text, mode="w"):
+    with open(path, mode) as file:
+        file.write(text)
+
+
+def rewrite_lines(make):
+    path = "set/meta/episodes.jsonl"
+    with open(path, encoding="utf-8") as file:
+        lines = [json.loads(line) for line in file]
+    for number, line in enumerate(lines):
+        make(number, line)
+    write(path, "".join(json.dumps(line) + "\n" for line in lines))
+
+
+def rewrite_rows(episode, make):
+    columns, _ = lerobot.rows_of(LENGTHS)
+    begin = sum(LENGTHS[:episode])
+    own = {name: (kind, values[begin:begin + LENGTHS[episode]])
+           for name, (kind, values) in columns.items()}
+    make(own)
+    parquet.write(f"set/data/chunk-000/episode_{episode:06}.parquet", own)
+
+
+def rewrite_table(make):
+    table = lerobot.episode_table(LENGTHS)
+    make(table)
+    parquet.write("set/meta/episodes/chunk-000/file-000.parquet", table,
+                  nested=("stats/action/mean",))
+
+
+# What lacks: a change, the words of the warning, and the episodes that are left.
+ROWS = "set/data/chunk-000/episode_000001.parquet"
+VIDEO = f"set/videos/chunk-000/{TOP}/episode_000001.mp4"
+LACKING_21 = (
+    (lambda: os.remove(ROWS), "episode_000001.parquet: no such file", (0, 2)),
+    (lambda: os.remove(VIDEO), f"{TOP}/episode_000001.mp4: no such file", (0, 2)),
+    (lambda: os.remove(VIDEO.replace(TOP, WRIST)), None, (0, 1, 2)),
+    (lambda: write(ROWS, "version https://git-lfs.github.com/spec/v1\n"),
+     "is a pointer of Git LFS", (0, 2)),
+    (lambda: write(ROWS, open(ROWS, "rb").read()[:-9], "wb"), "is cut", (0, 2)),
+    (lambda: rewrite_lines(lambda n, line: line.update(length=line["length"] + (n == 1))),
+     "has 8 rows of it, the metadata say 9", (0, 2)),
+    (lambda: rewrite_lines(lambda n, line: line.update(length=line["length"] + (n == 1))),
+     "promises 24 rows, meta/episodes.jsonl lists 25 rows", (0, 2)),
+    (lambda: change("set/meta/info.json", lambda info: info.update(total_episodes=50)),
+     "promises 50 episodes, meta/episodes.jsonl lists 3 episodes", (0, 1, 2)),
+    (lambda: write("set/meta/tasks.jsonl", '{"task_index": 0, "task": "pick the cube"}\n'),
+     "meta/tasks.jsonl does not list 'place it in the bin'", (0, 1, 2)),
+    (lambda: write("set/meta/tasks.jsonl", '{"task_index": 0, "task": "pick the cube"}\n'),
+     "promises 2 tasks, meta/tasks.jsonl lists 1 task", (0, 1, 2)),
+    (lambda: os.remove("set/meta/tasks.jsonl"), "meta/tasks.jsonl: no such file", (0, 1, 2)),
+    (lambda: write(VIDEO, "version https://git-lfs.github.com/spec/v1\n"),
+     "is a pointer of Git LFS", (0, 2)),
+    (lambda: shutil.copy(ROWS, ROWS.replace("1.p", "7.p")),
+     "'data/chunk-000/episode_000007.parquet', of which the metadata say nothing", (0, 1, 2)),
+    (lambda: rewrite_rows(1, lambda own: own["timestamp"][1].__setitem__(5, 0.45)),
+     "row 5 is at 0.45 s, expected it at 0.5 s", (0, 2)),
+    (lambda: rewrite_rows(1, lambda own: own["frame_index"][1].__setitem__(5, 6)),
+     "row 5 has the frame_index 6", (0, 2)),
+    (lambda: rewrite_rows(1, lambda own: own["episode_index"][1].__setitem__(5, 0)),
+     "has 7 rows of it, the metadata say 8", (0, 2)))
+LACKING_30 = (
+    (lambda: os.remove("set/data/chunk-000/file-001.parquet"), "file-001.parquet: no such file",
+     (0, 1)),
+    (lambda: rewrite_table(lambda table: table["length"][1].__setitem__(1, 9)),
+     "has 8 rows of it, the metadata say 9", (0, 2)),
+    (lambda: rewrite_table(
+        lambda table: table[f"videos/{TOP}/to_timestamp"][1].__setitem__(1, 1.5)),
+     "it has 8 rows, and from 0.9 to 1.5 s", (0, 2)),
+    (lambda: rewrite_table(
+        lambda table: table[f"videos/{TOP}/from_timestamp"][1].__setitem__(1, 0.95)),
+     "it begins at 0.95 s", (0, 2)))
+
+# What is an error: a change, the code, the words.
+INFO = "set/meta/info.json"
+ERRORS_21 = (
+    (lambda: write(INFO, "{"), "E0850", "is not JSON"),
+    (lambda: change(INFO, lambda info: info.update(codebase_version="v1.6")), "E0850",
+     "is of the version 'v1.6', expected v2.0, v2.1 or v3.0"),
+    (lambda: change(INFO, lambda info: info.pop("fps")), "E0850", "(fps)"),
+    (lambda: change(INFO, lambda info: info.update(data_path="../{episode_index}")), "E0850",
+     "leads out of its folder"),
+    (lambda: change(INFO, lambda info: info.update(video_path="{videos_key}")), "E0850",
+     "of which '{videos_key}' is not known"),
+    (lambda: os.remove("set/meta/episodes.jsonl"), "E0850", "episodes.jsonl: no such file"),
+    (lambda: write("set/meta/episodes.jsonl", "{}\n"), "E0850", "line 1 is not an object with"),
+    (lambda: rewrite_lines(lambda n, line: line.update(episode_index=0)), "E0850",
+     "has episode 0 twice"),
+    (lambda: lerobot.video(VIDEO, 6, 1), "E1011", "has only 6 steps, the rows of the episode give"),
+    (lambda: lerobot.video(VIDEO, 11, 1), "E1011", "has more than 8 steps"),
+    (lambda: write(VIDEO, "no video"), "E1010", "is no video, or a damaged one"))
+ERRORS_30 = (
+    (lambda: write("set/meta/episodes/chunk-000/file-000.parquet", "PAR1"), "E0851", "is cut"),
+    (lambda: rewrite_table(lambda table: table.pop("length")), "E0850", "has no column 'length'"),
+    (lambda: rewrite_table(lambda table: table["length"][1].__setitem__(1, None)), "E0850",
+     "has a row whose 'length' is no number"),
+    (lambda: write(f"set/videos/{TOP}/chunk-000/file-000.mp4", open(
+        f"set/videos/{TOP}/chunk-000/file-000.mp4", "rb").read()[:3000], "wb"), "E1010",
+     f"videos/{TOP}/chunk-000/file-000.mp4"))
+
+
+def check(base, lacking, errors):
+    def begin(make):
+        shutil.rmtree("set", ignore_errors=True)
+        shutil.copytree(base, "set")
+        make()
+
+    for make, words, left in lacking:
+        begin(make)
+        said = embed("seen.etl", "--data", "set", "--camera", TOP, status=0)
+        assert words is None and said == "" or words in said and "[W0850]" in said, (words, said)
+        assert sorted(os.listdir("out")) == [f"set-{n:06}.npz" for n in left], (words, said)
+    for make, code, words in errors:
+        begin(make)
+        said = embed("seen.etl", "--data", "set", "--camera", TOP, status=1)
+        assert f"[{code}]" in said and words in said, (code, words, said)
+        assert not os.path.exists("out") or not os.listdir("out"), "half of the episodes"
+
+
+def check_calls(base):
+    def said(*words, spec="seen.etl", q="f32", rate=10, more="q"):
+        write("plain.etl", PLAIN.format(rate, q, more))
+        return embed(spec, *words, status=1)
+
+    for found, code, words in (
+            (said("--data", base), "E0852", f"has the cameras '{TOP}' and '{WRIST}'; name one"),
+            (said("--data", base, "--camera", "front"), "E0852", "has no camera 'front', but"),
+            (said("--data", base, "--camera", "y=front"), "E0852", "no input 'y' is by an encoder"),
+            (said("--data", f"{base}:7", "--camera", TOP), "E0854", "it has 3 episodes, 0 to 2"),
+            (said("--data", base, spec="plain.etl"), "E0804", "no column 'q'; there are 'action'"),
+            (said("--data", base, "--map", "q=observation.stat", spec="plain.etl"), "E0804",
+             "did you mean 'observation.state'?"),
+            (said("--data", base, "--map", f"q={TOP}", spec="plain.etl"), "E0804", "is a camera"),
+            (said("--data", base, "--map", "q=note", spec="plain.etl"), "E0808", "holds text"),
+            (said("--data", base, "--map", "q=next.success", spec="plain.etl"), "E0808",
+             "bool elements"),
+            (said("--data", base, "--map", "q=observation.state", spec="plain.etl"), "E0807",
+             "has 4 elements in row 0 of the episode, expected 1"),
+            (said("--data", base, "--map", "q=action[2]", spec="plain.etl"), "E0807",
+             "has 2 elements in row 0 of the episode, expected more than 2"),
+            (said("--data", base, "--map", "q=timestamp", spec="plain.etl", rate=4), "E0853",
+             "has 10 rows a second, expected a multiple of the 4 steps")):
+        assert f"[{code}]" in found and words in found, (code, words, found)
+    for path, rate, code, words in ((f"{base}:1", 5, "E0853", "makes episodes of one row in 2"),
+                                    (f"{base}:3", 10, "E0854", "is not an episode of the data set"),
+                                    (base, 10, "E0854", f"name one, '{base}:000000'")):
+        write("plain.etl", PLAIN.format(rate, "f32", "q"))
+        done = subprocess.run([ETLC, "run", "plain.etl", "--trace", path, "--map", "q=timestamp"],
+                              capture_output=True, text=True)
+        assert done.returncode == 1, done
+        assert f"[{code}]" in done.stderr and words in done.stderr, (words, done.stderr)
+
+
+def main():
+    write("see.py", ENCODER)
+    write("seen.etl", SEEN)
+    lerobot.write("v21", "v2.1", LENGTHS)
+    lerobot.write("v30", "v3.0", LENGTHS)
+    check("v21", LACKING_21, ERRORS_21)
+    check("v30", LACKING_30, ERRORS_30)
+    check_calls("v21")
+
+
+with tempfile.TemporaryDirectory() as box:
+    os.chdir(box)
+    main()
+    os.chdir("/")
