@@ -46,12 +46,12 @@ struct Recording {
     std::function<diag::Result<std::unique_ptr<data::FrameSource>>(const std::string& input)> open;
     /// A .csv file of its name beside it: see embed/beside.hpp; empty: there is none.
     std::string beside{};
+    /// The video, or the images, one a frame; empty: the frames lie among others.
+    std::vector<std::string> files{};
     /// What data::open_trace reads the inputs from that no encoder makes; empty: none.
     std::string columns{};
     std::uint64_t stride = 1;          ///< a step every so many rows of these
     std::vector<std::string> tasks{};  ///< what is done in it, in words
-    /// The video, or the images, one a frame.
-    std::vector<std::string> files{};
 };
 
 /// Every recording of the arguments. An argument without a recording is reported; of a data set,
