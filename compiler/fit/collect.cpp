@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
+#include <map>
 #include <memory>
 #include <set>
 
@@ -129,29 +131,77 @@ struct Shares {
     std::size_t every = 1;  ///< of so many episodes one gives some
 };
 
-using Episode = std::vector<Collected>;  ///< per need
+/// Episodes of one fold that are collected together: a scatter is D squared numbers, to be made and
+/// merged, however few frames it is of.
+struct Batch {
+    std::vector<std::size_t> episodes;
+    std::uint64_t frames = 0;
+};
+
+/// By their first episodes.
+std::vector<Batch> batches_of(const Collection& collection) {
+    constexpr std::uint64_t kFrames = 1024;
+    std::vector<Batch> result;
+    std::vector<std::optional<std::size_t>> open(collection.folds.size());  // per fold
+    const std::vector<episodes::Recorded>& episodes = collection.readings.episodes();
+    for (std::size_t e = 0; e < episodes.size(); ++e) {
+        std::optional<std::size_t>& batch = open[collection.fold_of(e)];
+        if (!batch || result[*batch].frames + episodes[e].frames > kFrames) {
+            batch = result.size();
+            result.emplace_back();
+        }
+        result[*batch].episodes.push_back(e);
+        result[*batch].frames += episodes[e].frames;
+    }
+    return result;
+}
+
+/// What a batch gives.
+struct Gathered {
+    std::vector<Collected> needs;  ///< the sources know their episodes
+    std::optional<episodes::Fault> fault;
+};
 
 class Reader {
 public:
     Reader(const check::Model& model, const std::vector<Need>& needs, const Readings& readings,
-           std::size_t most_frames)
+           const std::map<std::string, Batch>& batches, Shares shares)
         : model_(model),
           needs_(needs),
           readings_(readings),
+          batches_(batches),
           points_(by_point(needs)),
           truth_(episodes::ground_truth(model, readings.wanted().predicates)),
           where_(truth_.model, formulas_of(needs)),
-          most_frames_(most_frames) {
+          shares_(shares) {
         for (const PointNeeds& one : points_) blocks_.push_back(blocks_of(one));
     }
 
-    diag::Result<Episode> score(const std::string& path) {
-        const auto opened = readings_.open(readings_.index_of(path));
+    /// The batch whose first episode this is.
+    diag::Result<Gathered> score(const std::string& first) {
+        Gathered result{std::vector<Collected>(needs_.size()), {}};
+        for (const std::size_t episode : batches_.at(first).episodes) {
+            const auto done = add(episode, result.needs);
+            if (done) continue;
+            result.fault = {readings_.episodes()[episode].path, done.failure()};
+            break;
+        }
+        for (std::size_t p = 0; p < points_.size(); ++p) {
+            std::vector<Moments> moments = blocks_[p].take();
+            for (std::size_t i = 0; i < moments.size(); ++i)
+                result.needs[points_[p].with_moments[i]].moments = std::move(moments[i]);
+        }
+        return result;
+    }
+
+private:
+    diag::Result<bool> add(std::size_t episode, std::vector<Collected>& collected) {
+        const auto opened = readings_.open(episode);
         if (!opened) return opened.failure();
         episodes::Frames& frames = **opened;
         where_.reset();
         std::vector<Collector> collectors;
-        for (const Need& need : needs_) collectors.emplace_back(need, most_frames_);
+        for (const Need& need : needs_) collectors.emplace_back(need, shares_.most);
         for (;;) {
             const auto more = frames.next();
             if (!more) return more.failure();
@@ -160,17 +210,16 @@ public:
             for (std::size_t p = 0; p < points_.size(); ++p)
                 take_point(frames, points_[p], collectors, blocks_[p]);
         }
-        Episode result;
-        for (Collector& collector : collectors) result.push_back(collector.take());
-        for (std::size_t p = 0; p < points_.size(); ++p) {
-            std::vector<Moments> moments = blocks_[p].take();
-            for (std::size_t i = 0; i < moments.size(); ++i)
-                result[points_[p].with_moments[i]].moments = std::move(moments[i]);
+        for (std::size_t n = 0; n < needs_.size(); ++n) {
+            Collected one = collectors[n].take();
+            collected[n].counts.add(one.counts);
+            if (episode % shares_.every != 0) continue;
+            for (Source& source : one.frames)
+                collected[n].frames.push_back({episode, std::move(source.frame)});
         }
-        return result;
+        return true;
     }
 
-private:
     Blocks blocks_of(const PointNeeds& one) const {
         std::vector<bool> with_scatter;
         for (const std::size_t i : one.with_moments)
@@ -215,30 +264,30 @@ private:
     const check::Model& model_;
     const std::vector<Need>& needs_;
     const Readings& readings_;
+    const std::map<std::string, Batch>& batches_;  ///< by the path of the first episode
     std::vector<PointNeeds> points_;
     std::vector<Blocks> blocks_;  ///< per point
     episodes::GroundTruth truth_;
     episodes::TruthEvaluator where_;
-    std::size_t most_frames_;
+    Shares shares_;
     episodes::Frame frame_;
     std::vector<float> point_;
     std::vector<std::int8_t> classes_;
 };
 
-/// Of one more episode, per need.
-void merge(std::vector<Collected>& fold, std::vector<Collected>&& episode, std::size_t number,
-           bool with_frames) {
+/// Of one more batch, per need.
+void merge(std::vector<Collected>& fold, std::vector<Collected>&& batch) {
     std::vector<Moments*> all;
     std::vector<const Moments*> more;
     for (std::size_t n = 0; n < fold.size(); ++n) {
-        fold[n].counts.add(episode[n].counts);
-        for (Source& source : episode[n].frames)
-            if (with_frames) fold[n].frames.push_back({number, std::move(source.frame)});
-        if (episode[n].moments.dimension() == 0) continue;
+        fold[n].counts.add(batch[n].counts);
+        std::move(batch[n].frames.begin(), batch[n].frames.end(),
+                  std::back_inserter(fold[n].frames));
+        if (batch[n].moments.dimension() == 0) continue;
         if (fold[n].moments.dimension() == 0)
-            fold[n].moments = Moments(episode[n].moments.dimension());
+            fold[n].moments = Moments(batch[n].moments.dimension());
         all.push_back(&fold[n].moments);
-        more.push_back(&episode[n].moments);
+        more.push_back(&batch[n].moments);
     }
     Moments::merge(all, more);
 }
@@ -284,17 +333,27 @@ std::optional<Collection> collect(const check::Model& model, const std::vector<N
     auto readings = Readings::read(wanted_for(model, needs, measured, *have_labels), request, sink);
     if (!readings) return std::nullopt;
     Collection all{std::move(*readings), {}};
-    const std::vector<std::string> paths = all.readings.paths();
-    const Shares shares{std::max<std::size_t>(1, kMostFrames / paths.size()),
-                        (paths.size() + kMostFrames - 1) / kMostFrames};
-    all.folds.assign(std::min(kFolds, paths.size()), std::vector<Collected>(needs.size()));
-    const bool done = episodes::in_order<Episode>(
-        paths, request, sink,
-        [&] { return std::make_unique<Reader>(model, needs, all.readings, shares.most); },
-        [&](std::size_t i, Episode&& episode) {
-            merge(all.folds[all.fold_of(i)], std::move(episode), i, i % shares.every == 0);
+    const std::size_t count = all.readings.episodes().size();
+    all.folds.assign(std::min(kFolds, count), std::vector<Collected>(needs.size()));
+    const Shares shares{std::max<std::size_t>(1, kMostFrames / count),
+                        (count + kMostFrames - 1) / kMostFrames};
+    std::vector<std::string> firsts;
+    std::map<std::string, Batch> batches;  // by these
+    for (Batch& batch : batches_of(all)) {
+        firsts.push_back(all.readings.episodes()[batch.episodes.front()].path);
+        batches.emplace(firsts.back(), std::move(batch));
+    }
+    std::vector<episodes::Fault> faults;
+    const bool done = episodes::in_order<Gathered>(
+        firsts, request, sink,
+        [&] { return std::make_unique<Reader>(model, needs, all.readings, batches, shares); },
+        [&](std::size_t i, Gathered&& batch) {
+            const std::size_t first = batches.at(firsts[i]).episodes.front();
+            if (batch.fault) return faults.push_back(std::move(*batch.fault));
+            merge(all.folds[all.fold_of(first)], std::move(batch.needs));
         });
-    if (!done) return std::nullopt;
+    episodes::report(faults, count, sink);
+    if (!done || !faults.empty()) return std::nullopt;
     return all;
 }
 

@@ -1,7 +1,7 @@
 // L L^T = S, for a covariance S.
-// Takes: a symmetric matrix. Gives: L, and what follows from it. Keeps true: the same bits on every
-// machine. Eigen's own takes twice as long, for it knows the vectors of the oldest machine alone;
-// fitting a discriminant makes fifty of these.
+// Takes: a symmetric matrix, of which the lower triangle counts. Gives: L, and what follows from
+// it. Keeps true: the same bits on every machine. Eigen's own takes twice as long, for it knows the
+// vectors of the oldest machine alone; fitting a discriminant makes fifty of these.
 #pragma once
 
 #include <optional>

@@ -94,7 +94,7 @@ std::optional<Matrix> inverse_iteration(const Tridiagonal& t, const Vector& valu
 
 Eigenpairs greatest_eigenpairs(const Matrix& symmetric, Index count) {
     const Index n = symmetric.rows();
-    if (n > 4 * count && symmetric.norm() > 0) {
+    if (n > 4 * count && !symmetric.diagonal().isZero(0)) {
         const Eigen::Tridiagonalization<Matrix> found(symmetric);
         const Tridiagonal t{found.diagonal(), found.subDiagonal()};
         Eigen::SelfAdjointEigenSolver<Matrix> solver;

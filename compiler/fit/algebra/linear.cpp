@@ -52,7 +52,9 @@ std::optional<Affine> discriminant(const Moments& moments, const Matrix& within,
 }  // namespace
 
 Matrix covariance(const Moments& moments) {
-    return moments.within() / (static_cast<double>(moments.frames(kHolds)) - 1);
+    Matrix result = moments.within();
+    result /= static_cast<double>(moments.frames(kHolds)) - 1;
+    return result;
 }
 
 Variances greatest_variances(const Moments& moments, Eigen::Index r) {
@@ -82,7 +84,9 @@ Matrix shrunk(const Matrix& covariance, double shrinkage) {
 }
 
 Matrix covariance_within(const Moments& moments) {
-    return moments.within() / static_cast<double>(moments.frames());
+    Matrix result = moments.within();
+    result /= static_cast<double>(moments.frames());
+    return result;
 }
 
 std::optional<Matrix> metric(const Moments& moments, double shrinkage) {

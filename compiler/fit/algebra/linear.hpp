@@ -13,7 +13,8 @@
 
 namespace etlc::fit {
 
-/// Covariance of the class kHolds, whose frames alone the moments have: scatter / (n - 1).
+/// Covariance of the class kHolds, whose frames alone the moments have: scatter / (n - 1). Of this
+/// and of all covariances below the lower triangle counts.
 Matrix covariance(const Moments& moments);
 
 /// The greatest variances of these frames and their directions, at least as many as asked for or

@@ -77,7 +77,7 @@ Matrix Moments::within() const {
         result.row(i).setZero();
         result.col(i).setZero();
     }
-    return result.selfadjointView<Eigen::Lower>();
+    return result;
 }
 
 double Moments::within_along(const Vector& direction) const {

@@ -60,7 +60,8 @@ public:
     std::uint64_t frames(std::size_t of_class) const { return classes_[of_class].n; }
     const Vector& mean(std::size_t of_class) const { return classes_[of_class].mean; }
     /// Within the classes: the sum of (x - m)(x - m)^T, m being the mean of the frame's own class;
-    /// D x D, symmetric. A variance that is no more than rounding leaves of none is 0.
+    /// D x D, the lower triangle of what is symmetric. A variance that is no more than rounding
+    /// leaves of none is 0.
     Matrix within() const;
     /// direction^T within() direction.
     double within_along(const Vector& direction) const;
