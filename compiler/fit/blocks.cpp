@@ -1,6 +1,7 @@
 #include "fit/blocks.hpp"
 
 #include <algorithm>
+#include <atomic>
 #include <map>
 
 namespace etlc::fit {
@@ -62,8 +63,11 @@ std::shared_ptr<Scatter> Blocks::scatter(const std::vector<bool>& selected) {
 }
 
 std::shared_ptr<Scatter> Blocks::unused_scatter() {
-    for (const std::shared_ptr<Scatter>& one : scatters_)
-        if (one.use_count() == 1) return one;
+    for (const std::shared_ptr<Scatter>& one : scatters_) {
+        if (one.use_count() > 1) continue;
+        std::atomic_thread_fence(std::memory_order_acquire);  // who had it may be another thread
+        return one;
+    }
     scatters_.push_back(std::make_shared<Scatter>());
     return scatters_.back();
 }
