@@ -156,7 +156,10 @@ def check(base, lacking, errors):
 
     for make, words, left in lacking:
         begin(make)
-        said = embed("seen.etl", "--data", "set", "--camera", TOP, status=0)
+        if any(word in (words or "") for word in ("parquet", "lists")):
+            said = embed("rows.etl", "--data", "set", status=0)  # quicker, without frames
+        else:
+            said = embed("seen.etl", "--data", "set", "--camera", TOP, status=0)
         assert words is None and said == "" or words in said and "[W0850]" in said, (words, said)
         assert sorted(os.listdir("out")) == [f"set-{n:06}.npz" for n in left], (words, said)
     for make, code, words in errors:
@@ -203,6 +206,7 @@ def check_calls(base):
 def main():
     write("see.py", ENCODER)
     write("seen.etl", SEEN)
+    write("rows.etl", PLAIN.format(10, "f32", "timestamp").replace("q :", "timestamp :"))
     lerobot.write("v21", "v2.1", LENGTHS)
     lerobot.write("v30", "v3.0", LENGTHS)
     check("v21", LACKING_21, ERRORS_21)

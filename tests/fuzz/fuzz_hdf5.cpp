@@ -56,6 +56,19 @@ void step_through(const std::string& path, const std::vector<data::Channel>& cha
     }
 }
 
+void look(const std::string& path) {
+    auto images = data::open_hdf5_images(path, "", "");
+    if (!images) return fuzz::require_printable(images.failure().message);
+    data::Frame frame;
+    for (int image = 0; image < 3; ++image) {
+        const auto more = (*images)->next(frame);
+        if (!more) return fuzz::require_printable(more.failure().message);
+        if (!*more) return;
+        fuzz::require(frame.rgb.size() == std::size_t{3} * frame.height * frame.width,
+                      "an image is as large as it says");
+    }
+}
+
 }  // namespace
 
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
@@ -63,6 +76,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     fuzz::require(kReader == 0, "the environment takes the reader");
     const HeldFile file(bytes, size);
     list(file.path());
+    look(file.path());
     step_through(file.path(), {{"z", Kind::vector, 2},
                                {"p", Kind::vector, 2},
                                {"g", Kind::scalar, 1},

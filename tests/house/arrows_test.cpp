@@ -52,10 +52,15 @@ const Names kBelowTheModel = {"reference", "ir",       "opt", "plan",      "emit
 /// The judge in tests shares no arithmetic with what it judges.
 const Names kWithoutRuntime = {"reference"};
 
-/// Libraries that one folder keeps to itself.
-const std::map<std::string, std::string> kOwners = {{"antlr4", "parse"}, {"hdf5", "data"},
-                                                    {"H5", "data"},      {"zip", "data"},
-                                                    {"zlib", "report"},  {"CLI", "driver"}};
+/// Libraries that a folder or two keep to themselves.
+const std::map<std::string, Names> kOwners = {{"antlr4", {"parse"}},
+                                              {"hdf5", {"data"}},
+                                              {"H5", {"data"}},
+                                              {"zip", {"data"}},
+                                              {"snappy", {"data"}},
+                                              {"zstd", {"data"}},
+                                              {"zlib", {"data", "report"}},
+                                              {"CLI", {"driver"}}};
 
 /// All that generated code may need of a C library.
 const Names kFirmwareHeaders = {"stdint.h", "stddef.h", "float.h", "string.h", "math.h"};
@@ -143,7 +148,7 @@ TEST(Arrows, StagesIncludeOnlyWhatTheyBuildOn) {
                 EXPECT_FALSE(kWithoutRuntime.contains(folder)) << file << " includes " << include;
             }
             if (const auto owner = kOwners.find(to); owner != kOwners.end()) {
-                EXPECT_EQ(folder, owner->second) << file << " includes " << include;
+                EXPECT_TRUE(owner->second.contains(folder)) << file << " includes " << include;
             }
             EXPECT_NE(to, "tests") << file << " includes " << include;
         }

@@ -196,34 +196,39 @@ private:
             const auto more = (*table)->next(cells);
             if (!more) return more.failure();
             if (!*more) return std::nullopt;
-            DatasetEpisode episode;
             for (std::size_t i = 0; i < names.size(); ++i)
                 if (names[i] != "tasks" && (cells[i].is_null || !(cells[i].numbers[0] >= 0) ||
                                             cells[i].numbers[0] > kMaxWhole))
                     return Failure{Code::unreadable_dataset,
                                    fmt::format("has a row whose {} is no number from 0 on",
                                                in_quotes(names[i]))};
-            const auto number = [&](std::size_t i) {
-                return static_cast<std::uint64_t>(cells[i].numbers[0]);
-            };
-            episode.index = number(0);
-            episode.length = number(1);
-            episode.tasks = cells[4].texts;
-            PathNames at{{{"chunk_index", number(2)}, {"file_index", number(3)}}, {}};
-            const auto rows = path("data_path", at);
-            if (!rows) return rows.failure();
-            episode.rows = *rows;
-            for (std::size_t c = 0; c < cameras.size(); ++c) {
-                const std::size_t first = 5 + 4 * c;
-                at.numbers = {{"chunk_index", number(first)}, {"file_index", number(first + 1)}};
-                at.words["video_key"] = cameras[c];
-                const auto video = path("video_path", at);
-                if (!video) return video.failure();
-                episode.clips[cameras[c]] = {*video, cells[first + 2].numbers[0],
-                                             cells[first + 3].numbers[0], false};
-            }
-            set_->episodes_.push_back(std::move(episode));
+            auto episode = episode_of(cells, cameras);
+            if (!episode) return episode.failure();
+            set_->episodes_.push_back(std::move(*episode));
         }
+    }
+
+    /// `cells`: as read_table asks for them.
+    diag::Result<DatasetEpisode> episode_of(const std::vector<Table::Cell>& cells,
+                                            const std::vector<std::string>& cameras) {
+        const auto number = [&](std::size_t i) {
+            return static_cast<std::uint64_t>(cells[i].numbers[0]);
+        };
+        DatasetEpisode episode{number(0), number(1), cells[4].texts, {}, {}};
+        PathNames at{{{"chunk_index", number(2)}, {"file_index", number(3)}}, {}};
+        const auto rows = path("data_path", at);
+        if (!rows) return rows.failure();
+        episode.rows = *rows;
+        for (std::size_t c = 0; c < cameras.size(); ++c) {
+            const std::size_t first = 5 + 4 * c;
+            at.numbers = {{"chunk_index", number(first)}, {"file_index", number(first + 1)}};
+            at.words["video_key"] = cameras[c];
+            const auto video = path("video_path", at);
+            if (!video) return video.failure();
+            episode.clips[cameras[c]] = {*video, cells[first + 2].numbers[0],
+                                         cells[first + 3].numbers[0], false};
+        }
+        return episode;
     }
 
     /// What the metadata say in two places.

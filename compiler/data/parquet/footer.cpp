@@ -1,5 +1,6 @@
 #include "data/parquet/footer.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include "data/parquet/thrift.hpp"
