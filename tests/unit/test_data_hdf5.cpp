@@ -1,11 +1,13 @@
 // .h5 traces through the reading process: element types, shapes, groups, links, damage, and readers
 // that die.
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 #include "data/traces/episodes.hpp"
 #include "data/traces/hdf5.hpp"
@@ -191,7 +193,8 @@ TEST_F(Hdf5Trace, WhatKillsTheReaderIsAMessage) {
 class Hdf5Reader : public testing::Test {
 protected:
     void SetUp() override {
-        reader_ = fs::path(testing::TempDir()) / "etlc_fake_reader.sh";
+        reader_ = fs::path(testing::TempDir()) /
+                  ("etlc_fake_reader_" + std::to_string(::getpid()) + ".sh");
         ::setenv("ETLC_HDF5_READER", reader_.c_str(), 1);
     }
     void TearDown() override { fs::remove(reader_); }
