@@ -104,6 +104,29 @@ def forms_are_read():
                     (codec, dictionary, version, page, group, name, wanted, cell)
         _, some = read("t.parquet", ["i", "k"], "i", 7)
         assert some == [[7, -i] for i in range(63, 72)], some
+        some_rows_are_read(made)
+
+
+def some_rows_are_read(made):
+    """Those of one key; what is before and behind them is passed over, in pages or row by row."""
+    for key in range(ROWS // 9 + 1):
+        _, some = read("t.parquet", ["l", "v", "s", "t"], "i", key)
+        wanted = [i for i, value in enumerate(made["i"][1]) if value == key]
+        assert len(some) == len(wanted)
+        for row, i in zip(some, wanted):
+            for cell, name in zip(row, ("l", "v", "s", "t")):
+                value = made[name][1][i]
+                assert (cell is None) == (value is None) and same(value, cell), (key, name, i)
+
+
+def rows_may_span_pages():
+    for page in (1, 5, 64):
+        made = columns()
+        parquet.write("t.parquet", made, page_rows=page, cut_anywhere=True)
+        _, rows = read("t.parquet", ["l", "v"])
+        assert all(same(a, row[0]) and (b is None) == (row[1] is None) and same(b, row[1])
+                   for a, b, row in zip(made["l"][1], made["v"][1], rows))
+        some_rows_are_read(made)
 
 
 def others_are_named():
@@ -155,6 +178,7 @@ with tempfile.TemporaryDirectory() as box:
     os.chdir(box)
     random.seed(3)
     forms_are_read()
+    rows_may_span_pages()
     others_are_named()
     damage_is_named()
     os.chdir("/")

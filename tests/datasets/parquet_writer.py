@@ -115,11 +115,12 @@ def levels(rows, is_list):
 
 class Writer:
     def __init__(self, codec=SNAPPY, dictionary=False, version=1, page_rows=1000, group_rows=10**6,
-                 checksums=False, encoding=None, claims=None, codec_said=None, bad_place=False):
+                 checksums=False, encoding=None, claims=None, codec_said=None, bad_place=False,
+                 cut_anywhere=False):
         self.codec, self.dictionary, self.version = codec, dictionary, version
         self.page_rows, self.group_rows, self.checksums = page_rows, group_rows, checksums
         self.encoding, self.claims, self.codec_said = encoding, claims, codec_said
-        self.bad_place = bad_place
+        self.bad_place, self.cut_anywhere = bad_place, cut_anywhere
         self.out = b"PAR1"
 
     def page(self, head, raw, body):
@@ -128,6 +129,19 @@ class Writer:
             crc = zlib.crc32(body)
             head[4] = I32(crc - (1 << 32) if crc >= 1 << 31 else crc)
         self.out += thrift(head)[1] + body
+
+    def pages(self, rows, is_list):
+        """The levels and values of each page: of whole rows, or cut anywhere, as writers of old."""
+        if not self.cut_anywhere:
+            for first in range(0, len(rows), self.page_rows):
+                yield levels(rows[first:first + self.page_rows], is_list)
+            return
+        repetitions, definitions, there = levels(rows, is_list)
+        for first in range(0, len(repetitions), self.page_rows):
+            part = slice(first, first + self.page_rows)
+            count = sum(level == (3 if is_list else 1) for level in definitions[part])
+            yield repetitions[part], definitions[part], there[:count]
+            there = there[count:]
 
     def chunk(self, name, kind, rows, is_list):
         begin, dictionary, dictionary_at = len(self.out), None, None
@@ -138,8 +152,7 @@ class Writer:
             self.page({1: I32(2), 7: {1: I32(len(dictionary)), 2: I32(PLAIN)}}, raw,
                       packed(self.codec, raw))
         data_at, count = len(self.out), 0
-        for first in range(0, len(rows), self.page_rows):
-            repetitions, definitions, there = levels(rows[first:first + self.page_rows], is_list)
+        for repetitions, definitions, there in self.pages(rows, is_list):
             bits = 2 if is_list else 1
             parts = [hybrid(repetitions, 1)] if is_list else [b""]
             parts.append(hybrid(definitions, bits))

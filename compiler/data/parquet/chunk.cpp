@@ -225,8 +225,43 @@ bool ChunkReader::next(Cell& cell) {
     return read(&cell);
 }
 
-bool ChunkReader::pass_over() {
-    return read(nullptr);
+void ChunkReader::end_row() {
+    while (fetch() && repetition_ != 0) {
+        has_entry_ = false;
+        if (definition_ == column_.most_defined) add_value(nullptr);
+    }
+}
+
+bool ChunkReader::is_at_row() const {
+    if (has_entry_) return repetition_ == 0;
+    return !column_.is_list || Runs(repetitions_).next() == 0;
+}
+
+std::uint64_t ChunkReader::rows_left() const {
+    return (has_entry_ ? 1 : 0) + (column_.is_list ? Runs(repetitions_).zeros(in_page_) : in_page_);
+}
+
+void ChunkReader::skip(std::uint64_t rows) {
+    bool may_go_on = false;  // the last row of the page before
+    while (rows > 0) {
+        if (!has_entry_ && in_page_ == 0 && !load_page())
+            refuse("has fewer rows than its row group");
+        if (!is_at_row()) {
+            if (!may_go_on) refuse("has a row that begins in the middle of a list");
+            may_go_on = false;
+            end_row();
+            continue;
+        }
+        may_go_on = rows_left() <= rows;
+        if (!may_go_on) {
+            for (; rows > 0; --rows) read(nullptr);
+            return;
+        }
+        rows -= rows_left();
+        in_page_ = 0;
+        has_entry_ = false;
+    }
+    if (may_go_on) end_row();
 }
 
 bool ChunkReader::read(Cell* cell) {

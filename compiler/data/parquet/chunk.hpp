@@ -35,8 +35,8 @@ public:
 
     /// The next row; false behind the last.
     bool next(Cell& cell);
-    /// The same without its values.
-    bool pass_over();
+    /// Goes on behind so many rows, which have to be there; whole pages of them at a time.
+    void skip(std::uint64_t rows);
 
 private:
     enum class Values : std::uint8_t { plain, places, runs_of_bools };
@@ -51,6 +51,11 @@ private:
     /// Makes an entry of the levels current; false at the end.
     bool fetch();
     bool read(Cell* cell);
+    /// Whether what comes is the begin of a row; the rows that begin in the rest of the page.
+    bool is_at_row() const;
+    std::uint64_t rows_left() const;
+    /// The end of a row that began in a page before.
+    void end_row();
     void add_value(Cell* cell);
     void plain(Cursor& from, double& number, std::string& text);
     double plain_number(Cursor& from) const;

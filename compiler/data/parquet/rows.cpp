@@ -55,37 +55,46 @@ void Rows::keep(const std::string& key, double value) {
                       "column " + quoted(key) + " is not of numbers, one a row");
 }
 
-/// Whether any row of the group is kept; the others' columns need not be unpacked.
-bool Rows::has_kept(const RowGroup& group) const {
-    if (key_ == nullptr) return true;
+/// The columns of the others need not be read.
+Rows::Span Rows::kept_in(const RowGroup& group) const {
+    if (key_ == nullptr) return {0, group.rows};
     return of_column(*key_, [&] {
         ChunkReader keys(file_, *key_, group.chunks[key_->leaf]);
+        Span span;
         std::uint64_t rows = 0;
-        bool found = false;
-        for (Cell cell; keys.next(cell); ++rows)
-            found = found || (!cell.is_null && cell.numbers[0] == value_);
+        for (Cell cell; keys.next(cell); ++rows) {
+            if (cell.is_null || cell.numbers[0] != value_) continue;
+            if (span.end == 0) span.begin = rows;
+            span.end = rows + 1;
+        }
         if (rows != group.rows)
             refuse("has " + std::to_string(rows) + " rows, its row group has " +
                    std::to_string(group.rows));
-        return found;
+        return span;
     });
 }
 
 bool Rows::begin_group() {
     for (; group_ < footer_.groups.size(); ++group_) {
         const RowGroup& group = footer_.groups[group_];
-        if (group.rows == 0 || !has_kept(group)) continue;
-        count_ = group.rows;
-        row_ = 0;
+        const Span span = kept_in(group);
+        if (span.begin == span.end) continue;
+        rows_ = group.rows;
+        row_ = span.begin;
+        end_ = span.end;
         chunks_.clear();
         keys_.reset();
         for (const Column* column : columns_)
             if (column != nullptr)
                 of_column(*column, [&] {
                     chunks_.emplace_back(file_, *column, group.chunks[column->leaf]);
+                    chunks_.back().skip(row_);
                 });
         if (key_ != nullptr)
-            of_column(*key_, [&] { keys_.emplace(file_, *key_, group.chunks[key_->leaf]); });
+            of_column(*key_, [&] {
+                keys_.emplace(file_, *key_, group.chunks[key_->leaf]);
+                keys_->skip(row_);
+            });
         ++group_;
         return true;
     }
@@ -100,21 +109,22 @@ bool Rows::is_kept() {
     });
 }
 
+/// Where all rows were read, there are no more.
 void Rows::end_group() {
+    if (end_ < rows_) return;
     std::size_t i = 0;
     for (const Column* column : columns_)
         if (column != nullptr)
             of_column(*column, [&] {
-                if (chunks_[i++].pass_over()) refuse("has more rows than its row group");
+                if (chunks_[i++].next(key_cell_)) refuse("has more rows than its row group");
             });
 }
 
 bool Rows::next(std::vector<Cell>& cells) {
     for (;;) {
-        if (row_ == count_) {
-            if (group_ > 0 && count_ > 0) end_group();
-            count_ = 0;
-            row_ = 0;
+        if (row_ == end_) {
+            if (end_ > 0) end_group();
+            row_ = end_ = 0;
             if (!begin_group()) return false;
         }
         const bool kept = is_kept();
@@ -126,9 +136,8 @@ bool Rows::next(std::vector<Cell>& cells) {
             ChunkReader& chunk = chunks_[i];
             Cell& cell = cells[i++];
             of_column(*column, [&] {
-                if (!(kept ? chunk.next(cell) : chunk.pass_over()))
-                    refuse("has fewer rows than its row group, which has " +
-                           std::to_string(count_));
+                if (!chunk.next(cell))
+                    refuse("has fewer rows than its row group, which has " + std::to_string(rows_));
             });
         }
         if (kept) return true;

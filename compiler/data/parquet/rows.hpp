@@ -32,7 +32,12 @@ public:
 
 private:
     const Column* find(const std::string& name) const;
-    bool has_kept(const RowGroup& group) const;
+    /// The rows of a group from the first that is kept to the last.
+    struct Span {
+        std::uint64_t begin = 0;
+        std::uint64_t end = 0;
+    };
+    Span kept_in(const RowGroup& group) const;
     bool begin_group();
     void end_group();
     bool is_kept();
@@ -42,9 +47,10 @@ private:
     std::vector<const Column*> columns_;
     const Column* key_ = nullptr;
     double value_ = 0;
-    std::size_t group_ = 0;    ///< the next one
-    std::uint64_t row_ = 0;    ///< of the group at hand
-    std::uint64_t count_ = 0;  ///< rows of it
+    std::size_t group_ = 0;   ///< the next one
+    std::uint64_t rows_ = 0;  ///< of the group at hand
+    std::uint64_t row_ = 0;   ///< of it, the next
+    std::uint64_t end_ = 0;   ///< of it, behind the last that is kept
     std::deque<ChunkReader> chunks_;
     std::optional<ChunkReader> keys_;
     Cell key_cell_;

@@ -4,6 +4,8 @@
 // "Run Length Encoding / Bit-Packing Hybrid".
 #pragma once
 
+#include <algorithm>
+#include <bit>
 #include <cstdint>
 #include <string_view>
 
@@ -21,6 +23,30 @@ public:
         while (left_ == 0) begin();
         --left_;
         return packed_.empty() ? value_ : unpack();
+    }
+
+    /// How many of the next `n` are 0, of numbers of one bit.
+    std::uint64_t zeros(std::uint64_t n) {
+        std::uint64_t found = 0;
+        while (n > 0) {
+            while (left_ == 0) begin();
+            std::uint64_t part = std::min(n, left_);
+            if (packed_.empty()) {
+                found += value_ == 0 ? part : 0;
+            } else if (part < 8 || bit_ % 8 != 0) {
+                found += unpack() == 0 ? 1 : 0;
+                part = 1;
+            } else {
+                part -= part % 8;
+                for (const char byte : packed_.substr(bit_ / 8, part / 8))
+                    found +=
+                        8U - static_cast<unsigned>(std::popcount(static_cast<unsigned char>(byte)));
+                bit_ += part;
+            }
+            left_ -= part;
+            n -= part;
+        }
+        return found;
     }
 
 private:
