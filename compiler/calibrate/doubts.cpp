@@ -15,11 +15,15 @@ namespace {
 /// Nothing where there are too few episodes for an interval, or only frames of one kind.
 std::optional<episodes::Auroc> ranking(const std::vector<Demonstration>& demonstrations,
                                        std::size_t of) {
-    std::vector<episodes::RankedFrame> frames;
-    for (std::size_t e = 0; e < demonstrations.size(); ++e)
+    std::size_t count = 0;
+    for (const Demonstration& demonstration : demonstrations)
+        count += demonstration.scores[of].labelled.size();
+    std::vector<episodes::Scored> frames;
+    frames.reserve(count);
+    for (std::uint32_t e = 0; e < demonstrations.size(); ++e)
         for (const Scores::Labelled& frame : demonstrations[e].scores[of].labelled)
-            frames.push_back({{-frame.score, static_cast<std::uint32_t>(e), frame.positive}});
-    std::vector<std::vector<episodes::RankedFrame>> all{std::move(frames)};
+            frames.push_back({-frame.score, e, frame.positive});
+    std::vector<std::vector<episodes::Scored>> all{std::move(frames)};
     const auto result = episodes::auroc(all, demonstrations.size());
     return result && result->interval ? result : std::nullopt;
 }

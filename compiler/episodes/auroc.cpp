@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <type_traits>
 
 namespace etlc::episodes {
 
@@ -37,18 +38,15 @@ struct Pairs {
     double negatives = 0;
 };
 
-/// Calls `visit(frame, ordered)` for each frame, with how many pairs it is in that are ordered.
-template <class Visit>
-void for_each_in_order(std::vector<RankedFrame>& frames, const Visit& visit) {
-    std::sort(frames.begin(), frames.end(), [](const RankedFrame& a, const RankedFrame& b) {
-        if (a.score != b.score) return a.score < b.score;
-        return a.episode != b.episode ? a.episode < b.episode : a.step < b.step;
-    });
-    const auto positives = static_cast<double>(std::count_if(
-        frames.begin(), frames.end(), [](const RankedFrame& frame) { return frame.positive; }));
+/// Calls `visit(frame, ordered)` for each frame of those of ascending scores, with how many pairs
+/// it is in that are ordered.
+template <class Frame, class Visit>
+void for_each_in_order(Frame* begin, Frame* end, const Visit& visit) {
+    const auto positives = static_cast<double>(
+        std::count_if(begin, end, [](const Frame& frame) { return frame.positive; }));
     for_each_tie(
-        frames.data(), frames.data() + frames.size(), [](const RankedFrame&) { return 1.0; },
-        [&](RankedFrame* first, RankedFrame* last, const Classes& lower, const Classes& tied) {
+        begin, end, [](const Frame&) { return 1.0; },
+        [&](Frame* first, Frame* last, const Classes& lower, const Classes& tied) {
             const double higher = positives - lower.positives - tied.positives;
             for (; first != last; ++first)
                 visit(*first, first->positive ? lower.negatives + tied.negatives / 2
@@ -56,35 +54,105 @@ void for_each_in_order(std::vector<RankedFrame>& frames, const Visit& visit) {
         });
 }
 
-/// The pairs of a group, and of each episode in it.
-Pairs count(std::vector<RankedFrame>& frames, std::vector<Pairs>& episodes) {
-    Pairs all;
-    for (const RankedFrame& frame : frames) {
-        ++(frame.positive ? episodes[frame.episode].positives : episodes[frame.episode].negatives);
-        ++(frame.positive ? all.positives : all.negatives);
-    }
-    for_each_in_order(frames, [&](RankedFrame& frame, double ordered) {
-        const double pairs = frame.positive ? all.negatives : all.positives;
-        frame.ordered = pairs > 0 ? ordered / pairs : 1;
-        episodes[frame.episode].ordered += ordered;
-        if (frame.positive) all.ordered += ordered;
+void sort_by_score(std::vector<RankedFrame>& frames) {
+    std::sort(frames.begin(), frames.end(), [](const RankedFrame& a, const RankedFrame& b) {
+        if (a.score != b.score) return a.score < b.score;
+        return a.episode != b.episode ? a.episode < b.episode : a.step < b.step;
     });
-    std::vector<RankedFrame> by_episode = frames;
-    std::stable_sort(
-        by_episode.begin(), by_episode.end(),
-        [](const RankedFrame& a, const RankedFrame& b) { return a.episode < b.episode; });
-    for (auto begin = by_episode.begin(); begin != by_episode.end();) {
-        const std::size_t episode = begin->episode;
-        const auto end = std::find_if(begin, by_episode.end(), [&](const RankedFrame& frame) {
-            return frame.episode != episode;
-        });
-        std::vector<RankedFrame> own(begin, end);
-        for_each_in_order(own, [&](const RankedFrame& frame, double ordered) {
-            if (frame.positive) episodes[episode].within += ordered;
-        });
-        begin = end;
+}
+void sort_by_score(std::vector<Scored>& frames) {
+    std::sort(frames.begin(), frames.end(),
+              [](const Scored& a, const Scored& b) { return a.score < b.score; });
+}
+
+/// Of each episode the pairs within it; gives the episodes. Sorts the frames.
+std::vector<std::uint32_t> count_within(std::vector<Scored>& frames, std::vector<Pairs>& episodes) {
+    std::sort(frames.begin(), frames.end(), [](const Scored& a, const Scored& b) {
+        return a.episode != b.episode ? a.episode < b.episode : a.score < b.score;
+    });
+    std::vector<std::uint32_t> there;
+    for (std::size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
+        const std::uint32_t episode = frames[begin].episode;
+        while (end < frames.size() && frames[end].episode == episode) ++end;
+        for_each_in_order(frames.data() + begin, frames.data() + end,
+                          [&](const Scored& frame, double ordered) {
+                              if (frame.positive) episodes[episode].within += ordered;
+                          });
+        there.push_back(episode);
     }
-    return all;
+    return there;
+}
+std::vector<std::uint32_t> count_within(const std::vector<RankedFrame>& frames,
+                                        std::vector<Pairs>& episodes) {
+    std::vector<Scored> copies(frames.begin(), frames.end());
+    return count_within(copies, episodes);
+}
+
+struct Group {
+    Pairs all;
+    std::vector<std::uint32_t> episodes;
+};
+
+/// The pairs of a group, and of each episode in it. Numbers of halves: exact in any order.
+template <class Frame>
+Group count(std::vector<Frame>& frames, std::vector<Pairs>& episodes) {
+    Group group;
+    for (const Frame& frame : frames) {
+        ++(frame.positive ? episodes[frame.episode].positives : episodes[frame.episode].negatives);
+        ++(frame.positive ? group.all.positives : group.all.negatives);
+    }
+    sort_by_score(frames);
+    for_each_in_order(
+        frames.data(), frames.data() + frames.size(), [&](Frame& frame, double ordered) {
+            if constexpr (std::is_same_v<Frame, RankedFrame>) {
+                const double pairs = frame.positive ? group.all.negatives : group.all.positives;
+                frame.ordered = pairs > 0 ? ordered / pairs : 1;
+            }
+            episodes[frame.episode].ordered += ordered;
+            if (frame.positive) group.all.ordered += ordered;
+        });
+    group.episodes = count_within(frames, episodes);
+    return group;
+}
+
+/// `without_one`: the value without each of the episodes.
+Auroc with_interval(double value, const std::vector<double>& without_one) {
+    constexpr std::size_t kLeastEpisodes = 5;
+    Auroc result{value, {}};
+    if (without_one.size() < kLeastEpisodes) return result;
+    const auto n = static_cast<double>(without_one.size());
+    double mean = 0;
+    for (const double one : without_one) mean += one / n;
+    double squares = 0;
+    for (const double one : without_one) squares += (one - mean) * (one - mean);
+    const double margin = 1.96 * std::sqrt((n - 1) / n * squares);
+    result.interval = {std::max(0.0, value - margin), std::min(1.0, value + margin)};
+    return result;
+}
+
+template <class Frame>
+std::optional<Auroc> auroc_of(std::vector<std::vector<Frame>>& frames, std::size_t episodes) {
+    std::vector<Group> groups;
+    std::vector<Pairs> of_episodes(episodes);
+    double ordered = 0;
+    double pairs = 0;
+    for (std::vector<Frame>& group : frames) {
+        groups.push_back(count(group, of_episodes));
+        ordered += groups.back().all.ordered;
+        pairs += groups.back().all.positives * groups.back().all.negatives;
+    }
+    if (pairs == 0) return std::nullopt;
+
+    std::vector<double> without_one;
+    for (const Group& group : groups)
+        for (const std::uint32_t episode : group.episodes) {
+            const Pairs& own = of_episodes[episode];
+            const double others =
+                pairs - group.all.positives * group.all.negatives +
+                (group.all.positives - own.positives) * (group.all.negatives - own.negatives);
+            if (others > 0) without_one.push_back((ordered - own.ordered + own.within) / others);
+        }
+    return with_interval(ordered / pairs, without_one);
 }
 
 }  // namespace
@@ -119,45 +187,10 @@ std::optional<double> Ranking::auroc(const std::vector<std::uint32_t>& weights) 
 }
 
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
-    constexpr std::size_t kLeastEpisodes = 5;
-    std::vector<Pairs> of_groups;
-    std::vector<Pairs> of_episodes(episodes);
-    double ordered = 0;
-    double pairs = 0;
-    for (std::vector<RankedFrame>& group : groups) {
-        of_groups.push_back(count(group, of_episodes));
-        ordered += of_groups.back().ordered;
-        pairs += of_groups.back().positives * of_groups.back().negatives;
-    }
-    if (pairs == 0) return std::nullopt;
-
-    std::vector<double> without_one;
-    for (std::size_t g = 0; g < groups.size(); ++g) {
-        const Pairs& group = of_groups[g];
-        std::size_t last = episodes;
-        std::vector<std::size_t> there;
-        for (const RankedFrame& frame : groups[g]) there.push_back(frame.episode);
-        std::sort(there.begin(), there.end());
-        for (const std::size_t episode : there) {
-            if (episode == last) continue;
-            last = episode;
-            const Pairs& own = of_episodes[episode];
-            const double others =
-                pairs - group.positives * group.negatives +
-                (group.positives - own.positives) * (group.negatives - own.negatives);
-            if (others > 0) without_one.push_back((ordered - own.ordered + own.within) / others);
-        }
-    }
-    Auroc result{ordered / pairs, {}};
-    if (without_one.size() < kLeastEpisodes) return result;
-    const auto n = static_cast<double>(without_one.size());
-    double mean = 0;
-    for (const double value : without_one) mean += value / n;
-    double squares = 0;
-    for (const double value : without_one) squares += (value - mean) * (value - mean);
-    const double margin = 1.96 * std::sqrt((n - 1) / n * squares);
-    result.interval = {std::max(0.0, result.value - margin), std::min(1.0, result.value + margin)};
-    return result;
+    return auroc_of(groups, episodes);
+}
+std::optional<Auroc> auroc(std::vector<std::vector<Scored>>& groups, std::size_t episodes) {
+    return auroc_of(groups, episodes);
 }
 
 }  // namespace etlc::episodes

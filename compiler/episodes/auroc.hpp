@@ -58,5 +58,7 @@ struct Auroc {
 /// Frames of an episode are in one group. Sorts the frames and sets their `ordered`. Nothing where
 /// no group has frames of both classes.
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes);
+/// Where nothing is asked of a frame by itself, in less memory; the frames change their places.
+std::optional<Auroc> auroc(std::vector<std::vector<Scored>>& groups, std::size_t episodes);
 
 }  // namespace etlc::episodes

@@ -14,12 +14,17 @@ constexpr double kHigh = 0.975;
 
 }  // namespace
 
-Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {
-    if (episodes == 0) return;
+Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {}
+
+void Bootstrap::for_each_resample(const std::function<void(const Weights&)>& visit) const {
+    if (whole_.empty()) return;
     episodes::Random random(kSeed);
-    resamples_.assign(kResamples, Weights(episodes, 0));
-    for (Weights& weights : resamples_)
-        for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)];
+    Weights weights;
+    for (std::uint32_t resample = 0; resample < kResamples; ++resample) {
+        weights.assign(whole_.size(), 0);
+        for (std::size_t i = 0; i < whole_.size(); ++i) ++weights[random.below(whole_.size())];
+        visit(weights);
+    }
 }
 
 Figure Bootstrap::figure(
@@ -27,8 +32,8 @@ Figure Bootstrap::figure(
     Figure result{statistic(whole_), {}};
     if (!result.value || whole_.size() < 2) return result;
     std::vector<std::optional<double>> values;
-    values.reserve(resamples_.size());
-    for (const Weights& weights : resamples_) values.push_back(statistic(weights));
+    values.reserve(kResamples);
+    for_each_resample([&](const Weights& weights) { values.push_back(statistic(weights)); });
     result.interval = percentile_interval(values);
     return result;
 }

@@ -2,7 +2,7 @@
 // Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 %
 // and 97.5 % quantiles over kResamples draws with replacement (Efron's percentile interval). Keeps
 // true: the draws come from a fixed seed, so that the same data give the same interval, on every
-// machine and with any number of threads.
+// machine and with any number of threads; memory is that of one draw.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,8 @@ class Bootstrap {
 public:
     explicit Bootstrap(std::size_t episodes);
 
-    const std::vector<Weights>& resamples() const { return resamples_; }
+    /// Calls `visit` with each of the resamples, always the same ones in the same order.
+    void for_each_resample(const std::function<void(const Weights&)>& visit) const;
     /// Every episode once.
     const Weights& whole() const { return whole_; }
 
@@ -39,7 +40,6 @@ public:
 
 private:
     Weights whole_;
-    std::vector<Weights> resamples_;
 };
 
 /// Of the values that are there, which need not be sorted.

@@ -17,7 +17,7 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
     };
     const Rates whole = sum(bootstrap.whole());
     std::vector<Rates> resampled;
-    for (const Weights& weights : bootstrap.resamples()) resampled.push_back(sum(weights));
+    bootstrap.for_each_resample([&](const Weights& weights) { resampled.push_back(sum(weights)); });
     const auto figure = [&](std::optional<double> Rates::*rate) {
         Figure result{whole.*rate, {}};
         if (!result.value || each.size() < 2) return result;

@@ -72,8 +72,13 @@ TEST(Auroc, LeavesOutOneEpisodeAtATime) {
             groups[folds[frame.episode]].push_back({frame, 0, 0});
             there[frame.episode] = true;
         }
+        std::vector<std::vector<Scored>> alone(groups.size());
+        for (std::size_t g = 0; g < groups.size(); ++g)
+            alone[g].assign(groups[g].begin(), groups[g].end());
         const Ranking ranking(frames, folds);
         const auto found = auroc(groups, kEpisodes);
+        const auto same = auroc(alone, kEpisodes);
+        ASSERT_EQ(same.has_value(), found.has_value());
         const auto value = ranking.auroc(Weights(kEpisodes, 1));
         expect_near(found ? std::optional(found->value) : std::nullopt, value);
         std::vector<double> without;
@@ -83,7 +88,12 @@ TEST(Auroc, LeavesOutOneEpisodeAtATime) {
             if (!there[e]) continue;
             if (const auto one = ranking.auroc(weights)) without.push_back(*one);
         }
-        if (!found || !found->interval) continue;
+        if (!found) continue;
+        EXPECT_EQ(same->value, found->value);
+        ASSERT_EQ(same->interval.has_value(), found->interval.has_value());
+        if (!found->interval) continue;
+        EXPECT_EQ(same->interval->low, found->interval->low);
+        EXPECT_EQ(same->interval->high, found->interval->high);
         ++intervals;
         const auto n = static_cast<double>(without.size());
         double mean = 0;

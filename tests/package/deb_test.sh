@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# deb_test.sh BUILD_DIR CPACK VERSION: makes the Debian package, and looks into it.
+# deb_test.sh BUILD_DIR CPACK VERSION: makes the Debian packages, and looks into them.
 set -euo pipefail
 build_dir=$1 cpack=$2 version=$3
 box=$(mktemp -d)
@@ -15,7 +15,24 @@ depends=$(dpkg-deb -f "$deb" Depends)
 for library in libc6 libstdc++6 libfmt9 libhdf5-103 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
+for library in opencv avcodec openmpi; do
+    [[ $depends != *"$library"* ]] || fail "etlc itself depends on $library: $depends"
+done
 dpkg-deb -x "$deb" "$box/root"
+# Each helper that is built is in a package of its own, with the libraries that it needs.
+for helper in embed=libopencv-dnn mpi=libopenmpi; do
+    name=etlc-${helper%=*} library=${helper#*=}
+    [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"
+    [ -e "$build_dir/$name" ] || continue
+    own=$(echo "$box/$name"_"$version"_*.deb)
+    [ -f "$own" ] || { ls "$box"; fail "there is no package $name"; }
+    depends=$(dpkg-deb -f "$own" Depends)
+    [[ $depends == *"$library"* && $depends == *"etlc (= $version)"* ]] ||
+        fail "$name depends on $depends"
+    dpkg-deb -x "$own" "$box/$name"
+    [ "$(find "$box/$name" -type f -o -type l)" = "$box/$name/usr/libexec/etlc/$name" ] ||
+        fail "$name holds: $(find "$box/$name")"
+done
 [[ $("$box/root/usr/bin/etlc" --version) == *"$version"* ]] ||
     fail "etlc --version does not say $version"
 for file in include/etlmon/temporal/value.hpp share/cmake/etlc/etlcConfig.cmake \

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 #include <string_view>
+#include <unordered_map>
 
 #include "data/files/hash.hpp"
 
@@ -116,33 +117,52 @@ std::optional<double> share(const Sketch& a, const Sketch& b) {
     return static_cast<double>(common) / static_cast<double>(least);
 }
 
+void EpisodesByKey::add(std::uint64_t key, std::uint32_t episode) {
+    if (entries_.size() == first_.size()) grow();
+    std::uint32_t& first = first_[slot(key)];
+    entries_.push_back({key, episode, first});
+    first = static_cast<std::uint32_t>(entries_.size() - 1);
+}
+
+void EpisodesByKey::grow() {
+    first_.assign(std::max<std::size_t>(64, 2 * first_.size()), kNone);
+    for (std::uint32_t i = 0; i < entries_.size(); ++i) {
+        std::uint32_t& first = first_[slot(entries_[i].key)];
+        entries_[i].next = first;
+        first = i;
+    }
+}
+
 void Recordings::add(const EpisodeContent& content) {
-    const std::size_t episode = all_.size();
+    const auto episode = static_cast<std::uint32_t>(all_.size());
     all_.push_back(content);
     for (const auto& [name, of_input] : content) {
-        by_hash_[name][of_input.hash].push_back(episode);
-        auto& units = by_unit_[name];
-        for (const std::uint32_t unit : of_input.sketch) units[unit].push_back(episode);
+        by_hash_[name].add(xxh64(of_input.hash), episode);
+        EpisodesByKey& units = by_unit_[name];
+        for (const std::uint32_t unit : of_input.sketch) units.add(unit, episode);
     }
 }
 
 std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
-    constexpr std::size_t kFewestInCommon = kLeastUnits / 2 + 1;
-    std::set<std::size_t> perhaps;
+    constexpr std::uint32_t kFewestInCommon = kLeastUnits / 2 + 1;
+    std::set<std::uint32_t> perhaps;
     for (const auto& [name, of_input] : content) {
-        if (!by_hash_.contains(name)) continue;
-        const auto& hashes = by_hash_.at(name);
-        if (const auto found = hashes.find(of_input.hash); found != hashes.end())
-            for (const std::size_t episode : found->second)
-                if (equal_in_common(content, all_[episode])) return Overlap{episode, 1, true};
-        std::vector<std::size_t> in_common(all_.size());
-        const auto& units = by_unit_.at(name);
+        const auto known = by_hash_.find(name);
+        if (known == by_hash_.end()) continue;
+        std::optional<std::uint32_t> equal;  // the first
+        known->second.for_each(xxh64(of_input.hash), [&](std::uint32_t episode) {
+            if (episode < equal.value_or(UINT32_MAX) && equal_in_common(content, all_[episode]))
+                equal = episode;
+        });
+        if (equal) return Overlap{*equal, 1, true};
+        std::unordered_map<std::uint32_t, std::uint32_t> in_common;
+        const EpisodesByKey& units = by_unit_.at(name);
         for (const std::uint32_t unit : of_input.sketch)
-            if (const auto found = units.find(unit); found != units.end())
-                for (const std::size_t episode : found->second)
-                    if (++in_common[episode] == kFewestInCommon) perhaps.insert(episode);
+            units.for_each(unit, [&](std::uint32_t episode) {
+                if (++in_common[episode] == kFewestInCommon) perhaps.insert(episode);
+            });
     }
-    for (const std::size_t episode : perhaps) {
+    for (const std::uint32_t episode : perhaps) {
         const auto shared = share_in_common(content, all_[episode]);
         if (shared && *shared > 0.5) return Overlap{episode, *shared, false};
     }

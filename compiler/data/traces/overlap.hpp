@@ -11,7 +11,6 @@
 #include <map>
 #include <optional>
 #include <string>
-#include <unordered_map>
 #include <vector>
 
 #include "data/traces/trace.hpp"
@@ -66,7 +65,36 @@ struct Overlap {
     bool equal = false;     ///< all samples of all inputs that both have
 };
 
-/// Episodes among which others are looked for.
+/// Which episodes have a key: some 25 bytes for each that has one.
+class EpisodesByKey {
+public:
+    void add(std::uint64_t key, std::uint32_t episode);
+
+    /// In no order.
+    template <class Visit>
+    void for_each(std::uint64_t key, const Visit& visit) const {
+        if (first_.empty()) return;
+        for (std::uint32_t i = first_[slot(key)]; i != kNone; i = entries_[i].next)
+            if (entries_[i].key == key) visit(entries_[i].episode);
+    }
+
+private:
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+    struct Entry {
+        std::uint64_t key;
+        std::uint32_t episode;
+        std::uint32_t next;  ///< of the same slot
+    };
+
+    std::size_t slot(std::uint64_t key) const { return (key ^ key >> 32U) & (first_.size() - 1); }
+    void grow();
+
+    std::vector<Entry> entries_;
+    std::vector<std::uint32_t> first_;  ///< by slot; as many as a power of two
+};
+
+/// Episodes among which others are looked for. What an episode takes does not depend on how many
+/// there are.
 class Recordings {
 public:
     void add(const EpisodeContent& content);
@@ -77,8 +105,8 @@ public:
 private:
     std::vector<EpisodeContent> all_;
     /// Per input: by hash, and by unit, the episodes that have it.
-    std::map<std::string, std::unordered_map<std::string, std::vector<std::size_t>>> by_hash_;
-    std::map<std::string, std::unordered_map<std::uint32_t, std::vector<std::size_t>>> by_unit_;
+    std::map<std::string, EpisodesByKey> by_hash_;
+    std::map<std::string, EpisodesByKey> by_unit_;
 };
 
 /// Of the smaller sketch; nothing where it has too few units.
