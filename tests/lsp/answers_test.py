@@ -87,7 +87,7 @@ def hovers():
     assert "embedding of dimension 2 in float32" in hover("z    :")
     assert "3 missing" in hover("(z,", 1)
     assert "[0, 1]" in hover("grip >=", 4)  # behind the last letter
-    assert "2 rows of dimension 2, from literal" in hover("bay)")
+    assert "2 rows of dimension 2, written in the spec" in hover("bay)")
     predicate = hover("at_bay;")
     assert "min cosine(z, bay) <= 0.25" in predicate and "no guarantee" in predicate, predicate
     assert "0.5 s" in hover("patience]")
@@ -112,6 +112,35 @@ def hovers():
         "```etl\npredicate at_bay = min cosine(z, bay) <= limit;\n```\n\n"
         "Predicate: min cosine(z, bay) \\<= 0.25.\n\n"
         "Threshold 0.25: written in the spec; no guarantee.\n\nRobustness in \\[-1.75, 0.25\\].")}
+    assert client.end() == 0
+
+
+def thresholds():
+    """What is calibrated or fitted, with its origin and what it guarantees."""
+    client = Client(ETLC)
+
+    def hovers(name, *facts):
+        path = CASES / "ok" / f"{name}.etl"
+        text = client.open(path.read_text(), path.as_uri())
+        for words, fact in facts:
+            shown = text.ask("hover", words, len(words))["contents"]["value"]
+            assert fact in shown, (fact, shown)
+
+    hovers("language",
+           ("predicate at_a", "Threshold 0.35: conformal, alpha = 0.10; score 9 of 9"),
+           ("target goal_a", "3 rows of dimension 2, from goal_a.npy"),
+           ("monitor reach", "P(some verdict of a new episode misses a success) <= 0.1"),
+           ("monitor avoid", "Guarantee: nothing: 'near_c' has a literal threshold"),
+           ("monitor steady", "20 steps late"))
+    hovers("adaptive",
+           ("predicate low", "in [0.5, 2]; starts at conformal score 3 of 3"),
+           ("predicate low", "misses at most 0.25 T + 4.0 + 0.75 H"),
+           ("predicate high", "Robustness in [-3, 3]"),
+           ("monitor both", "Budget: 32 bytes of state"))
+    hovers("projections",
+           ("projection P", "from dimension 3 to 2, written in the spec"),
+           ("target centre", "2 rows of dimension 2, fitted"),
+           ("target known", "in the space of P(z)"))
     assert client.end() == 0
 
 
@@ -343,6 +372,7 @@ def files():
 
 same_as_check()
 hovers()
+thresholds()
 places()
 renames()
 completions()

@@ -44,11 +44,15 @@ Sentences about(const Model& model, const check::Input& input) {
     return facts;
 }
 
-/// The model names files by their whole paths only where it has to.
+std::string origin_in_words(const std::string& origin) {
+    if (origin == "literal") return "written in the spec";
+    return origin == "fitted" ? origin : "from " + origin;
+}
+
 Sentences about(const Model& model, const check::Target& target) {
-    Sentences facts{fmt::format("Target: {} of dimension {}, from {}.",
+    Sentences facts{fmt::format("Target: {} of dimension {}, {}.",
                                 diag::counted(target.rows, "row"), target.dimension,
-                                target.origin)};
+                                origin_in_words(target.origin))};
     if (target.space < model.points.size())
         facts.push_back(
             fmt::format("Its rows are in the space of {}.", model.points[target.space].text));
@@ -58,8 +62,8 @@ Sentences about(const Model& model, const check::Target& target) {
 }
 
 Sentences about(const Model& model, const check::Projection& projection) {
-    Sentences facts{fmt::format("Projection: from dimension {} to {}, from {}.",
-                                projection.dimension, projection.rows, projection.origin)};
+    Sentences facts{fmt::format("Projection: from dimension {} to {}, {}.", projection.dimension,
+                                projection.rows, origin_in_words(projection.origin))};
     if (projection.fitted < model.fitted.size() && !model.fitted[projection.fitted].filled)
         facts.emplace_back("It is not fitted yet: 'etlc fit' finds it.");
     return facts;
