@@ -52,9 +52,12 @@ std::optional<Model> check(ast::Spec spec, const source::File& file, const Optio
 }
 
 Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
-                  diag::Sink& sink) {
+                  KnownMatrices& known, diag::Sink& sink) {
     Context context{spec, file, options, sink};
+    context.known = &known;
     check_all(context, spec);
+    std::erase_if(known,
+                  [&](const auto& entry) { return !context.matrices.contains(entry.first); });
     Inspected result;
     result.complete = is_complete(context);
     for (std::size_t kind = 0; kind < kNameKinds; ++kind) {

@@ -67,6 +67,8 @@ struct Context {
     std::unordered_set<std::string> used_constants{};
     /// Files read so far, by path and key; nothing for one that had an error.
     std::map<std::pair<std::string, std::string>, std::optional<Matrix>> matrices{};
+    /// Of earlier checks; null: every file is read.
+    KnownMatrices* known = nullptr;
     std::set<std::string> dependencies{};
 
     diag::Diagnostic& report(diag::Code code, Span span, std::string message) {

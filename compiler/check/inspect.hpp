@@ -9,6 +9,7 @@
 
 #include "check/check.hpp"
 #include "check/names/scope.hpp"
+#include "check/predicates/matrices.hpp"
 
 namespace etlc::check {
 
@@ -33,7 +34,8 @@ struct Inspected {
     }
 };
 
+/// `known`: what files gave before; it then has those of this spec.
 Inspected inspect(ast::Spec spec, const source::File& file, const Options& options,
-                  diag::Sink& sink);
+                  KnownMatrices& known, diag::Sink& sink);
 
 }  // namespace etlc::check

@@ -5,6 +5,7 @@ CASES: the folder tests/spec, whose specs are diagnosed as `etlc SPEC --check` d
 import json
 import os
 import pathlib
+import struct
 import subprocess
 import sys
 import tempfile
@@ -332,6 +333,13 @@ def actions():
     assert client.end() == 0
 
 
+def row_of(columns):
+    """A .npy file of one row of zeros."""
+    header = f"{{'descr': '<f4', 'fortran_order': False, 'shape': (1, {columns}), }}"
+    header = header.ljust(117) + "\n"
+    return b"\x93NUMPY\x01\x00" + struct.pack("<H", 118) + header.encode() + bytes(4 * columns)
+
+
 def files():
     """Errors in files that are loaded are shown where the spec names them."""
     client = Client(ETLC, {"textDocument": {"publishDiagnostics": {"relatedInformation": True}}})
@@ -361,9 +369,19 @@ def files():
         assert place["range"]["start"]["line"] == 1
         there = text.ask("definition", '"t.npy"', 2)
         assert there["uri"] == pathlib.Path(folder, "t.npy").as_uri()
+        # What a file gave is kept while the file is the same.
+        pathlib.Path(folder, "a spec.thresholds.json").unlink()
+        for columns, codes in [(2, ["E0650"]), (3, ["E0650", "E0307"]), (2, ["E0650"])]:
+            pathlib.Path(folder, "t.npy").write_bytes(row_of(columns))
+            client.tell("workspace/didChangeWatchedFiles", {"changes": []})
+            for edit in " ", "":
+                found = client.diagnostics()
+                assert [d["code"] for d in found] == codes, (columns, found)
+                text.change([{"text": spec + edit}])
+            client.diagnostics()
         os.remove(pathlib.Path(folder, "t.npy"))
         client.tell("textDocument/didSave", {"textDocument": {"uri": text.uri}})
-        assert [d["severity"] for d in client.diagnostics()] == [3, 1]
+        assert [d["severity"] for d in client.diagnostics()] == [3, 3]
     # A text that was never saved.
     client.open('spec a;\ntarget t = load("t.npy");\nmonitor m = true;\n', "untitled:Untitled-1")
     assert any("t.npy" in d["message"] for d in client.diagnostics())

@@ -3,6 +3,7 @@
 Every request gets its answer, bad messages get the error that the protocol has for them, and the
 server ends with the status of the protocol: 0 after `shutdown`, else 1.
 """
+import subprocess
 import sys
 
 from client import Client
@@ -32,6 +33,13 @@ def life():
     assert client.wait() == 0
     client = Client(ETLC, None)  # nothing at all
     assert client.wait() == 1
+
+    def status(*arguments):
+        return subprocess.run([ETLC, "lsp", *arguments], stdin=subprocess.DEVNULL,
+                              capture_output=True).returncode
+
+    assert status("--stdio") == 1 and status("--help") == 0
+    assert status("a.etl") == 2 and status("--port", "3") == 2
 
 
 def order():

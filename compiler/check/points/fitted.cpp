@@ -60,8 +60,7 @@ const Method* find_method(Context& c, const ast::Name& name, Slot slot) {
     auto& error = c.report(Code::unknown_fitting, name.span,
                            fmt::format("'{}' does not fit {}; expected {}", name.text, word(slot),
                                        diag::alternatives(words)));
-    if (const auto near = diag::nearest_name(name.text, words))
-        diag::did_you_mean(error, *near);
+    if (const auto near = diag::nearest_name(name.text, words)) diag::did_you_mean(error, *near);
     return nullptr;
 }
 

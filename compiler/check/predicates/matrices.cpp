@@ -97,6 +97,23 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     return matrix;
 }
 
+/// Only what was read without a finding is known.
+std::optional<Matrix> known_or_read(Context& c, const ast::Load& load, const std::string& path) {
+    if (c.known == nullptr) return read_file(c, load, path);
+    std::error_code error;
+    const auto time = std::filesystem::last_write_time(path, error);
+    const auto size = error ? 0 : std::filesystem::file_size(path, error);
+    if (error) return read_file(c, load, path);
+    const auto found = c.known->find({path, load.key});
+    if (found != c.known->end() && found->second.time == time && found->second.size == size) {
+        c.dependencies.insert(path);
+        return found->second.matrix;
+    }
+    auto matrix = read_file(c, load, path);
+    if (matrix) c.known->insert_or_assign({path, load.key}, KnownMatrix{time, size, *matrix});
+    return matrix;
+}
+
 std::optional<Matrix> literal_matrix(Context& c,
                                      const std::vector<std::vector<ast::Number>>& rows) {
     Matrix matrix;
@@ -120,7 +137,7 @@ std::string beside_spec(const Context& c, const std::string& path) {
 std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {
     const std::string path = beside_spec(c, load.path);
     const auto [at, is_new] = c.matrices.try_emplace({path, load.key});
-    if (is_new) at->second = read_file(c, load, path);
+    if (is_new) at->second = known_or_read(c, load, path);
     return at->second;
 }
 

@@ -5,8 +5,11 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
+#include <map>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "ast/ast.hpp"
@@ -27,6 +30,15 @@ struct Matrix {
     std::string hash;
     std::vector<EncodedRows> encoded;  ///< where it was made of images
 };
+
+/// What files gave, by path and key, for those who check a spec again and again. It is used again
+/// while the file has the same time and size.
+struct KnownMatrix {
+    std::filesystem::file_time_type time;
+    std::uintmax_t size = 0;
+    Matrix matrix;
+};
+using KnownMatrices = std::map<std::pair<std::string, std::string>, KnownMatrix>;
 
 /// A path of the spec, relative to where etlc runs.
 std::string beside_spec(const Context& context, const std::string& path);

@@ -4,7 +4,8 @@
 
 namespace etlc::lsp {
 
-Analysis::Analysis(std::string path, std::string text, Encoding encoding)
+Analysis::Analysis(std::string path, std::string text, Encoding encoding,
+                   check::KnownMatrices& known)
     : file(std::move(path), std::move(text)), lines(file.text(), encoding) {
     ast::Spec spec = parse::parse(file, sink);
     has_syntax_errors = sink.has_errors();
@@ -12,7 +13,7 @@ Analysis::Analysis(std::string path, std::string text, Encoding encoding)
     if (has_syntax_errors) add_uncertain(names, file);
     check::Options options;
     options.allow_missing = true;
-    checked = check::inspect(std::move(spec), file, options, sink);
+    checked = check::inspect(std::move(spec), file, options, known, sink);
 }
 
 std::optional<Planned> plan(const Analysis& analysis) {

@@ -18,7 +18,8 @@
 namespace etlc::lsp {
 
 struct Analysis {
-    Analysis(std::string path, std::string text, Encoding encoding);
+    /// `known`: what the files of the spec gave before.
+    Analysis(std::string path, std::string text, Encoding encoding, check::KnownMatrices& known);
     Analysis(const Analysis&) = delete;  // `lines` look at `file`
     Analysis& operator=(const Analysis&) = delete;
 

@@ -29,7 +29,8 @@ void Document::forget() {
 }
 
 const Analysis& Document::analysis() {
-    if (!analysis_) analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_);
+    if (!analysis_)
+        analysis_ = std::make_unique<Analysis>(path_of_uri(uri_), text_, encoding_, known_);
     return *analysis_;
 }
 

@@ -42,6 +42,7 @@ private:
     std::string text_;
     std::int64_t version_;
     Encoding encoding_;
+    check::KnownMatrices known_;
     std::unique_ptr<Analysis> analysis_;
     std::optional<Planned> planned_;
 };
