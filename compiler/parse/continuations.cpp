@@ -120,6 +120,7 @@ bool has(const std::vector<std::size_t>& rules, std::size_t rule) {
 Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     if (has(rules, EtlParser::RuleAmount))
         return has(rules, EtlParser::RuleBound) ? Role::bound : Role::amount;
+    if (!rules.empty() && rules[0] == EtlParser::RuleFittedArgument) return Role::fitting_argument;
     if (rules.size() < 2 || rules[0] != EtlParser::RuleName) return Role::none;
     switch (rules[1]) {
         case EtlParser::RulePrimary: return Role::operand;
@@ -129,6 +130,7 @@ Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
         case EtlParser::RuleEncodedBy: return Role::encoder;
         case EtlParser::RuleCalibrated: return Role::calibration;
         case EtlParser::RuleFitted: return Role::fitting;
+        case EtlParser::RuleArgument: return Role::calibration_argument;
         case EtlParser::RuleDeclaration:
             if (declaration == EtlParser::TRUTH) return Role::predicate;
             return declaration == EtlParser::PERIOD ? Role::amount : Role::none;

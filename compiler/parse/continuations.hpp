@@ -24,9 +24,11 @@ enum class Role : std::uint8_t {
     amount,   ///< a constant
     bound,    ///< a constant that is a bound of an interval
     encoder,
-    predicate,    ///< whose truth it is
-    calibration,  ///< a method of calibrated(...)
-    fitting,      ///< a method of fitted(...)
+    predicate,             ///< whose truth it is
+    calibration,           ///< a method of calibrated(...)
+    fitting,               ///< a method of fitted(...)
+    calibration_argument,  ///< the word before its '='
+    fitting_argument,      ///< the same; `of` and `where` are words of the language
 };
 
 struct Continuations {

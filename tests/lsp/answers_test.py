@@ -249,7 +249,11 @@ def completions():
     numbers = labels("predicate p = grip <= |")
     assert "limit" in numbers and "calibrated" in numbers and "at_bay" not in numbers
     assert labels("predicate p = grip <= calibrated(|")[0] == "conformal"
+    assert labels("predicate p = grip <= calibrated(conformal, |")[0] == "alpha"
     assert "medoids" in labels("target t = fitted(|")
+    arguments = labels("target t = fitted(medoids, |")
+    assert {"k", "away", "of", "where"} <= set(arguments), arguments
+    assert labels("target t = fitted(medoids, of = |") == ["z"]
     assert labels("truth |") == ["at_bay", "closed"]
     assert labels("input i : |") == ["f32", "f16", "i8", "bool"]
     assert "hold" in labels("input i : f32[2] |") and "in" in labels("input i : f32[2] |")

@@ -16,11 +16,12 @@ namespace {
 using check::NameKind;
 using parse::Role;
 
+constexpr int kKeyword = 14;
+
 /// The protocol's numbers of kinds of items.
 int item_kind(WordInfo::Kind kind) {
     constexpr int kFunction = 3;
     constexpr int kUnit = 11;
-    constexpr int kKeyword = 14;
     constexpr int kOperator = 24;
     constexpr int kType = 25;
     switch (kind) {
@@ -74,12 +75,17 @@ bool fits(const Declared& declared, Role role, const std::string& declaration) {
         case Role::predicate: return kind == NameKind::predicate;
         case Role::none:
         case Role::calibration:
-        case Role::fitting: break;
+        case Role::fitting:
+        case Role::calibration_argument:
+        case Role::fitting_argument: break;
     }
     return false;
 }
 
-std::vector<std::string> methods(Role role) {
+/// Words that are none of the grammar: check/ knows them.
+std::vector<std::string> words_of(Role role) {
+    if (role == Role::calibration_argument) return {"alpha", "against", "gamma", "lo", "hi"};
+    if (role == Role::fitting_argument) return {"k", "r", "away"};
     if (role == Role::calibration) return {"conformal", "class_conditional", "f1", "adaptive"};
     if (role == Role::fitting)
         return {"mean", "medoids", "kmeans", "pca", "whitened_pca", "discriminant", "logpzo"};
@@ -155,7 +161,9 @@ Json completion(const Analysis& analysis, std::uint32_t offset) {
     const parse::Continuations at = parse::continuations_at(analysis.file, offset);
     Items items(analysis, at.typed);
     add_names(items, analysis, at);
-    for (const std::string& method : methods(at.role)) items.add(method, 14, "method");
+    const bool method = at.role == Role::calibration || at.role == Role::fitting;
+    for (const std::string& word : words_of(at.role))
+        items.add(word, kKeyword, method ? "method" : "argument");
     add_durations(items, analysis, at);
     for (const std::string& word : at.words) {
         // The grammar takes formulas there, and the language none.
