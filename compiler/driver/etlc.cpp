@@ -156,7 +156,7 @@ int run_command(int argc, char** argv) {
         "memory.",
         "etlc run");
     add_common_options(app, call);
-    driver::add_run_options(app, call.run, call.request.check.lets);
+    driver::add_run_options(app, call.run, call.request.check);
     if (const auto status = driver::parse_arguments(app, argc, argv)) return *status;
     const bool has_other_output =
         call.run.summary || !call.run.html.empty() || !call.run.svg.empty();

@@ -77,6 +77,8 @@ spec 2 8.5 0.25 2.5 3 >2/docking.etl
 # the class is the same but for its comments.
 "$etlc" 1/docking.etl --emit params -o first.bin
 cmp first.bin docking.params.bin || fail "two kinds of parameters"
+head=$(sed -n '/^#pragma/q; s,^//,,p' docking.hpp | tr -d '\n' | tr -s ' ')
+grep -q "in parameters of $(wc -c <first.bin) bytes" <<<"$head" || fail "the head states other bytes"
 "$etlc" 2/docking.etl --emit params -o second.bin
 ! cmp -s first.bin second.bin || fail "other numbers have the same parameters"
 "$etlc" 2/docking.etl --retargetable -o other.hpp
@@ -145,3 +147,43 @@ int main() { return thresholds::Shadow().step(thresholds::Inputs()).past.alarm()
 PROGRAM
 "$cxx" "${flags[@]}" words.cpp -o words
 ./words
+
+# etlc run --retargetable says what such a class says.
+cat >brief.etl <<'SPEC'
+spec brief;
+input x : f32 in [0, 4];
+input y : f32 in [0, 4];
+monitor reach = F x > 3;
+monitor within = G (x > 1 -> F[0,2] y <= 0.5);
+sliding monitor both = F[0,1] (x > 2 && y > 2);
+SPEC
+printf 'x,y\n0.5,3\n1.5,\n2.25,2.5\n,4\n0.5,0.25\n3.5,1\n' >brief.csv
+"$etlc" brief.etl --retargetable -o brief.hpp
+od -An -v -tu1 brief.params.bin | tr -s ' ' , | sed 's/^,//; s/$/,/' >brief.inc
+cat >brief.cpp <<'PROGRAM'
+#include <cstdio>
+#include "brief.hpp"
+alignas(64) static const unsigned char bytes[] = {
+#include "brief.inc"
+};
+int main() {
+  const float none = etlmon::kMissing;
+  const float trace[][2] = {{0.5F, 3}, {1.5F, none}, {2.25F, 2.5F}, {none, 4}, {0.5F, 0.25F},
+                            {3.5F, 1}};
+  brief::Monitor monitor(brief::Params(bytes, sizeof bytes));
+  int step = 0;
+  for (const auto& now : trace) {
+    for (const auto& [name, v] : named(monitor.step({now[0], now[1]})))
+      if (v.decided())
+        std::printf("%d,%s,%.9g,%.9g,%.9g\n", step, name, static_cast<double>(v.lower),
+                    static_cast<double>(v.robustness), static_cast<double>(v.upper));
+    ++step;
+  }
+}
+PROGRAM
+"$cxx" "${flags[@]}" brief.cpp -o brief
+"$etlc" run brief.etl --retargetable --trace brief.csv | grep -v undecided | cut -d, -f1-5 |
+  tail -n +2 >brief.run
+./brief >brief.class
+grep -q inf brief.run
+cmp brief.run brief.class || { diff brief.run brief.class; fail "etlc run says otherwise"; }

@@ -4,7 +4,7 @@
 
 namespace etlc::driver {
 
-void add_run_options(CLI::App& app, RunRequest& run, bool& lets) {
+void add_run_options(CLI::App& app, RunRequest& run, check::Options& check) {
     app.add_option("--trace", run.trace,
                    "the trace: .csv, .npz or .h5; FILE.h5:GROUP is the episode in a group of it, "
                    "FOLDER:3 one of a data set; "
@@ -20,8 +20,10 @@ void add_run_options(CLI::App& app, RunRequest& run, bool& lets) {
                  "after the trace, also report the last positions of sliding monitors");
     app.add_flag("--distances", run.distances,
                  "a column for each predicate: the distance or expression that it compares");
-    app.add_flag("--lets", lets,
+    app.add_flag("--lets", check.lets,
                  "a column for each let that does not look ahead: its robustness at that step");
+    app.add_flag("--retargetable", check.retargetable,
+                 "bounds as a class of --retargetable has them: for any numbers that may come");
     app.add_flag(
         "--summary", run.summary,
         "a line for each monitor, and for inputs with missing samples, on standard output; "

@@ -3,12 +3,13 @@
 
 #include <CLI/CLI.hpp>
 
+#include "check/check.hpp"
 #include "driver/run/run.hpp"
 
 namespace etlc::driver {
 
-/// `lets`: of check::Options.
-void add_run_options(CLI::App& app, RunRequest& run, bool& lets);
+/// --lets and --retargetable go to `check`.
+void add_run_options(CLI::App& app, RunRequest& run, check::Options& check);
 
 /// "" where there is none.
 std::string mistake_in_run_call(const RunRequest& run);
