@@ -58,8 +58,8 @@ def main():
         satisfied = [row for row in rows if "satisfied" in row.values()]
         assert len(rows) == FRAMES and len(satisfied) == FRAMES - FIRST_AT_BAY, rows
 
-    # Parameters of a retargetable class are by an encoder: those by another, with the same rows, are
-    # of the same shape, and it refuses them.
+    # Parameters of a retargetable class are by an encoder: those by another, with the same rows,
+    # are of the same shape, and it refuses them.
     call(ETLC, "look.etl", "--retargetable", "-o", "look.hpp")
     ours = pathlib.Path("look.params.bin").read_bytes()
     pathlib.Path("encoder.py").write_text(CODE + "# changed\n")

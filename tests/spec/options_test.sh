@@ -28,7 +28,8 @@ refuses "--values: found 'bolean', expected robustness or boolean; did you mean 
 refuses "--values: found '0', expected robustness or boolean" t.etl --check --values 0
 refuses "--targets-as: found 'f8', expected f32, f16 or i8; did you mean 'i8'?" \
     run t.etl --trace t.csv --targets-as f8
-refuses "--emit: found 'hp', expected ast, graph, plan, hpp, dot or report; did you mean 'hpp'?" \
+expected="ast, graph, plan, hpp, params, dot or report"
+refuses "--emit: found 'hp', expected $expected; did you mean 'hpp'?" \
     t.etl --emit hp
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
