@@ -144,13 +144,13 @@ void print_parameters(Printer& out, const Context& context) {
 void print_retarget_interface(Printer& out, const Context& context) {
     if (!context.retargetable()) return;
     print_doc(out,
-              "Without parameters: everything is unknown at every step, until retarget() gives "
-              "some.");
+              "Without parameters: every predicate and bool input is unknown at every step, until "
+              "retarget() gives some.");
     out.line("Monitor() noexcept : numbers(nullptr) { reset(); }");
     print_doc(out, "With these, where they are ready.");
-    out.open("explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) {");
-    out.line("reset();");
-    out.close();
+    out.line(
+        "explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { reset(); "
+        "}");
     print_doc(out, "Whether this monitor has parameters.");
     out.line("bool ready() const noexcept { return numbers != nullptr; }");
     print_doc(out, "What they were made from.");

@@ -1,13 +1,18 @@
 #!/usr/bin/env bash
-# generated_is_fresh_test.sh ETLC SPEC HEADER: the committed HEADER is what etlc makes of SPEC,
-# byte for byte. ETLC_UPDATE=1 rewrites it.
+# generated_is_fresh_test.sh ETLC SPEC HEADER OPTION...: the committed HEADER is what etlc makes of
+# SPEC, byte for byte. ETLC_UPDATE=1 rewrites it.
 set -euo pipefail
 etlc=$1 spec=$2 header=$3
+shift 3
 folder=$(mktemp -d)
 trap 'rm -rf "$folder"' EXIT
 
 made=$folder/$(basename "$header")
-"$etlc" "$spec" -o "$made"
+if [ $# -eq 0 ]; then
+    "$etlc" "$spec" -o "$made"
+else
+    "$etlc" "$spec" "$@" -o - >"$made"
+fi
 if [ "${ETLC_UPDATE:-}" = 1 ]; then
     cp "$made" "$header"
 elif ! diff -u "$header" "$made"; then

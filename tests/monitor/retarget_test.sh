@@ -26,7 +26,7 @@ monitors='
 monitor reach = F at_bay;
 monitor avoid = G !at_wall;
 monitor both = F (at_bay && F among) && G (open -> !at_wall);
-monitor answered = G (through -> F[0,6] weighted);
+monitor answered = G (called && through -> F[0,6] weighted);
 monitor nested = G (at_wall -> F[1,4] (formed && F[0,3] apart));
 monitor pending = G F[0,5] (among U through);
 monitor held = G (at_bay S weighted);
@@ -51,6 +51,7 @@ input x : f32;
 input y : f32;
 input charge : f32 in [0, 2];
 input open : bool;
+input called : bool hold 2;
 target bay = load("bay.npy");
 target wall = load("wall.npy");
 target many = load("many.npy");
@@ -96,6 +97,7 @@ sed 's/F\[0,6\]/F[0,7]/' 1/docking.etl >1/longer.etl
 {
   echo "spec twin;"
   echo "input open : bool;"
+  echo "input called : bool hold 2;"
   for p in at_bay at_wall among apart weighted formed through comparison_1 comparison_2; do
     echo "input of_$p : f32; predicate $p = of_$p >= 0;"
     echo "PREDICATE($p)" >>predicates.inc

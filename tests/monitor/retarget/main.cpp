@@ -40,7 +40,7 @@ double wide(float x) {
 /// The samples of a step, some of them missing; near the targets, so that predicates turn.
 struct Sample {
     float z[32], w[7], v[33], x, y, charge;
-    bool has_z, has_w, has_v, open;
+    bool has_z, has_w, has_v, open, has_called, called;
 
     template <class Inputs>
     Inputs as() const {
@@ -52,6 +52,7 @@ struct Sample {
         in.y = y;
         in.charge = charge;
         in.open = open;
+        if (has_called) in.called = called;
         return in;
     }
 };
@@ -77,6 +78,8 @@ public:
         now_.has_w = there();
         now_.has_v = there();
         now_.open = random_() % 2 == 0;
+        now_.has_called = there();
+        now_.called = random_() % 4 != 0;
         return now_;
     }
     unsigned one_of(unsigned n) { return static_cast<unsigned>(random_() % n); }
@@ -152,6 +155,7 @@ template <class Atoms>
 twin::Inputs as_scalars(const Atoms& now, const Sample& sample) {
     twin::Inputs in;
     in.open = sample.open;
+    if (sample.has_called) in.called = sample.called;
     const auto number = [](etlmon::Value value) {
         return value.low == value.high ? etlmon::float_of(value.low) : etlmon::kMissing;
     };
