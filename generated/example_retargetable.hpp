@@ -69,7 +69,7 @@ inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements
 /// What a block of parameters must be: of this shape, which is that of all below but its numbers,
 /// and made with this encoder, 0 where the spec has none.
 struct Layout {
-  static constexpr uint64_t kShape = 0x84a1a773434f990bu;
+  static constexpr uint64_t kShape = 0x351e24991192f9deu;
   static constexpr uint64_t kEncoder = 0x0000000000000000u;
   static constexpr size_t kSize = 192;  ///< in bytes
   /// Where numbers lie, how many, how many a row, and what must hold for each.
@@ -113,7 +113,9 @@ class Monitor {
   /// changes, and the answer says why. Past::kept: verdicts go on, and steps that were measured
   /// count as what was measured then. Past::forgotten: reset().
   etlmon::ParamsState retarget(const Params& params, etlmon::Past past) noexcept {
-    if (!params.ready()) return params.state();
+    if (!params.ready()) {
+      return params.state();
+    }
     numbers = params.numbers();
     if (past == etlmon::Past::forgotten) {
       reset();
@@ -179,7 +181,9 @@ class Monitor {
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 
 inline Monitor::Atoms Monitor::measure(const Inputs& in) noexcept {
-  if (!ready()) return unknown();  // no parameters yet
+  if (!ready()) {
+    return unknown();
+  }
   Atoms now;
   bool missing = false;
 

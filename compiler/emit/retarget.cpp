@@ -161,7 +161,7 @@ void print_retarget_interface(Printer& out, const Context& context) {
               "nothing changes, and the answer says why. Past::kept: verdicts go on, and steps "
               "that were measured count as what was measured then. Past::forgotten: reset().");
     out.open("etlmon::ParamsState retarget(const Params& params, etlmon::Past past) noexcept {");
-    out.line("if (!params.ready()) return params.state();");
+    print_wrapped(out, "if (!params.ready()) return params.state();");
     out.line("numbers = params.numbers();");
     print_wrapped(out, "if (past == etlmon::Past::forgotten) reset();");
     out.line("return params.state();");

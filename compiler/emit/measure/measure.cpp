@@ -252,7 +252,7 @@ void print_measure(Printer& out, const Context& context) {
     const bool reads_inputs = !context.plan.inputs.empty();
     open_half(out, context, "Monitor::Atoms",
               fmt::format("measure({}const Inputs& in)", reads_inputs ? "" : "[[maybe_unused]] "));
-    if (context.retargetable()) out.line("if (!ready()) return unknown();  // no parameters yet");
+    if (context.retargetable()) print_wrapped(out, "if (!ready()) return unknown();");
     out.line("Atoms now;");
     out.line("bool missing = false;");
     print_rank(out, context);
