@@ -161,8 +161,9 @@ int run_command(int argc, char** argv) {
     const bool has_other_output =
         call.run.summary || !call.run.html.empty() || !call.run.svg.empty();
     if (has_other_output && app.count("--output") == 0) call.run.output.clear();
-    if (const std::string mistake = driver::mistake_in_run_call(call.run); !mistake.empty())
-        return driver::complain(app, mistake);
+    for (const std::string& mistake : {driver::mistake_in_run_call(call.run),
+                                       driver::mistake_in_retargetable_call(app, call.request)})
+        if (!mistake.empty()) return driver::complain(app, mistake);
     if (!call.run.html.empty() && !can_make_pages()) return driver::kFailed;
     return with_spec(call, SpecWarnings::dropped, [&](const source::File& file, diag::Sink& sink) {
         const auto compiled = driver::compile(file, call.request, sink);

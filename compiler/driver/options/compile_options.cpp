@@ -31,8 +31,17 @@ std::string mistake_in_namespace(const std::string& name) {
     return "";
 }
 
-/// What a class whose numbers may change cannot have, and why.
+std::string emit_help() {
+    std::string text = "print a stage instead of the header:";
+    for (const auto& [name, summary] : emittable())
+        text += fmt::format("\n{:>30} {}", name + ":", summary);
+    return text;
+}
+
+}  // namespace
+
 std::string mistake_in_retargetable_call(const CLI::App& app, const Request& request) {
+    if (!request.check.retargetable && request.emit != "params") return "";
     const auto without = [&](const char* option, const char* why) {
         return fmt::format("{} goes without {}: {}",
                            request.emit == "params" ? "--emit params" : "--retargetable", option,
@@ -50,19 +59,10 @@ std::string mistake_in_retargetable_call(const CLI::App& app, const Request& req
         return without("--targets-as",
                        "how far narrowing moves a row is known of the rows of one spec");
     for (const char* option : {"--inline-targets", "--targets-file"})
-        if (app.count(option) > 0)
+        if (app.get_option_no_throw(option) != nullptr && app.count(option) > 0)
             return without(option, "all of its target sets lie in its parameters");
     return "";
 }
-
-std::string emit_help() {
-    std::string text = "print a stage instead of the header:";
-    for (const auto& [name, summary] : emittable())
-        text += fmt::format("\n{:>30} {}", name + ":", summary);
-    return text;
-}
-
-}  // namespace
 
 void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, bool& check_only) {
     std::vector<std::string> stages;
@@ -126,10 +126,8 @@ std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
         return "--explain follows robustness to the sample that it is that of, and --values "
                "boolean "
                "has none: leave one of the two out";
-    if (request.check.retargetable || request.emit == "params") {
-        const std::string mistake = mistake_in_retargetable_call(app, request);
-        if (!mistake.empty()) return mistake;
-    }
+    if (const std::string mistake = mistake_in_retargetable_call(app, request); !mistake.empty())
+        return mistake;
     if (app.count("--targets-file") > 0 && prints_stage && request.emit != "hpp")
         return "--targets-file goes with the header, not with other stages";
     return "";

@@ -13,6 +13,10 @@ namespace etlc::driver {
 
 void add_compile_options(CLI::App& app, Request& request, OutputPaths& output, bool& check_only);
 
+/// What --retargetable does not go with, and why; empty where it was not asked for, or where there
+/// is none.
+std::string mistake_in_retargetable_call(const CLI::App& app, const Request& request);
+
 /// The call's own mistakes that CLI11 cannot see; empty where there are none.
 std::string mistake_in_compile_call(const CLI::App& app, const Request& request,
                                     const OutputPaths& output, bool check_only);

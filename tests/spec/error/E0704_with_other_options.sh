@@ -20,6 +20,7 @@ for option in "--values boolean" --explain "--recorder 1,1,1" "--targets-as f16"
     echo "exit status $?"
 done
 "$ETLC" plain.etl --emit params --values boolean -o plain.params.bin
+"$ETLC" run plain.etl --retargetable --values boolean --trace none.csv
 "$ETLC" plain.etl --retargetable -o - >stdout.hpp
 "$ETLC" plain.etl --emit params -o plain.params.bin && wc -c <plain.params.bin
 # All files of a call or none.
