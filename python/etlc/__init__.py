@@ -12,7 +12,7 @@ of everything.
 """
 
 from ._library import library as _native
-from .commands import Evaluation, Written, calibrate, evaluate, fit, incident
+from .commands import Evaluation, Written, calibrate, embed, evaluate, fit, incident
 from .errors import (
     BusyError,
     ClosedError,
@@ -48,6 +48,7 @@ __all__ = [
     "Verdicts",
     "Written",
     "calibrate",
+    "embed",
     "evaluate",
     "fit",
     "incident",

@@ -1,4 +1,4 @@
-"""`etlc calibrate`, `fit`, `evaluate` and `incident`: the commands themselves, as a process."""
+"""The commands of etlc themselves, run as processes: `calibrate`, `embed`, `evaluate`, ..."""
 
 from __future__ import annotations
 
@@ -171,6 +171,40 @@ def evaluate(
     return Evaluation(found, ran.stdout, tuple(diagnostics_of(ran.stderr)))
 
 
+def embed(
+    spec: str | os.PathLike[str],
+    data: Paths | None = None,
+    *,
+    output: str | os.PathLike[str] | None = None,
+    settings: Mapping[str, object] | None = None,
+    encoder_command: str | None = None,
+    encoder_timeout: int | None = None,
+) -> Written:
+    """Encodes the images that a spec names, and recordings into episodes.
+
+    Args:
+        spec: the path of the spec. The embeddings of its targets go into SPEC.embedded.npz beside
+            it.
+        data: recordings to make episodes of: videos, folders of images, patterns.
+        output: the folder where the episodes go; given with `data`.
+        settings: other values for constants.
+        encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
+        encoder_timeout: seconds after which an encoder that does nothing is stopped.
+
+    Returns:
+        Its `path` is the folder of episodes, or the file of embeddings.
+
+    Raises:
+        SpecError: the command failed, and says why: E1016 where etlc was installed without it.
+    """
+    ran = _run(
+        "embed", [spec], data, settings, None,
+        {"-o": output, "--encoder-cmd": encoder_command, "--encoder-timeout": encoder_timeout},
+    )  # fmt: skip
+    path = _output(spec, output, ".embedded.npz")
+    return Written(path, ran.stdout, tuple(diagnostics_of(ran.stderr)))
+
+
 def incident(
     spec: str | os.PathLike[str],
     data: bytes | str | os.PathLike[str],
@@ -204,6 +238,12 @@ def incident(
             {"--spec": spec, "--format": form, "--thresholds": thresholds, "--fitted": fitted},
         )  # fmt: skip
     return ran.stdout
+
+
+def _place(found: Diagnostic) -> str:
+    if not found.file:
+        return ""
+    return f"{found.file}:{found.line}:{found.column}: " if found.line else f"{found.file}: "
 
 
 def _paths(paths: Paths) -> list[str]:
@@ -241,7 +281,5 @@ def _run(
         return ran
     found = diagnostics_of(ran.stderr)
     errors = [one for one in found if one.severity == "error"] or found
-    said = "\n".join(
-        f"{one.file}:{one.line}:{one.column}: {one.message} [{one.code}]" for one in errors
-    )
+    said = "\n".join(f"{_place(one)}{one.message} [{one.code}]" for one in errors)
     raise SpecError(said or ran.stderr.strip() or f"etlc ended with {ran.returncode}", found)

@@ -6,10 +6,13 @@ python_test.py FOLDER: FOLDER is that of the tests of specs.
 
 import inspect
 import json
+import re
+import struct
 import sys
 import tempfile
 import threading
 import unittest
+import zlib
 from pathlib import Path
 
 import numpy as np
@@ -44,6 +47,18 @@ def samples(**others):
         "half": np.array([1, 0], "f2"), "byte": np.array([2, -2], "i1"),
     }  # fmt: skip
     return {**given, **others}
+
+
+def png(pixel, size):
+    """A square of one colour."""
+    def chunk(kind, data):
+        crc = zlib.crc32(kind + data)
+        return struct.pack(">I", len(data)) + kind + data + struct.pack(">I", crc)
+
+    head = struct.pack(">IIBBBBB", size, size, 8, 2, 0, 0, 0)
+    rows = (b"\0" + pixel * size) * size
+    return (b"\x89PNG\r\n\x1a\n" + chunk(b"IHDR", head) + chunk(b"IDAT", zlib.compress(rows))
+            + chunk(b"IEND", b""))  # fmt: skip
 
 
 class Describing(unittest.TestCase):
@@ -576,6 +591,38 @@ monitor arrives = F near;
         self.assertIn("goal", made.report)
         self.assertEqual(etlc.Monitor(path / "reach.etl").monitors, ("arrives",))
 
+    def test_embeds(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        path = Path(folder.name)
+        page = (SPECS.parent.parent / "docs" / "encoders.md").read_text()
+        (path / "encoder.py").write_text(re.search(r"```python\n(.*?)```", page, re.S)[1])
+        (path / "look.etl").write_text("""spec look;
+rate 10 Hz;
+encoder mine = load("encoder.py");
+input z : f32[4] by mine;
+target bay = images("bay.png") by mine;
+monitor docked = F min l2(z, bay) <= 0.3;
+""")
+        image = png(bytes([0, 200, 0]), 16)
+        (path / "bay.png").write_bytes(image)
+        (path / "drive").mkdir()
+        for step in range(3):
+            (path / "drive" / f"{step}.png").write_bytes(image)
+        encoder = f"{sys.executable} {path}/encoder.py"
+        try:
+            made = etlc.embed(path / "look.etl", encoder_command=encoder)
+        except etlc.SpecError as error:
+            self.assertIn("E1016", str(error))
+            self.skipTest("etlc embed is not there")
+        self.assertEqual(made.path, path / "look.embedded.npz")
+        made = etlc.embed(path / "look.etl", path / "drive", output=path / "episodes",
+                          encoder_command=encoder)  # fmt: skip
+        self.assertEqual(made.path, path / "episodes")
+        with np.load(path / "episodes" / "drive.npz") as episode:
+            verdicts = etlc.Monitor(path / "look.etl").run(z=episode["z"])
+        self.assertEqual(verdicts.docked.satisfied.tolist(), [True] * 3)
+
     def test_say_why_they_fail(self):
         path = self.folder(threshold="nothing")
         with self.assertRaises(etlc.SpecError) as caught:
@@ -585,6 +632,12 @@ monitor arrives = F near;
         path = self.folder(threshold="1")
         with self.assertRaisesRegex(etlc.SpecError, "no-such"):
             etlc.evaluate(path / "reach.etl", path / "no-such")
+        with self.assertRaisesRegex(etlc.SpecError, r"^[^:]*no-such: "):
+            etlc.evaluate(path / "reach.etl", path / "no-such")
+        with self.assertRaisesRegex(etlc.SpecError, "E1008"):
+            etlc.embed(path / "reach.etl")
+        with self.assertRaisesRegex(etlc.SpecError, "expected an incident"):
+            etlc.incident(path / "reach.etl", b"")
 
 
 if __name__ == "__main__":

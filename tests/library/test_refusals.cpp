@@ -139,17 +139,6 @@ TEST(Refusals, NullPointers) {
     expect_refused(etlc_let(dock, 0, nullptr), ETLC_NULL_POINTER, "verdict");
     expect_refused(etlc_count(dock, 0, nullptr), ETLC_NULL_POINTER, "counts");
     expect_refused(etlc_explain(dock, 0, ETLC_TEXT, nullptr), ETLC_NULL_POINTER, "text");
-    etlc_options recording = options;
-    recording.recorder = "2,1,1";
-    const Opened recorded(recording);
-    const void* bytes = nullptr;
-    std::size_t size = 0;
-    expect_refused(etlc_incidents(recorded, nullptr, &index), ETLC_NULL_POINTER, "complete");
-    expect_refused(etlc_incidents(recorded, &index, nullptr), ETLC_NULL_POINTER, "lost");
-    expect_refused(etlc_incident(recorded, 0, nullptr, &size), ETLC_NULL_POINTER, "bytes");
-    expect_refused(etlc_incident(recorded, 0, &bytes, nullptr), ETLC_NULL_POINTER, "size");
-    expect_refused(etlc_incident(recorded, 0, &bytes, &size), ETLC_NO_SUCH,
-                   "no incident 0: 0 of them are complete");
 }
 
 TEST(Refusals, OtherVersions) {
