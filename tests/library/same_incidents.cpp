@@ -35,8 +35,9 @@ const std::vector<SpecShape> kShapes = {
 const SpecShape kAdaptive = {
     .formulas = Formulas::mixed, .monitors = 5, .depth = 3, .exact = false};
 
-/// What random specs have none of: contrasts, expressions with distances and without a name,
-/// narrow embeddings, projections, repeating monitors beside sliding ones.
+/// What random specs have none of: contrasts, of rows too, that int8 does not tell apart;
+/// expressions with distances and without a name; narrow embeddings; projections; alarms of
+/// repeating monitors at every step.
 constexpr const char* kAllKinds = R"(spec kinds;
 input z : f32[3] hold 1;
 input h : f16[2];
@@ -53,9 +54,14 @@ predicate mapped = min l2(P(z), w) <= 1.5;
 predicate third = kth(2) cosine(h, u) <= 0.5;
 predicate nearer = min l2(z, t) - min l2(z, s) <= 0.125;
 predicate bytes = min linf(b, u) <= 3;
+target left = [[0.5, 0.25, 1], [0.501, 0.251, 1.001]];
+target right = [[0.5005, 0.2505, 1.0005], [0.502, 0.252, 1.002]];
+predicate alike = min l2(z, left) - min l2(z, right) <= 0;
 monitor a = G (mapped || third || f);
 monitor c = G (min l2(z, t) * 2 - x <= 6 || g);
 repeating monitor r = F[0, 2] (nearer && bytes);
+repeating monitor q = bytes;
+monitor v = G (alike || f || g);
 restartable monitor d = G (bytes -> F[0, 2] nearer);
 sliding monitor e = G[0, 2] (third || nearer);
 )";
