@@ -100,6 +100,22 @@ class Describing(unittest.TestCase):
                     self.assertTrue(inspect.getdoc(value), f"{name}.{member}")
 
 
+    def test_the_page_has_an_example_of_every_call(self):
+        page = (SPECS.parent.parent / "docs" / "python.md").read_text()
+        examples = "".join(re.findall(r"```python\n(.*?)```", page, re.S))
+        calls = [name for name in etlc.__all__ if not inspect.isclass(getattr(etlc, name))]
+        for kind in (etlc.Monitor, etlc.Verdict, etlc.Verdicts, etlc.Episode,
+                     etlc.EpisodeVerdicts, etlc.Explanation):  # fmt: skip
+            calls += [name for name, _ in inspect.getmembers(kind) if not name.startswith("_")]
+        calls += [name for name in vars(etlc.Monitor(text=DOCK)) if not name.startswith("_")]
+        self.assertGreater(len(calls), 50)
+        for name in calls:
+            self.assertRegex(examples, rf"\.{name}\b")
+        for name in etlc.__all__:
+            if name.endswith("Error") and name != "Error":
+                self.assertIn(name, page)
+
+
 class Stepping(unittest.TestCase):
     def test_gives_verdicts(self):
         dock = etlc.Monitor(text=DOCK, lets=True)

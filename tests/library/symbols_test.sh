@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# symbols_test.sh LIBRARY HEADER: the library has exactly the functions that have been promised,
-# each of the version that it was promised with, and the header declares all of them.
+# symbols_test.sh LIBRARY HEADER PAGE: the library has exactly the functions that have been
+# promised, each of the version that it was promised with; the header declares all of them, and the
+# page has an example of each.
 set -euo pipefail
-library=$1 header=$2
+library=$1 header=$2 page=$3
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 
 found=$(nm --dynamic --defined-only --with-symbol-versions "$library" | awk '$2 == "T" {print $3}' |
@@ -19,3 +20,7 @@ diff <(cut -d' ' -f1 "$here/symbols.txt") <(echo "$declared") || {
 others=$(nm --dynamic --defined-only "$library" | awk '$2 != "A" {print $3}' | grep -v '^etlc_' ||
     true)
 [ -z "$others" ] || { echo "FAILED: the library shows more than its functions: $others"; exit 1; }
+examples=$(awk '/^```c$/ {on = 1; next} /^```/ {on = 0} on' "$page")
+for name in $(cut -d' ' -f1 "$here/symbols.txt"); do
+    grep -qw "$name(" <<<"$examples" || { echo "FAILED: $page has no example of $name"; exit 1; }
+done
