@@ -22,5 +22,5 @@ others=$(nm --dynamic --defined-only "$library" | awk '$2 != "A" {print $3}' | g
 [ -z "$others" ] || { echo "FAILED: the library shows more than its functions: $others"; exit 1; }
 examples=$(awk '/^```c$/ {on = 1; next} /^```/ {on = 0} on' "$page")
 for name in $(cut -d' ' -f1 "$here/symbols.txt"); do
-    grep -qw "$name(" <<<"$examples" || { echo "FAILED: $page has no example of $name"; exit 1; }
+    grep -q "\b$name(" <<<"$examples" || { echo "FAILED: $page has no example of $name"; exit 1; }
 done
