@@ -328,7 +328,7 @@ int incident_command(int argc, char** argv) {
 
 struct Command {
     std::string_view name;
-    std::string_view takes;  ///< at least
+    std::string_view takes;  ///< at least; may be empty
     driver::CommandFunction call;
 };
 constexpr Command kCommands[] = {

@@ -9,7 +9,7 @@ cd "$box"
 fail() { echo "FAILED: $*" >&2; exit 1; }
 
 "$etlc" --help >help
-mapfile -t commands < <(sed -n 's/^  etlc \([a-z]*\) .*/\1/p' help)
+mapfile -t commands < <(sed -n 's/^  etlc \([a-z]\+\)\( .*\)\?$/\1/p' help)
 [ "${#commands[@]}" -ge 10 ] || fail "these are all commands? ${commands[*]}"
 
 # names_in HELP: each name of each option, one a line.
