@@ -35,6 +35,14 @@ install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   "${PROJECT_BINARY_DIR}/etlcConfigVersion.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
+# What `etlc --man` and `etlc --completion` print, where man and the shells look.
+set(manual "${PROJECT_BINARY_DIR}/compiler/driver/manual")
+install(FILES "${manual}/etlc.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
+install(FILES "${manual}/etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
+install(FILES "${manual}/_etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions")
+install(FILES "${manual}/etlc.fish"
+  DESTINATION "${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d")
+
 # The pages, and all that their links lead to.
 install(FILES "${PROJECT_SOURCE_DIR}/LICENSE" DESTINATION "${CMAKE_INSTALL_DOCDIR}"
   RENAME copyright)
