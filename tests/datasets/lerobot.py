@@ -28,7 +28,7 @@ def video(path, frames, seed):
     made = (f"testsrc2=size={SIDES[1]}x{SIDES[0]}:rate={FPS},hue=h={40 * seed},"
             f"trim=end_frame={frames}")
     call("ffmpeg", "-v", "error", "-y", "-f", "lavfi", "-i", made, "-pix_fmt", "yuv420p", "-c:v",
-         "libx264", "-g", "5", path)
+         "libx264", "-preset", "ultrafast", "-g", "5", path)
 
 
 def raw_frames(path):

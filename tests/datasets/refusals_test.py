@@ -131,6 +131,8 @@ ERRORS_21 = (
      "leads out of its folder"),
     (lambda: change(INFO, lambda info: info.update(video_path="{videos_key}")), "E0850",
      "of which '{videos_key}' is not known"),
+    (lambda: change(INFO, lambda info: info["features"][TOP].update(dtype="image")), "E0852",
+     f"keeps the images of '{TOP}' in Parquet, which are not read"),
     (lambda: os.remove("set/meta/episodes.jsonl"), "E0850", "episodes.jsonl: no such file"),
     (lambda: write("set/meta/episodes.jsonl", "{}\n"), "E0850", "line 1 is not an object with"),
     (lambda: rewrite_lines(lambda n, line: line.update(episode_index=0)), "E0850",

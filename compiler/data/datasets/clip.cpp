@@ -59,8 +59,8 @@ diag::Result<std::string> camera_of(const Dataset& set, const std::string& asked
     for (const Feature& feature : set.features())
         if (feature.type == "image" && (asked.empty() || feature.name == asked))
             return Failure{Code::no_such_camera,
-                           fmt::format("keeps the images of {} in Parquet, which are not read; "
-                                       "LeRobot makes videos of them",
+                           fmt::format("keeps the images of {} in Parquet, which are not read: "
+                                       "expected a video of them",
                                        in_quotes(feature.name))};
     if (cameras.empty()) return Failure{Code::no_such_camera, "has no camera"};
     return Failure{Code::no_such_camera,
