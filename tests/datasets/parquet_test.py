@@ -129,6 +129,13 @@ def rows_may_span_pages():
         some_rows_are_read(made)
 
 
+def signs_are_kept():
+    column = {"a": (parquet.INT32, [-1, 5]), "b": (parquet.INT32, [-1, 5]),
+              "c": (parquet.INT64, [-1, 5])}
+    parquet.write("t.parquet", column, unsigned=("b", "c"))
+    assert read("t.parquet", ["a", "b", "c"])[1] == [[-1, 2**32 - 1, 2.0**64], [5, 5, 5]]
+
+
 def others_are_named():
     column = {"q": (parquet.FLOAT, [float(i % 4) for i in range(100)]),
               "l": (parquet.FLOAT, [[1.0, 2.0]] * 100)}
@@ -179,6 +186,7 @@ with tempfile.TemporaryDirectory() as box:
     random.seed(3)
     forms_are_read()
     rows_may_span_pages()
+    signs_are_kept()
     others_are_named()
     damage_is_named()
     os.chdir("/")

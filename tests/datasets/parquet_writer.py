@@ -190,8 +190,9 @@ class Writer:
             about[11] = dictionary_at
         return {2: begin, 3: about}
 
-    def write(self, columns, nested=()):
-        """`nested`: columns of lists in lists, which are only declared."""
+    def write(self, columns, nested=(), unsigned=()):
+        """`nested`: columns of lists in lists, which are only declared; `unsigned`: of numbers
+        without a sign, by their logical type."""
         schema = [{4: "schema", 5: I32(len(columns))}]
         shapes = {}
         for name, (kind, values) in columns.items():
@@ -200,6 +201,8 @@ class Writer:
             leaf = {1: I32(kind), 3: I32(1), 4: "element" if is_list else name}
             if kind == TEXT:
                 leaf[6] = I32(0)
+            if name in unsigned:
+                leaf[10] = {10: {2: False}}
             if is_list:
                 schema += [{3: I32(1), 4: name, 5: I32(1), 6: I32(3)},
                            {3: I32(2), 4: "list", 5: I32(1)}]
@@ -218,6 +221,6 @@ class Writer:
         return self.out + footer + struct.pack("<I", len(footer)) + b"PAR1"
 
 
-def write(path, columns, nested=(), **how):
+def write(path, columns, nested=(), unsigned=(), **how):
     with open(path, "wb") as file:
-        file.write(Writer(**how).write(columns, nested))
+        file.write(Writer(**how).write(columns, nested, unsigned))

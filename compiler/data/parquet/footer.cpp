@@ -23,6 +23,20 @@ struct Element {
     bool is_unsigned = false;
 };
 
+/// Of LogicalType the field that is there; of an integer, whether it has a sign.
+void read_logical(Thrift& thrift, Element& element) {
+    constexpr std::int64_t kInteger = 10;
+    thrift.structure([&](std::int64_t kind, Type type) {
+        element.logical = kind;
+        if (kind != kInteger || type != Type::structure) return false;
+        thrift.structure([&](std::int64_t id, Type of) {
+            if (id == 2) element.is_unsigned = !thrift.truth(of);
+            return id == 2;
+        });
+        return true;
+    });
+}
+
 Element read_element(Thrift& thrift) {
     Element element;
     thrift.structure([&](std::int64_t id, Type type) {
@@ -32,18 +46,13 @@ Element read_element(Thrift& thrift) {
             case 4: element.name = thrift.binary(type); return true;
             case 5: element.children = thrift.whole(type); return true;
             case 6: element.converted = thrift.whole(type); return true;
-            case 10:
-                thrift.structure([&](std::int64_t kind, Type) {
-                    element.logical = kind;
-                    return false;
-                });
-                return true;
+            case 10: read_logical(thrift, element); return true;
             default: return false;
         }
     });
     constexpr std::int64_t kFirstUnsigned = 11, kLastUnsigned = 14;
-    element.is_unsigned = element.converted.value_or(0) >= kFirstUnsigned &&
-                          element.converted.value_or(0) <= kLastUnsigned;
+    const std::int64_t converted = element.converted.value_or(0);
+    if (converted >= kFirstUnsigned && converted <= kLastUnsigned) element.is_unsigned = true;
     return element;
 }
 
