@@ -5,7 +5,7 @@
 #include <iterator>
 #include <opencv2/core/utils/logger.hpp>
 #include <opencv2/dnn.hpp>
-#include <opencv2/imgproc.hpp>
+#include <vector>
 
 #include "data/frames/protocol.hpp"
 #include "embed/worker/onnx.hpp"
@@ -168,21 +168,48 @@ std::string node_that_fails(cv::dnn::Net& net, const Interface& model, const cv:
     return "";
 }
 
-/// Resized in float32 by bilinear interpolation with pixel centres at half numbers, without
-/// smoothing; then (x / 255 - mean) / deviation, the channels red, green, blue one after the other.
+/// Where a pixel lies between two of the image, along an axis: pixel centres are at half numbers.
+struct Between {
+    int low = 0;
+    int high = 0;
+    float part = 0;  ///< of the way
+};
+
+std::vector<Between> between(int of_image, int wanted) {
+    std::vector<Between> result;
+    for (int i = 0; i < wanted; ++i) {
+        const double at = std::max((i + 0.5) * of_image / wanted - 0.5, 0.0);
+        const int low = std::min(static_cast<int>(at), of_image - 1);
+        result.push_back({low, std::min(low + 1, of_image - 1), static_cast<float>(at - low)});
+    }
+    return result;
+}
+
+/// Resized in float32 by bilinear interpolation, without smoothing; then (x / 255 - mean) /
+/// deviation, the channels red, green, blue one after the other. Only the pixels that count are
+/// looked at.
 void fill_blob(const cv::Mat& rgb, const Settings& settings, cv::Mat& blob) {
-    cv::Mat image;
-    rgb.convertTo(image, CV_32F);
-    if (image.rows != settings.height || image.cols != settings.width)
-        cv::resize(image, image, {settings.width, settings.height}, 0, 0, cv::INTER_LINEAR);
-    const std::size_t pixels = image.total();
-    const auto* from = image.ptr<float>();
+    const std::vector<Between> rows = between(rgb.rows, settings.height);
+    const std::vector<Between> columns = between(rgb.cols, settings.width);
+    const std::size_t pixels = rows.size() * columns.size();
     auto* to = blob.ptr<float>();
-    for (int c = 0; c < kChannels; ++c)
-        for (std::size_t i = 0; i < pixels; ++i)
-            to[static_cast<std::size_t>(c) * pixels + i] =
-                (from[kChannels * i + static_cast<std::size_t>(c)] / 255.0F - settings.mean[c]) /
-                settings.deviation[c];
+    for (const Between& row : rows) {
+        const auto* const upper = rgb.ptr<std::uint8_t>(row.low);
+        const auto* const lower = rgb.ptr<std::uint8_t>(row.high);
+        for (const Between& column : columns) {
+            for (int c = 0; c < kChannels; ++c) {
+                const auto mixed = [&](const std::uint8_t* line) {
+                    const float left = line[kChannels * column.low + c];
+                    return left + column.part * (line[kChannels * column.high + c] - left);
+                };
+                const float above = mixed(upper);
+                const float value = above + row.part * (mixed(lower) - above);
+                to[static_cast<std::size_t>(c) * pixels] =
+                    (value / 255.0F - settings.mean[c]) / settings.deviation[c];
+            }
+            ++to;
+        }
+    }
 }
 
 void write_floats(const cv::Mat& values) {
