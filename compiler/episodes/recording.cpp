@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "check/encoders/marks.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/quote.hpp"
 #include "embedded/embedded.hpp"
@@ -73,15 +74,10 @@ std::optional<Failure> other_encoder(const Wanted& wanted, const std::string& pa
     if (!marks) return marks.failure();
     for (const Index index : wanted.inputs) {
         const check::Input& input = model.inputs[index];
-        if (input.encoder == kNone) continue;
-        const check::Encoder& encoder = model.encoders[input.encoder];
         const auto renamed = names.find(input.name);
-        const auto mark = marks->find(renamed == names.end() ? input.name : renamed->second);
-        if (mark == marks->end() || mark->second == encoder.fingerprint) continue;
-        return Failure{Code::other_encoder,
-                       fmt::format("'{}' is by the encoder {}; expected {}, which is '{}' of the "
-                                   "spec",
-                                   input.name, mark->second, encoder.fingerprint, encoder.name)};
+        auto failure = check::other_encoder(
+            model, input, renamed == names.end() ? input.name : renamed->second, *marks);
+        if (failure) return failure;
     }
     return std::nullopt;
 }

@@ -46,6 +46,8 @@ refused "SPEC specs/b.etl: there is no such file: $box/specs/b.etl" \
 refused "SPEC specs: there is no such file" "etlc_add_monitor(robot SPEC specs)"
 refused "THRESHOLDS t.json: there is no such file" \
     "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS t.json)"
+refused "EMBEDDED e.npz: there is no such file" \
+    "etlc_add_monitor(robot SPEC specs/a.etl EMBEDDED e.npz)"
 refused "NAMESPACE a-b is not a C++ namespace" \
     "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a-b)"
 refused "INLINE_TARGETS 1k: expected a number of bytes" \

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "check/context.hpp"
+#include "check/encoders/marks.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"
 #include "data/traces/trace.hpp"
@@ -107,6 +108,12 @@ std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
     const auto trace =
         data::open_trace(path, {{input->name, data::Channel::Kind::vector, input->dimension}});
     if (!trace) return report(c, written, path, trace.failure()), std::nullopt;
+    if (input->encoder != kNone) {
+        const auto marks = embedded::read_marks(path);
+        if (!marks) return report(c, written, path, marks.failure()), std::nullopt;
+        if (const auto other = other_encoder(c.model, *input, input->name, *marks))
+            return report(c, written, path, *other), std::nullopt;
+    }
 
     Matrix matrix;
     matrix.rows = static_cast<std::uint32_t>(frames->size());
