@@ -19,7 +19,7 @@ import numpy as np
 
 import etlc
 
-SPECS = Path(sys.argv.pop())
+SPECS = Path(sys.argv.pop()).resolve()
 
 DOCK = """spec dock;
 rate 10 Hz;

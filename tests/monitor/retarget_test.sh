@@ -139,11 +139,11 @@ predicate ready = min l2(numbers, targets) - 2 * min l2(numbers, layout) <= 1;
 predicate unseen = cosine(numbers, layout) <= 1;
 predicate origin = params + 2.5 * constants > 3;
 predicate retarget = min l2(projections(numbers), targets) <= 1;
-let unknown = F ready && unseen;
-monitor past = unknown;
+let unknown = ready && unseen;
+monitor past = F unknown;
 monitor monitor_of = G (origin || retarget -> shadow);
 SPEC
-"$etlc" thresholds.etl --retargetable --lets -o thresholds.hpp 2>notes.txt
+"$etlc" thresholds.etl --retargetable --lets -o thresholds.hpp
 cat >words.cpp <<'PROGRAM'
 #include "thresholds.hpp"
 int main() { return thresholds::Shadow().step(thresholds::Inputs()).past.alarm() ? 1 : 0; }
@@ -166,14 +166,14 @@ od -An -v -tu1 brief.params.bin | tr -s ' ' , | sed 's/^,//; s/$/,/' >brief.inc
 cat >brief.cpp <<'PROGRAM'
 #include <cstdio>
 #include "brief.hpp"
-alignas(64) static const unsigned char bytes[] = {
+alignas(64) static const unsigned char numbers[] = {
 #include "brief.inc"
 };
 int main() {
   const float none = etlmon::kMissing;
   const float trace[][2] = {{0.5F, 3}, {1.5F, none}, {2.25F, 2.5F}, {none, 4}, {0.5F, 0.25F},
                             {3.5F, 1}};
-  brief::Monitor monitor(brief::Params(bytes, sizeof bytes));
+  brief::Monitor monitor(brief::Params(numbers, sizeof numbers));
   int step = 0;
   for (const auto& now : trace) {
     for (const auto& [name, v] : named(monitor.step({now[0], now[1]})))
