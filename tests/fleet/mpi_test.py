@@ -53,6 +53,30 @@ def same(*words):
     return one
 
 
+def contents_are_only_a_memory(words):
+    """Of whom episodes are, whatever lies where ranks keep it."""
+    shard = [*words, "--shard", "1/3", "--part", "a.part"]
+    call(ETLC, *shard)
+    part = pathlib.Path("a.part").read_bytes()
+    kept = pathlib.Path("contents")
+    os.environ["ETLC_CONTENTS"] = str(kept.absolute())
+    for bytes_before in (None, b"", b"damaged", part):
+        if bytes_before is not None:
+            kept.write_bytes(bytes_before)
+        call(ETLC, *shard)
+        assert pathlib.Path("a.part").read_bytes() == part
+        of_these = kept.read_bytes()
+        assert of_these not in (b"", b"damaged", part)
+    call(ETLC, *["two" if word == "one" else word for word in shard])
+    assert kept.read_bytes() != of_these, "it is of other episodes"
+    call(ETLC, *shard)
+    assert pathlib.Path("a.part").read_bytes() == part and kept.read_bytes() == of_these
+    os.environ["ETLC_CONTENTS"] = str(pathlib.Path("nowhere/contents").absolute())
+    call(ETLC, *shard)
+    assert pathlib.Path("a.part").read_bytes() == part
+    del os.environ["ETLC_CONTENTS"]
+
+
 def processes_with(word):
     """Of this test, with this argument."""
     found = []
@@ -94,6 +118,7 @@ def main():
     make_episodes("two", 2)
     calibrate = ["calibrate", "fleet.etl", "--data", "one", "-o", "out.json"]
     one = same(*calibrate)
+    contents_are_only_a_memory(calibrate)
     os.rename("out.json", "thresholds.json")
     same("evaluate", "fleet.etl", "--thresholds", "thresholds.json", "--data", "two", "--json",
          "out.json")

@@ -51,7 +51,8 @@ std::optional<episodes::Sharing> sharing_of(const ShardRequest& request,
     part.call = without(call, {"--shard", "--part", "-j", "--jobs"});
     part.shard = request.shard;
     part.shards = request.shards;
-    return episodes::Sharing::shard(std::move(part));
+    const char* const contents = std::getenv("ETLC_CONTENTS");  // of a rank, see mpi.cpp
+    return episodes::Sharing::shard(std::move(part), contents == nullptr ? "" : contents);
 }
 
 std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,

@@ -94,6 +94,11 @@ std::string part_path(const Job& job, int shard) {
     return (fs::path(job.parts) / (std::to_string(shard) + ".part")).string();
 }
 
+/// In which shards keep by what episodes are shared out.
+std::string contents_path(const Job& job) {
+    return (fs::path(job.parts) / "contents").string();
+}
+
 /// 0 where the shard's part is there.
 int run_shard(const Job& job, int shard) {
     const std::string part = part_path(job, shard);
@@ -179,6 +184,7 @@ int merge(const Job& job) {
     if (status != 0) return status;
     std::error_code error;
     for (std::size_t i = 1; i < call.size(); ++i) fs::remove(call[i], error);
+    fs::remove(contents_path(job), error);
     fs::remove(job.parts, error);  // where nothing else lies in it
     return 0;
 }
@@ -199,6 +205,7 @@ int run(int argc, char** argv) {
         return 2;
     }
     int status = of_first_rank(job.rank == 0 ? make_folder(job) : 0);
+    ::setenv("ETLC_CONTENTS", contents_path(job).c_str(), 1);
     if (status == 0) status = run_shards(job);
     if (status == 0) status = of_first_rank(job.rank == 0 ? merge(job) : 0);
     return status;

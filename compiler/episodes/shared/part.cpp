@@ -8,7 +8,6 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/quote.hpp"
-#include "data/traces/trace.hpp"
 #include "episodes/shared/pack.hpp"
 
 namespace etlc::episodes {
@@ -70,12 +69,6 @@ bool complete(const Part& all, const std::vector<std::uint32_t>& shards, const s
 }
 
 }  // namespace
-
-std::uint32_t shard_of(const std::string& episode, std::uint32_t shards) {
-    const std::string file = data::trace_file(episode);
-    const std::uint64_t hash = data::xxh64(data::ends_of_file(file) + episode.substr(file.size()));
-    return static_cast<std::uint32_t>(hash % shards) + 1;
-}
 
 std::string write(const Part& part) {
     return as_file(packed(part));

@@ -10,6 +10,7 @@
 
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
+#include "episodes/shared/contents.hpp"
 #include "episodes/shared/pack.hpp"
 #include "episodes/shared/part.hpp"
 
@@ -17,8 +18,12 @@ namespace etlc::episodes {
 
 class Sharing {
 public:
-    /// One shard: `part` says which, and of what call.
-    static Sharing shard(Part part) { return {std::move(part), false}; }
+    /// One shard: `part` says which, and of what call. `contents`: as contents_of takes it.
+    static Sharing shard(Part part, std::string contents) {
+        Sharing result(std::move(part), false);
+        result.contents_ = std::move(contents);
+        return result;
+    }
     /// All of them, as `joined` gives them, from these files.
     static Sharing merge(Part all, std::vector<std::string> files) {
         Sharing result(std::move(all), true);
@@ -30,6 +35,8 @@ public:
     Part& part() { return part_; }
     /// What is merged, which no result may be written over.
     const std::vector<std::string>& files() const { return files_; }
+    /// The file in which processes keep by what episodes are shared out; empty: none.
+    const std::string& contents() const { return contents_; }
 
 private:
     Sharing(Part part, bool merges) : part_(std::move(part)), merges_(merges) {}
@@ -37,6 +44,7 @@ private:
     Part part_;
     bool merges_;
     std::vector<std::string> files_;
+    std::string contents_;
 };
 
 /// As labelled_in of the first episode; where parts are merged, from them. Nothing where the sink
@@ -79,8 +87,9 @@ std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string
     }
     std::vector<std::size_t> places;
     std::vector<std::string> own;
+    const auto contents = contents_of(paths, request.sharing->contents());
     for (std::size_t place = 0; place < paths.size(); ++place) {
-        if (shard_of(paths[place], part.shards) != part.shard) continue;
+        if (shard_of(contents[place], part.shards) != part.shard) continue;
         places.push_back(place);
         own.push_back(paths[place]);
     }
