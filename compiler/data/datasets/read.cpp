@@ -9,6 +9,7 @@
 #include <set>
 
 #include "data/datasets/dataset.hpp"
+#include "data/datasets/json_lines.hpp"
 #include "data/datasets/tasks.hpp"
 #include "data/datasets/template.hpp"
 #include "data/files/file.hpp"
@@ -111,14 +112,7 @@ private:
         const auto bytes =
             read_file(set_->path_of(place_), kMaxEpisodesBytes, Code::unreadable_dataset);
         if (!bytes) return in_part(place_, bytes.failure());
-        std::uint32_t line = 0;
-        for (std::size_t at = 0; at < bytes->size();) {
-            const std::size_t end = std::min(bytes->find('\n', at), bytes->size());
-            const std::string_view words = std::string_view(*bytes).substr(at, end - at);
-            at = end + 1;
-            ++line;
-            if (words.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-            const Json json = Json::parse(words, nullptr, false);
+        const auto add = [&](std::uint32_t line, const Json& json) -> std::optional<Failure> {
             const auto index = json.is_object() ? whole(json, "episode_index") : std::nullopt;
             const auto length = json.is_object() ? whole(json, "length") : std::nullopt;
             if (!index || !length)
@@ -132,8 +126,9 @@ private:
                     if (task.is_string()) episode.tasks.push_back(task.get<std::string>());
             if (auto failure = place_lines(episode)) return failure;
             set_->episodes_.push_back(std::move(episode));
-        }
-        return std::nullopt;
+            return std::nullopt;
+        };
+        return for_each_json_line(*bytes, add);
     }
 
     std::optional<Failure> place_lines(DatasetEpisode& episode) {

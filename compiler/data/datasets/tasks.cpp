@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
+#include "data/datasets/json_lines.hpp"
 #include "data/files/file.hpp"
 #include "data/parquet/table.hpp"
 
@@ -20,19 +21,14 @@ diag::Result<std::vector<std::string>> read_lines(const std::string& path) {
     const auto bytes = read_file(path, kMaxBytes, Code::unreadable_dataset);
     if (!bytes) return bytes.failure();
     std::vector<std::string> tasks;
-    std::uint32_t line = 0;
-    for (std::size_t at = 0; at < bytes->size();) {
-        const std::size_t end = std::min(bytes->find('\n', at), bytes->size());
-        const std::string_view words = std::string_view(*bytes).substr(at, end - at);
-        at = end + 1;
-        ++line;
-        if (words.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-        const auto json = nlohmann::json::parse(words, nullptr, false);
+    const auto add = [&](std::uint32_t line, const nlohmann::json& json) -> std::optional<Failure> {
         if (!json.is_object() || !json.contains("task") || !json["task"].is_string())
             return Failure{Code::unreadable_dataset,
                            fmt::format("line {} is not an object with a task", line)};
         tasks.push_back(json["task"].get<std::string>());
-    }
+        return std::nullopt;
+    };
+    if (auto failure = for_each_json_line(*bytes, add)) return *failure;
     return tasks;
 }
 
