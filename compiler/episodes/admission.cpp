@@ -28,14 +28,14 @@ public:
     Refusals(Code code, std::vector<std::string> notes) : code_(code), notes_(std::move(notes)) {}
 
     void add(const Recorded& episode, std::string message) {
-        all_.push_back({&episode, std::move(message)});
+        all_.push_back({episode.path, std::move(message)});
     }
 
     void report(diag::Sink& sink) const {
         constexpr std::size_t kMostReported = 10;
         const std::size_t reported = std::min(all_.size(), kMostReported);
         for (std::size_t i = 0; i < reported; ++i) {
-            auto& error = sink.report(data::in_file({code_, all_[i].message}, all_[i].of->path));
+            auto& error = sink.report(data::in_file({code_, all_[i].message}, all_[i].path));
             if (i > 0) continue;  // the notes are those of all
             for (const std::string& note : notes_) error.note(note);
             if (all_.size() > reported)
@@ -46,7 +46,7 @@ public:
 
 private:
     struct Refusal {
-        const Recorded* of;
+        std::string path;
         std::string message;
     };
     Code code_;
@@ -221,17 +221,17 @@ std::string text(const check::Model& model, const Leak& leak) {
                        model.predicates[leak.predicate].shown());
 }
 
-thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
+thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink) {
     Admission admission(model, before, fitted, reason);
-    for (const Recorded* episode : episodes) admission.look_at(*episode);
+    episodes.for_each([&](std::size_t, const Recorded& episode) { admission.look_at(episode); });
     return std::move(admission).conclude(sink);
 }
 
-thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
-                                   const thresholds::File& thresholds, const fitted::File& fitted,
-                                   const std::string& reason, diag::Sink& sink) {
+thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds::File& thresholds,
+                                   const fitted::File& fitted, const std::string& reason,
+                                   diag::Sink& sink) {
     constexpr std::string_view kAllowing =
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
         "reason stands next to the figures";
@@ -242,21 +242,23 @@ thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
         Code::episode_calibrated_on,
         fmt::format("an episode that the thresholds in {} were calibrated on", thresholds.path),
         "keep the episodes for evaluation apart from those for calibration", kAllowing);
-    for (const Recorded* episode : episodes) {
-        const Unseen::Met fitted_on = not_fitted.look_at(*episode);
-        const Unseen::Met calibrated_on = unseen.look_at(*episode);
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        const Unseen::Met fitted_on = not_fitted.look_at(episode);
+        const Unseen::Met calibrated_on = unseen.look_at(episode);
         const bool overlaps =
             fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
         passed_over.overlapping += overlaps ? 1 : 0;
-    }
+    });
     not_fitted.report(sink);
     unseen.report(sink);
     return passed_over;
 }
 
-void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,
+void record(const Identities& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file) {
-    for (const Recorded* episode : episodes) file.recordings[episode->hash] = episode->content;
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        file.recordings[episode.hash] = episode.content;
+    });
     if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
 }
 

@@ -19,32 +19,24 @@
 
 namespace etlc::episodes {
 
-/// What these functions need of episodes that were read for more.
-template <class Episode>
-std::vector<const Recorded*> recorded(const std::vector<Episode>& episodes) {
-    std::vector<const Recorded*> result;
-    for (const Episode& episode : episodes) result.push_back(&episode);
-    return result;
-}
-
 /// "step 4 is row 1 of target 'home', from which 'at_home' measures"
 std::string text(const check::Model& model, const Leak& leak);
 
 /// `before`: where thresholds in the model come from; `fitted`: where what is fitted does.
 /// `reason`: of --allow-overlap; with one, overlaps short of equality and targets among the frames
 /// are counted and not refused.
-thresholds::Allowance admit(const check::Model& model, const std::vector<const Recorded*>& episodes,
+thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink);
 
 /// For an evaluation: refuses what thresholds were calibrated on, or something was fitted on, and
 /// counts overlaps with it where a `reason` allows them.
-thresholds::Allowance admit_unseen(const std::vector<const Recorded*>& episodes,
-                                   const thresholds::File& thresholds, const fitted::File& fitted,
-                                   const std::string& reason, diag::Sink& sink);
+thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds::File& thresholds,
+                                   const fitted::File& fitted, const std::string& reason,
+                                   diag::Sink& sink);
 
 /// Notes in the file what tells these episodes apart, and what was passed over, if anything was.
-void record(const std::vector<const Recorded*>& episodes, const thresholds::Allowance& allowance,
+void record(const Identities& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file);
 
 /// Where --allow-overlap was given and there was nothing to pass over.

@@ -7,17 +7,19 @@
 
 namespace etlc::episodes {
 
-std::vector<std::size_t> by_content(const std::vector<const Recorded*>& episodes) {
+std::vector<std::size_t> by_content(const Identities& episodes) {
+    std::vector<std::uint64_t> hashes;  // 16 hex digits each
+    episodes.for_each([&](std::size_t, const Recorded& episode) {
+        hashes.push_back(std::stoull(episode.hash, nullptr, 16));
+    });
     std::vector<std::size_t> order(episodes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
-    std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
-        return episodes[a]->hash < episodes[b]->hash;
-    });
+    std::stable_sort(order.begin(), order.end(),
+                     [&](std::size_t a, std::size_t b) { return hashes[a] < hashes[b]; });
     return order;
 }
 
-std::vector<std::uint32_t> folds_of(const std::vector<const Recorded*>& episodes,
-                                    std::uint32_t folds) {
+std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t folds) {
     const std::vector<std::size_t> order = by_content(episodes);
     std::vector<std::uint32_t> result(episodes.size());
     for (std::size_t rank = 0; rank < order.size(); ++rank)

@@ -15,11 +15,10 @@
 namespace etlc::episodes {
 
 /// The episodes in the order of their hashes, which is that of no recording session.
-std::vector<std::size_t> by_content(const std::vector<const Recorded*>& episodes);
+std::vector<std::size_t> by_content(const Identities& episodes);
 
 /// Per episode its fold, 0 to folds - 1: in that order, they are dealt in turn.
-std::vector<std::uint32_t> folds_of(const std::vector<const Recorded*>& episodes,
-                                    std::uint32_t folds);
+std::vector<std::uint32_t> folds_of(const Identities& episodes, std::uint32_t folds);
 
 /// Whether there are enough of them; reports where not, E0690. Any number can be dealt into 0
 /// folds.

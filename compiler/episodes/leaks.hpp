@@ -24,6 +24,11 @@ struct Leak {
     std::uint64_t frame = 0;
 };
 
+template <class Archive>
+void fields(Archive& archive, Leak& leak) {
+    archive(leak.predicate, leak.distance, leak.row, leak.frame);
+}
+
 /// May be shared between threads; the model outlives it.
 class Leaks {
 public:

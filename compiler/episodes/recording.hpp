@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/spill/spool.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
 #include "episodes/frames.hpp"
@@ -37,6 +38,22 @@ struct Recorded {
     std::uint64_t frames = 0;
     std::optional<Leak> leak;  ///< the first one
 };
+
+template <class Archive>
+void fields(Archive& archive, Recorded& recorded) {
+    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
+}
+
+/// Of all episodes of a call, in their order.
+using Identities = data::Spool<Recorded>;
+
+/// What was read of them for more.
+template <class Episodes>
+Identities recorded(const Episodes& episodes) {
+    Identities result;
+    for (const Recorded& episode : episodes) result.add(episode);
+    return result;
+}
 
 /// The inputs that predicates with a calibrated threshold read, in order of their names: two
 /// episodes with equal samples of these give equal scores, whatever else they hold. Without such a

@@ -14,15 +14,15 @@ using namespace etlc;
 
 template <class T>
 void read_result(const std::string& bytes) {
-    if (const auto result = episodes::unpacked<T>(bytes))
-        fuzz::require(episodes::packed(*result) == bytes, "writing a result changes nothing");
+    if (const auto result = data::unpacked<T>(bytes))
+        fuzz::require(data::packed(*result) == bytes, "writing a result changes nothing");
 }
 
 void read(const std::string& bytes) {
     const auto part = episodes::parse_part(bytes);
     if (!part) return fuzz::require_printable(part.failure().message);
     const auto again = episodes::parse_part(episodes::write(*part));
-    fuzz::require(again && episodes::packed(*again) == episodes::packed(*part),
+    fuzz::require(again && data::packed(*again) == data::packed(*part),
                   "writing what was read changes nothing");
     for (const auto& [place, result] : part->results) {
         read_result<calibrate::Demonstration>(result);

@@ -31,6 +31,11 @@ struct InputContent {
     Sketch sketch;
 };
 
+template <class Archive>
+void fields(Archive& archive, InputContent& content) {
+    archive(content.hash, content.sketch);
+}
+
 /// By name of the input.
 using EpisodeContent = std::map<std::string, InputContent>;
 

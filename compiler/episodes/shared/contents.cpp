@@ -6,8 +6,8 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/spill/pack.hpp"
 #include "data/traces/trace.hpp"
-#include "episodes/shared/pack.hpp"
 
 namespace etlc::episodes {
 
@@ -29,7 +29,7 @@ void fields(Archive& archive, Kept& kept) {
 
 std::optional<Kept> read(const std::string& path) {
     const auto bytes = data::read_file(path, kLargest, Code::unreadable_part);
-    return bytes ? unpacked<Kept>(*bytes) : std::nullopt;
+    return bytes ? data::unpacked<Kept>(*bytes) : std::nullopt;
 }
 
 }  // namespace
@@ -50,7 +50,7 @@ std::vector<std::uint64_t> contents_of(const std::vector<std::string>& episodes,
     for (const std::string& episode : episodes) contents.push_back(content_of(episode));
     // Where it cannot be written, the next process looks at the episodes again.
     if (!kept.empty())
-        static_cast<void>(data::write_file_atomically(kept, packed(Kept{episodes, contents}),
+        static_cast<void>(data::write_file_atomically(kept, data::packed(Kept{episodes, contents}),
                                                       Code::unwritable_output));
     return contents;
 }

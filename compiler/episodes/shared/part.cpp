@@ -8,7 +8,7 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/quote.hpp"
-#include "episodes/shared/pack.hpp"
+#include "data/spill/pack.hpp"
 
 namespace etlc::episodes {
 
@@ -71,13 +71,13 @@ bool complete(const Part& all, const std::vector<std::uint32_t>& shards, const s
 }  // namespace
 
 std::string write(const Part& part) {
-    return as_file(packed(part));
+    return as_file(data::packed(part));
 }
 
 std::string as_file(std::string_view body) {
     std::string bytes{kMagic};
     bytes += body;
-    Writer hash;
+    data::Writer hash;
     hash(data::xxh64(bytes));
     return bytes + hash.bytes();
 }
@@ -89,10 +89,11 @@ diag::Result<Part> parse_part(std::string_view bytes) {
                        fmt::format("is no part of a result: expected {} at its begin",
                                    data::in_quotes(std::string(kMagic.substr(0, 11))))};
     if (bytes.size() < kMagic.size() + kHash) return damaged;
-    Writer hash;
+    data::Writer hash;
     hash(data::xxh64(bytes.substr(0, bytes.size() - kHash)));
     if (bytes.substr(bytes.size() - kHash) != hash.bytes()) return damaged;
-    auto part = unpacked<Part>(bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHash));
+    auto part =
+        data::unpacked<Part>(bytes.substr(kMagic.size(), bytes.size() - kMagic.size() - kHash));
     if (!part || part->shard == 0 || part->shard > part->shards || part->shards > kMostShards ||
         part->call.empty())
         return damaged;

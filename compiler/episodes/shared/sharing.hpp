@@ -8,10 +8,10 @@
 #include <utility>
 #include <vector>
 
+#include "data/spill/pack.hpp"
 #include "episodes/parallel.hpp"
 #include "episodes/recording.hpp"
 #include "episodes/shared/contents.hpp"
-#include "episodes/shared/pack.hpp"
 #include "episodes/shared/part.hpp"
 
 namespace etlc::episodes {
@@ -74,7 +74,7 @@ std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string
     if (request.sharing->merges()) {
         std::vector<T> all;
         for (std::size_t place = 0; place < paths.size(); ++place) {
-            auto result = unpacked<T>(part.results.at(place));
+            auto result = data::unpacked<T>(part.results.at(place));
             if (!result) {
                 sink.report(data::in_file(
                     {diag::Code::damaged_part, "its result is not one of this version of etlc"},
@@ -96,31 +96,8 @@ std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string
     const auto results = over_episodes<T>(own, request, sink, make);
     if (results)
         for (std::size_t i = 0; i < places.size(); ++i)
-            part.results.emplace(places[i], packed((*results)[i]));
+            part.results.emplace(places[i], data::packed((*results)[i]));
     return std::nullopt;
-}
-
-}  // namespace etlc::episodes
-
-namespace etlc::data {
-
-template <class Archive>
-void fields(Archive& archive, InputContent& content) {
-    archive(content.hash, content.sketch);
-}
-
-}  // namespace etlc::data
-
-namespace etlc::episodes {
-
-template <class Archive>
-void fields(Archive& archive, Leak& leak) {
-    archive(leak.predicate, leak.distance, leak.row, leak.frame);
-}
-
-template <class Archive>
-void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
 }
 
 }  // namespace etlc::episodes

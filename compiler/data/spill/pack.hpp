@@ -1,4 +1,4 @@
-// What was made of an episode as bytes, and back.
+// Values as bytes, and back.
 // Takes: values whose type has a function `fields(archive, value)`, which names every member in
 // order, for both directions. Gives: their bytes, the same on every machine; or the values. Keeps
 // true: what was written reads back equal, bit for bit; bytes that no value is written as are
@@ -15,7 +15,7 @@
 #include <utility>
 #include <vector>
 
-namespace etlc::episodes {
+namespace etlc::data {
 
 template <class T>
 inline constexpr bool is_number = std::is_arithmetic_v<T> || std::is_enum_v<T>;
@@ -54,8 +54,10 @@ private:
     void add(const T& value) {
         if constexpr (is_number<T>) {
             const std::uint64_t bits = bits_of(value);
-            for (unsigned shift = 0; shift < 64; shift += 8)
-                bytes_ += static_cast<char>(bits >> shift & 0xFFU);
+            char bytes[8];
+            for (unsigned i = 0; i < sizeof bytes; ++i)
+                bytes[i] = static_cast<char>(bits >> (8 * i) & 0xFFU);
+            bytes_.append(bytes, sizeof bytes);
         } else {
             fields(*this, const_cast<T&>(value));  // which only reads it here
         }
@@ -177,4 +179,4 @@ std::optional<T> unpacked(std::string_view bytes) {
     return value;
 }
 
-}  // namespace etlc::episodes
+}  // namespace etlc::data

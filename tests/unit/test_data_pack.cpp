@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
-#include "episodes/shared/pack.hpp"
+#include "data/spill/pack.hpp"
 
-namespace etlc::episodes {
+namespace etlc::data {
 namespace {
 
 enum class Kind : std::uint8_t { plain, adaptive };
@@ -94,4 +94,4 @@ TEST(Pack, RefusesBytesThatAreMissingOrTooMany) {
 }
 
 }  // namespace
-}  // namespace etlc::episodes
+}  // namespace etlc::data

@@ -1,0 +1,139 @@
+// Values in ascending order, of which any number takes little memory.
+// Takes: values of a fixed size, in any order. Gives: them in order, in as many passes as are asked
+// for. Keeps true: memory is that of kInMemory bytes, however many there are: beyond it, sorted
+// runs of them are kept in a file and merged (external merge sort).
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+#include <functional>
+#include <queue>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include "data/spill/file.hpp"
+
+namespace etlc::data {
+
+/// `T`: compared by <, whole: values of which neither is less are equal. First all are added, then
+/// they are visited.
+template <class T>
+class Sorted {
+public:
+    static_assert(std::is_trivially_copyable_v<T>);
+    static constexpr std::size_t kInMemory = std::size_t{1} << 21U;  ///< bytes
+
+    void add(const T& value) {
+        if (last_.size() == kRun) store_run();
+        last_.push_back(value);
+        is_sorted_ = false;
+    }
+
+    std::uint64_t size() const { return last_.size() + stored_.size() / sizeof(T); }
+
+    /// Calls `visit(value)` for each, in order.
+    template <class Visit>
+    void for_each(const Visit& visit) {
+        sort();
+        if (runs_.empty()) {
+            for (const T& value : last_) visit(value);
+            return;
+        }
+        Window all(stored_, 0, stored_.size() / sizeof(T), kBlock);
+        for (; !all.is_done(); all.next()) visit(all.value());
+    }
+
+private:
+    static constexpr std::size_t kRun = kInMemory / sizeof(T);
+    static constexpr std::size_t kBlock = 4096;  ///< values that are read at a time
+
+    /// A part of the stored values, a block of them after the other.
+    class Window {
+    public:
+        Window(const SpillFile& file, std::uint64_t begin, std::uint64_t end, std::size_t block)
+            : file_(&file), next_(begin), end_(end), most_(block) {
+            fill();
+        }
+        bool is_done() const { return at_ == block_.size(); }
+        const T& value() const { return block_[at_]; }
+        void next() {
+            if (++at_ == block_.size()) fill();
+        }
+
+    private:
+        void fill() {
+            block_.resize(static_cast<std::size_t>(std::min<std::uint64_t>(most_, end_ - next_)));
+            file_->read(next_ * sizeof(T), reinterpret_cast<char*>(block_.data()),
+                        block_.size() * sizeof(T));
+            next_ += block_.size();
+            at_ = 0;
+        }
+
+        const SpillFile* file_;
+        std::uint64_t next_;
+        std::uint64_t end_;
+        std::size_t most_;
+        std::vector<T> block_;
+        std::size_t at_ = 0;
+    };
+
+    void store(const std::vector<T>& values) {
+        stored_.append({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
+    }
+
+    void store_run() {
+        std::sort(last_.begin(), last_.end());
+        runs_.push_back(stored_.size() / sizeof(T));
+        store(last_);
+        last_.clear();
+    }
+
+    /// Once all are there.
+    void sort() {
+        if (is_sorted_) return;
+        is_sorted_ = true;
+        if (runs_.empty()) return std::sort(last_.begin(), last_.end());
+        if (!last_.empty()) store_run();
+        last_ = {};
+        merge();
+    }
+
+    /// All runs become one.
+    void merge() {
+        const SpillFile runs = std::exchange(stored_, {});
+        std::vector<Window> windows;
+        const std::size_t block = std::max<std::size_t>(16, kRun / runs_.size());
+        for (std::size_t i = 0; i < runs_.size(); ++i) {
+            const bool is_last = i + 1 == runs_.size();
+            windows.emplace_back(runs, runs_[i], is_last ? runs.size() / sizeof(T) : runs_[i + 1],
+                                 block);
+        }
+        const auto later = [&](std::size_t a, std::size_t b) {
+            return windows[b].value() < windows[a].value();
+        };
+        std::priority_queue<std::size_t, std::vector<std::size_t>, decltype(later)> least(later);
+        for (std::size_t i = 0; i < windows.size(); ++i) least.push(i);
+        std::vector<T> merged;
+        while (!least.empty()) {
+            const std::size_t i = least.top();
+            least.pop();
+            merged.push_back(windows[i].value());
+            windows[i].next();
+            if (!windows[i].is_done()) least.push(i);
+            if (merged.size() == kBlock || least.empty()) {
+                store(merged);
+                merged.clear();
+            }
+        }
+        runs_ = {0};
+    }
+
+    std::vector<T> last_;              ///< those of no run
+    std::vector<std::uint64_t> runs_;  ///< where each begins, in values
+    SpillFile stored_;
+    bool is_sorted_ = true;
+};
+
+}  // namespace etlc::data
