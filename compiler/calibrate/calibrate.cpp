@@ -23,16 +23,13 @@ using diag::counted;
 
 class Refusing {
 public:
-    Refusing(const check::Model& model, const std::vector<Demonstration>& demonstrations,
-             diag::Sink& sink)
-        : model_(model), demonstrations_(demonstrations), sink_(sink) {}
+    Refusing(const check::Model& model, diag::Sink& sink) : model_(model), sink_(sink) {}
 
-    void report(Index predicate, std::size_t of, Refusal refusal) {
+    void report(Index predicate, const Evidence& of, Refusal refusal) {
         const check::Predicate& p = model_.predicates[predicate];
-        totals(of);
         switch (refusal) {
-            case Refusal::no_positives: no_positives(p); break;
-            case Refusal::too_few: too_few(p); break;
+            case Refusal::no_positives: no_positives(p, of); break;
+            case Refusal::too_few: too_few(p, of); break;
             case Refusal::not_finite:
                 sink_.report(Code::no_threshold, p.threshold.span,
                              fmt::format("the score of '{}' at the rank of alpha = {} is infinite: "
@@ -44,72 +41,53 @@ public:
                     Code::no_threshold, p.threshold.span,
                     fmt::format(
                         "no observed value as threshold of '{}' finds a positive frame; it has {}",
-                        p.name, counted(positives_, "positive frame")));
+                        p.name, counted(of.positives, "positive frame")));
                 break;
         }
     }
 
 private:
-    void totals(std::size_t of) {
-        positives_ = unmeasured_ = with_score_ = pooled_ = 0;
-        for (const Demonstration& demonstration : demonstrations_) {
-            const Scores& scores = demonstration.scores[of];
-            positives_ += scores.positives;
-            unmeasured_ += scores.unmeasured;
-            with_score_ += scores.has_score ? 1 : 0;
-            pooled_ += scores.reaches.size();
-        }
-    }
-
-    void no_positives(const check::Predicate& p) {
-        const std::string all = counted(demonstrations_.size(), "demonstration");
+    void no_positives(const check::Predicate& p, const Evidence& of) {
+        const std::string all = counted(of.demonstrations, "demonstration");
         auto& error = sink_.report(
             Code::no_positive_frame, p.threshold.span,
-            positives_ == 0
+            of.positives == 0
                 ? fmt::format("'{}' is true at no frame of {}, so there is nothing to learn its "
                               "threshold from",
                               p.name, all)
                 : fmt::format("the distance of '{}' is unknown at all {} where it is true, in {}",
-                              p.name, counted(positives_, "frame"), all));
+                              p.name, counted(of.positives, "frame"), all));
         for (const check::Truth& truth : model_.truths)
             if (&model_.predicates[truth.predicate] == &p)
                 error.note(truth.span, "its truth is here");
     }
 
-    void too_few(const check::Predicate& p) {
+    void too_few(const check::Predicate& p, const Evidence& of) {
         const bool pooled = p.threshold.origin == ThresholdOrigin::class_conditional;
         const std::uint64_t needed = check::scores_needed(p.threshold.alpha);
+        const std::uint64_t there = pooled ? of.reaches.size() : of.worst.size();
         const std::string what = pooled ? "positive frame" : "demonstration";
         auto& error = sink_.report(
             Code::too_few_scores, p.threshold.span,
             fmt::format("alpha = {} needs at least {}{}; there {} {}", p.threshold.alpha,
                         counted(needed, what),
                         pooled ? "" : fmt::format(" in which '{}' is true at some frame", p.name),
-                        (pooled ? pooled_ : with_score_) == 1 ? "is" : "are",
-                        pooled ? pooled_ : with_score_));
-        if (!pooled && with_score_ < demonstrations_.size())
+                        there == 1 ? "is" : "are", there));
+        const std::uint64_t left_out = of.demonstrations - of.worst.size();
+        if (!pooled && left_out > 0)
             error.note(fmt::format("of {}, {} without such a frame {} left out",
-                                   counted(demonstrations_.size(), "demonstration"),
-                                   demonstrations_.size() - with_score_,
-                                   demonstrations_.size() - with_score_ == 1 ? "is" : "are"));
+                                   counted(of.demonstrations, "demonstration"), left_out,
+                                   left_out == 1 ? "is" : "are"));
     }
 
     const check::Model& model_;
-    const std::vector<Demonstration>& demonstrations_;
     diag::Sink& sink_;
-    std::uint64_t positives_ = 0;
-    std::uint64_t unmeasured_ = 0;
-    std::uint64_t with_score_ = 0;
-    std::uint64_t pooled_ = 0;
 };
 
-thresholds::Entry entry_of(const check::Model& model, Index predicate,
-                           const std::vector<Demonstration>& demonstrations, std::size_t of,
+thresholds::Entry entry_of(const check::Model& model, Index predicate, const Evidence& evidence,
                            const Fitted& fitted) {
     check::Provenance provenance = check::provenance(model, predicate);
-    const bool arrays_only =
-        std::all_of(demonstrations.begin(), demonstrations.end(),
-                    [&](const Demonstration& d) { return d.scores[of].from_array; });
+    const bool arrays_only = evidence.from_array == evidence.demonstrations;
     thresholds::Entry entry;
     entry.method = check::method_name(model.predicates[predicate].threshold.origin);
     entry.alpha = model.predicates[predicate].threshold.alpha;
@@ -140,29 +118,37 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     if (!episodes::can_be_dealt(request.episodes.size(), request.folds, model, sink))
         return std::nullopt;
     const episodes::Leaks leaks(model, predicates);
-    const auto demonstrations = episodes::over_shared_episodes<Demonstration>(
+    episodes::Identities demonstrations;
+    std::vector<Evidence> evidence(predicates.size());
+    std::uint64_t frames = 0;
+    const bool all_scored = episodes::over_shared_episodes<Demonstration>(
         request.episodes, request, sink,
-        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); });
-    if (!demonstrations) return std::nullopt;
+        [&] { return std::make_unique<Scorer>(model, leaks, predicates, request.names); },
+        [&](std::size_t, const Demonstration& demonstration) {
+            demonstrations.add(demonstration);
+            frames += demonstration.frames;
+            for (std::size_t i = 0; i < predicates.size(); ++i)
+                evidence[i].add(demonstration.scores[i]);
+        });
+    if (!all_scored) return std::nullopt;
     const thresholds::Allowance allowance =
-        episodes::admit(model, episodes::recorded(*demonstrations), {}, request.fitted,
-                        request.allow_overlap, sink);
+        episodes::admit(model, demonstrations, {}, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     check::Model calibrated = model;
-    episodes::record(episodes::recorded(*demonstrations), allowance, result.file);
+    episodes::record(demonstrations, allowance, result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         calibrated.reservations.push_back(thresholds::text(used));
     std::vector<Fitted> all;
-    Refusing refusing(model, *demonstrations, sink);
+    Refusing refusing(model, sink);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
-        const Fit fitted = fit(predicate, *demonstrations, i);
+        const Fit fitted = fit(predicate, evidence[i]);
         if (const auto* refusal = std::get_if<Refusal>(&fitted)) {
-            refusing.report(predicates[i], i, *refusal);
+            refusing.report(predicates[i], evidence[i], *refusal);
             continue;
         }
         if (const auto* out = std::get_if<OutOfRange>(&fitted)) {
@@ -172,7 +158,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
             continue;
         }
         all.push_back(std::get<Fitted>(fitted));
-        warn_of_doubts(predicate, *demonstrations, i, all.back(), sink);
+        warn_of_doubts(predicate, evidence[i], all.back(), sink);
         check::Threshold& threshold = calibrated.predicates[predicates[i]].threshold;
         threshold.value = all.back().epsilon;
         if (threshold.adaptation)
@@ -181,13 +167,14 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
         threshold.n = all.back().n;
         threshold.k = all.back().k;
         result.file.predicates[predicate.name] =
-            entry_of(model, predicates[i], *demonstrations, i, all.back());
+            entry_of(model, predicates[i], evidence[i], all.back());
     }
     if (sink.has_errors()) return std::nullopt;
-    for (const Demonstration& demonstration : *demonstrations)
+    demonstrations.for_each([&](std::size_t, const episodes::Recorded& demonstration) {
         result.file.episodes.push_back(demonstration.hash);
-    result.report = report(calibrated, predicates, *demonstrations, all) +
-                    report_of_folds(model, predicates, *demonstrations, request.folds) +
+    });
+    result.report = report(calibrated, predicates, evidence, frames, all) +
+                    report_of_folds(model, predicates, evidence, demonstrations, request.folds) +
                     episodes::remark_on(allowance);
     return result;
 }

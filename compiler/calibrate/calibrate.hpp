@@ -48,7 +48,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
 /// What the thresholds are, what they were taken from, and what they guarantee. `model` has them
 /// already.
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Demonstration>& demonstrations,
+                   const std::vector<Evidence>& evidence, std::uint64_t frames,
                    const std::vector<Fitted>& fitted);
 
 }  // namespace etlc::calibrate

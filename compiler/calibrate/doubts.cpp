@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 
 #include <cmath>
-#include <optional>
 
 #include "data/files/file.hpp"
 #include "episodes/auroc.hpp"
@@ -12,42 +11,22 @@ namespace etlc::calibrate {
 
 namespace {
 
-/// Nothing where there are too few episodes for an interval, or only frames of one kind.
-std::optional<episodes::Auroc> ranking(const std::vector<Demonstration>& demonstrations,
-                                       std::size_t of) {
-    std::size_t count = 0;
-    for (const Demonstration& demonstration : demonstrations)
-        count += demonstration.scores[of].labelled.size();
-    std::vector<episodes::Scored> frames;
-    frames.reserve(count);
-    for (std::uint32_t e = 0; e < demonstrations.size(); ++e)
-        for (const Scores::Labelled& frame : demonstrations[e].scores[of].labelled)
-            frames.push_back({-frame.score, e, frame.positive});
-    std::vector<std::vector<episodes::Scored>> all{std::move(frames)};
-    const auto result = episodes::auroc(all, demonstrations.size());
-    return result && result->interval ? result : std::nullopt;
-}
-
 /// Which part of the negative frames the threshold takes for positive; 0 where there are none.
-double false_part(const check::Predicate& predicate,
-                  const std::vector<Demonstration>& demonstrations, std::size_t of,
+double false_part(const check::Predicate& predicate, const Evidence& evidence,
                   const Fitted& fitted) {
     const float epsilon = predicate.upper_bound() ? fitted.epsilon : -fitted.epsilon;
-    std::uint64_t negatives = 0;
     std::uint64_t within = 0;
-    for (const Demonstration& demonstration : demonstrations)
-        for (const Scores::Labelled& frame : demonstration.scores[of].labelled) {
-            if (frame.positive) continue;
-            ++negatives;
-            within += frame.score < epsilon || (!predicate.strict() && frame.score == epsilon);
-        }
-    return negatives == 0 ? 0 : static_cast<double>(within) / static_cast<double>(negatives);
+    evidence.labelled.for_each([&](const episodes::Scored& frame) {
+        const bool holds = frame.score < epsilon || (!predicate.strict() && frame.score == epsilon);
+        within += holds && !frame.positive ? 1 : 0;
+    });
+    const auto negatives = static_cast<double>(evidence.labelled.negatives());
+    return negatives == 0 ? 0 : static_cast<double>(within) / negatives;
 }
 
 }  // namespace
 
-void warn_of_doubts(const check::Predicate& predicate,
-                    const std::vector<Demonstration>& demonstrations, std::size_t of,
+void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     const Fitted& fitted, diag::Sink& sink) {
     constexpr double kNearlyEvery = 0.95;
     const auto warn = [&](std::string message) -> diag::Diagnostic& {
@@ -57,8 +36,9 @@ void warn_of_doubts(const check::Predicate& predicate,
         found.span = predicate.threshold.span;
         return sink.report(std::move(found));
     };
-    const auto ranked = ranking(demonstrations, of);
-    if (ranked && ranked->interval->low <= 0.5) {
+    const auto ranked =
+        episodes::auroc(evidence.labelled, evidence.demonstrations, episodes::Likely::smaller);
+    if (ranked && ranked->interval && ranked->interval->low <= 0.5) {
         warn(fmt::format("what '{}' measures does not tell its labels apart: the area under the "
                          "ROC curve is {:.2f}, with a 95 % interval from {:.2f} to {:.2f}",
                          predicate.name, ranked->value, ranked->interval->low,
@@ -68,7 +48,7 @@ void warn_of_doubts(const check::Predicate& predicate,
                       : "0.5 is chance: look at the labels, the embedding and the targets");
         return;
     }
-    const double part = false_part(predicate, demonstrations, of, fitted);
+    const double part = false_part(predicate, evidence, fitted);
     if (part < kNearlyEvery) return;
     warn(fmt::format("with the threshold {:.9g} '{}' is true of {:.0f} % of the frames of which it "
                      "should be false",

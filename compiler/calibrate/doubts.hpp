@@ -9,9 +9,7 @@
 
 namespace etlc::calibrate {
 
-/// `of`: which of the demonstrations' scores are this predicate's; `fitted` of the same.
-void warn_of_doubts(const check::Predicate& predicate,
-                    const std::vector<Demonstration>& demonstrations, std::size_t of,
+void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     const Fitted& fitted, diag::Sink& sink);
 
 }  // namespace etlc::calibrate

@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
+#include <optional>
+#include <utility>
 
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/conformal.hpp"
@@ -27,17 +28,80 @@ struct HalfF1 {
     }
 };
 
-/// The scores between which epsilon may lie and say the same of all frames: the one that was
-/// taken, and of <= the next above it, of < the next below. Ascending; the one alone where there is
-/// no finite other.
-std::vector<float> gap(const std::vector<Scores::Labelled>& ascending, float taken, bool strict) {
-    const auto [first, last] =
-        std::equal_range(ascending.begin(), ascending.end(), Scores::Labelled{taken, false},
-                         [](const auto& a, const auto& b) { return a.score < b.score; });
-    if (!strict && last != ascending.end() && !std::isinf(last->score)) return {taken, last->score};
-    if (strict && first != ascending.begin() && !std::isinf(std::prev(first)->score))
-        return {std::prev(first)->score, taken};
-    return {taken};
+/// Goes over the scores of labelled frames, ascending, and finds the best of them as epsilon.
+class BestF1 {
+public:
+    BestF1(std::uint64_t positives, bool strict) : positives_(positives), strict_(strict) {}
+
+    /// The next score, and how many frames have it.
+    void add(float score, std::uint64_t positives, std::uint64_t negatives) {
+        if (is_best_ && !strict_ && !std::isinf(score)) other_ = score;
+        is_best_ = false;
+        const HalfF1 below{true_positives_, positives_ + frames_};
+        true_positives_ += positives;
+        frames_ += positives + negatives;
+        const HalfF1 here = strict_ ? below : HalfF1{true_positives_, positives_ + frames_};
+        // Of equals the first is the strictest.
+        if (!std::isinf(score) && best_ < here) {
+            best_ = here;
+            taken_ = score;
+            is_best_ = true;
+            other_ = strict_ ? before_ : std::nullopt;
+        }
+        before_ = std::isinf(score) ? std::nullopt : std::optional(score);
+    }
+
+    const HalfF1& best() const { return best_; }
+    std::uint64_t frames() const { return frames_; }
+    /// The scores between which epsilon may lie and say the same of all frames: the one that was
+    /// taken, and of <= the next above it, of < the next below. Ascending; the one alone where
+    /// there is no finite other.
+    std::vector<float> gap() const {
+        if (!other_) return {taken_};
+        return strict_ ? std::vector{*other_, taken_} : std::vector{taken_, *other_};
+    }
+    float taken() const { return taken_; }
+
+private:
+    std::uint64_t positives_;
+    bool strict_;
+    std::uint64_t true_positives_ = 0;
+    std::uint64_t frames_ = 0;
+    HalfF1 best_;
+    float taken_ = 0;
+    bool is_best_ = false;  ///< the score before this one
+    std::optional<float> before_;
+    std::optional<float> other_;
+};
+
+/// The k-th smallest of n, k the rank of alpha. `kth(k)` gives it.
+template <class Kth>
+Fit ranked(std::uint64_t n, const std::string& alpha, const Kth& kth) {
+    Fitted result;
+    result.n = n;
+    if (n == 0) return Refusal::no_positives;
+    result.k = check::rank(alpha, n);
+    if (result.k > n) return Refusal::too_few;
+    const double score = kth(result.k);
+    if (std::isinf(score)) return Refusal::not_finite;
+    result.epsilon = check::strictly_above(score);
+    result.scores = {score};
+    if (std::isinf(result.epsilon)) return Refusal::not_finite;
+    return result;
+}
+
+/// Of all positive frames.
+Fit fit_rank(const data::Sorted<Evidence::Reach>& reaches, const std::string& alpha,
+             const Counts& counts) {
+    std::uint64_t n = 0;
+    reaches.for_each([&](const Evidence::Reach& one) { n += counts(one.demonstration) ? 1 : 0; });
+    return ranked(n, alpha, [&](std::uint64_t k) {
+        double found = 0;
+        reaches.for_each([&](const Evidence::Reach& one) {
+            if (k > 0 && counts(one.demonstration) && --k == 0) found = one.reach;
+        });
+        return found;
+    });
 }
 
 }  // namespace
@@ -51,47 +115,40 @@ void mirror(Fitted& fitted, bool upper_bound) {
 }
 
 Fit fit_rank(std::vector<double> reaches, const std::string& alpha) {
-    Fitted result;
-    result.n = reaches.size();
-    if (result.n == 0) return Refusal::no_positives;
-    result.k = check::rank(alpha, result.n);
-    if (result.k > result.n) return Refusal::too_few;
-    const auto kth = reaches.begin() + static_cast<std::ptrdiff_t>(result.k - 1);
-    std::nth_element(reaches.begin(), kth, reaches.end());
-    if (std::isinf(*kth)) return Refusal::not_finite;
-    result.epsilon = check::strictly_above(*kth);
-    result.scores = {*kth};
-    if (std::isinf(result.epsilon)) return Refusal::not_finite;
-    return result;
+    return ranked(reaches.size(), alpha, [&](std::uint64_t k) {
+        const auto kth = reaches.begin() + static_cast<std::ptrdiff_t>(k - 1);
+        std::nth_element(reaches.begin(), kth, reaches.end());
+        return *kth;
+    });
 }
 
-Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
-    std::sort(labelled.begin(), labelled.end(),
-              [](const auto& a, const auto& b) { return a.score < b.score; });
-    const auto is_positive = [](const Scores::Labelled& frame) { return frame.positive; };
-    const auto positives =
-        static_cast<std::uint64_t>(std::count_if(labelled.begin(), labelled.end(), is_positive));
-    if (positives == 0) return Refusal::no_positives;
+Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts) {
+    std::uint64_t all_positives = 0;
+    labelled.for_each([&](const episodes::Scored& frame) {
+        all_positives += frame.positive && counts(frame.episode) ? 1 : 0;
+    });
+    if (all_positives == 0) return Refusal::no_positives;
+    BestF1 best(all_positives, strict);
+    float score = 0;
+    std::uint64_t positives = 0;
+    std::uint64_t negatives = 0;
+    const auto end_tie = [&] {
+        if (positives + negatives > 0) best.add(score, positives, negatives);
+        positives = negatives = 0;
+    };
+    labelled.for_each([&](const episodes::Scored& frame) {
+        if (!counts(frame.episode)) return;
+        if (frame.score != score) end_tie();
+        score = frame.score;
+        ++(frame.positive ? positives : negatives);
+    });
+    end_tie();
+    if (best.best().true_positives == 0) return Refusal::no_f1;
     Fitted result;
-    result.n = labelled.size();
-    HalfF1 best;
-    std::uint64_t true_positives = 0;
-    for (std::size_t i = 0; i < labelled.size();) {
-        const float epsilon = labelled[i].score;
-        const std::size_t before = i;
-        const std::uint64_t positives_before = true_positives;
-        for (; i < labelled.size() && labelled[i].score == epsilon; ++i)
-            true_positives += labelled[i].positive ? 1 : 0;
-        if (std::isinf(epsilon)) continue;
-        const HalfF1 here = strict ? HalfF1{positives_before, positives + before}
-                                   : HalfF1{true_positives, positives + i};
-        if (!(best < here)) continue;  // of equals the first is the strictest
-        best = here;
-        result.epsilon = epsilon;
-        result.f1 = here.value();
-    }
-    if (best.true_positives == 0) return Refusal::no_f1;
-    const std::vector<float> ends = gap(labelled, result.epsilon, strict);
+    result.n = best.frames();
+    result.f1 = best.best().value();
+    result.epsilon = best.taken();
+    const std::vector<float> ends = best.gap();
     result.scores = {static_cast<double>(result.epsilon)};
     const auto between = ends.size() == 2 ? check::halfway(ends[0], ends[1]) : std::nullopt;
     if (!between) return result;
@@ -100,28 +157,23 @@ Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict) {
     return result;
 }
 
-Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations,
-        std::size_t of) {
-    const bool is_f1 = predicate.threshold.origin == ThresholdOrigin::f1;
-    std::vector<Scores::Labelled> labelled;
-    std::vector<double> reaches;
-    std::vector<double> by_episode;
-    for (const Demonstration& demonstration : demonstrations) {
-        const Scores& scores = demonstration.scores[of];
-        if (is_f1) labelled.insert(labelled.end(), scores.labelled.begin(), scores.labelled.end());
-        if (predicate.threshold.origin == ThresholdOrigin::class_conditional) {
-            reaches.insert(reaches.end(), scores.reaches.begin(), scores.reaches.end());
-        } else if (!is_f1 && scores.has_score) {
-            reaches.push_back(scores.worst_reach);
-            by_episode.push_back(scores.worst_reach);
-        }
-    }
-    Fit fit = is_f1 ? fit_f1(std::move(labelled), predicate.strict())
-                    : fit_rank(std::move(reaches), predicate.threshold.alpha);
+Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts) {
+    const check::Threshold& threshold = predicate.threshold;
+    std::vector<double> by_demonstration;
+    const auto by_worst = [&] {
+        for (const auto& [reach, demonstration] : evidence.worst)
+            if (counts(demonstration)) by_demonstration.push_back(reach);
+        return fit_rank(by_demonstration, threshold.alpha);
+    };
+    Fit fit = threshold.origin == ThresholdOrigin::f1
+                  ? fit_f1(evidence.labelled, predicate.strict(), counts)
+              : threshold.origin == ThresholdOrigin::class_conditional
+                  ? fit_rank(evidence.reaches, threshold.alpha, counts)
+                  : by_worst();
     if (auto* fitted = std::get_if<Fitted>(&fit)) {
-        if (!by_episode.empty()) fitted->scores = std::move(by_episode);
+        if (!by_demonstration.empty()) fitted->scores = std::move(by_demonstration);
         mirror(*fitted, predicate.upper_bound());
-        const auto& adaptation = predicate.threshold.adaptation;
+        const auto& adaptation = threshold.adaptation;
         if (adaptation && !check::start(*adaptation, fitted->epsilon, predicate.upper_bound()))
             return OutOfRange{fitted->epsilon};
     }

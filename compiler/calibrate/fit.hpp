@@ -1,16 +1,17 @@
 // From scores to thresholds.
-// Takes: the scores of a predicate in every demonstration. Gives: epsilon, or why there is none.
+// Takes: what demonstrations say of a predicate. Gives: epsilon, or why there is none.
 // Keeps true: Definitions "F1-Optimal Threshold" and "Conformal Calibration Threshold" (Kapoor et
 // al.), mirrored for >= and >; what an F1-optimal threshold says of the frames that it is from is
 // what the definition's says; the rank is never clamped: too few demonstrations are an error.
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <string>
 #include <variant>
 #include <vector>
 
-#include "calibrate/scores.hpp"
+#include "calibrate/evidence.hpp"
 
 namespace etlc::calibrate {
 
@@ -39,9 +40,11 @@ struct OutOfRange {
 
 using Fit = std::variant<Fitted, Refusal, OutOfRange>;
 
-/// `of`: which of the demonstrations' scores are this predicate's.
-Fit fit(const check::Predicate& predicate, const std::vector<Demonstration>& demonstrations,
-        std::size_t of);
+/// Whether a demonstration counts.
+using Counts = std::function<bool(std::uint32_t demonstration)>;
+inline constexpr auto kAll = [](std::uint32_t) { return true; };
+
+Fit fit(const check::Predicate& predicate, const Evidence& evidence, const Counts& counts = kAll);
 
 /// From scores of which a smaller one is always better, to thresholds and scores as they are
 /// compared: those of >= and > change their sign. Scores are ascending after it.
@@ -52,8 +55,8 @@ Fit fit_rank(std::vector<double> reaches, const std::string& alpha);
 
 /// Epsilon such that `score <= epsilon`, or < where `strict`, has the greatest F1 that a score as
 /// epsilon has; of equals it is the least. From that score it is moved halfway to the next that
-/// says another thing, where there is one: of these frames that says the same. Scores are those of
-/// all labelled frames.
-Fit fit_f1(std::vector<Scores::Labelled> labelled, bool strict);
+/// says another thing, where there is one: of these frames that says the same. Of all labelled
+/// frames of the demonstrations that count.
+Fit fit_f1(const episodes::FramesByScore& labelled, bool strict, const Counts& counts = kAll);
 
 }  // namespace etlc::calibrate

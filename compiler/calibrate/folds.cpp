@@ -51,35 +51,38 @@ std::string heading(std::uint32_t folds) {
                        folds);
 }
 
-/// What the predicate's threshold gets right in a demonstration that it was not taken from.
-void judge(const check::Predicate& predicate, float threshold, const Scores& scores,
-           HeldOut& result) {
-    std::uint64_t misses = 0;
-    std::uint64_t hits = 0;
-    for (const Scores::Labelled& frame : scores.labelled) {
+/// What the threshold gets right in the demonstrations of a fold, which it was not taken from.
+void judge(const check::Predicate& predicate, float threshold, const Evidence& evidence,
+           const Counts& in_fold, HeldOut& result) {
+    struct Positives {
+        std::uint64_t hits = 0;
+        std::uint64_t misses = 0;
+    };
+    std::vector<Positives> found(evidence.demonstrations);
+    evidence.labelled.for_each([&](const episodes::Scored& frame) {
+        if (!in_fold(frame.episode)) return;
         const float delta = predicate.upper_bound() ? frame.score : -frame.score;
         const bool holds = check::holds(predicate.comparison, delta, threshold);
         if (frame.positive)
-            ++(holds ? hits : misses);
+            ++(holds ? found[frame.episode].hits : found[frame.episode].misses);
         else
             result.false_alarms += holds ? 1 : 0;
+    });
+    for (const auto& [hits, misses] : found) {
+        result.hits += hits;
+        result.misses += misses;
+        if (hits + misses == 0) continue;
+        ++result.episodes;
+        result.covered += misses == 0 ? 1 : 0;
     }
-    result.hits += hits;
-    result.misses += misses;
-    if (hits + misses == 0) return;
-    ++result.episodes;
-    result.covered += misses == 0 ? 1 : 0;
 }
 
-HeldOut held_out(const check::Predicate& predicate,
-                 const std::vector<Demonstration>& demonstrations, std::size_t of,
+HeldOut held_out(const check::Predicate& predicate, const Evidence& evidence,
                  const std::vector<std::uint32_t>& fold_of, std::uint32_t folds) {
     HeldOut result;
     for (std::uint32_t fold = 0; fold < folds; ++fold) {
-        std::vector<Demonstration> others;
-        for (std::size_t d = 0; d < demonstrations.size(); ++d)
-            if (fold_of[d] != fold) others.push_back({{}, {demonstrations[d].scores[of]}});
-        const Fit found = fit(predicate, others, 0);
+        const auto in_fold = [&](std::uint32_t d) { return fold_of[d] == fold; };
+        const Fit found = fit(predicate, evidence, [&](std::uint32_t d) { return !in_fold(d); });
         const auto* fitted = std::get_if<Fitted>(&found);
         if (fitted == nullptr) {
             ++result.without_threshold;
@@ -90,21 +93,19 @@ HeldOut held_out(const check::Predicate& predicate,
             moves ? *check::start(*moves, fitted->epsilon, predicate.upper_bound())
                   : fitted->epsilon;
         result.add(threshold);
-        for (std::size_t d = 0; d < demonstrations.size(); ++d)
-            if (fold_of[d] == fold)
-                judge(predicate, threshold, demonstrations[d].scores[of], result);
+        judge(predicate, threshold, evidence, in_fold, result);
     }
     return result;
 }
 
-HeldOut held_out(const check::Monitor& monitor, const std::vector<MonitorEpisode>& episodes,
+HeldOut held_out(const check::Monitor& monitor, const std::vector<MonitorScores>& episodes,
                  std::size_t of, const std::vector<std::uint32_t>& fold_of, std::uint32_t folds) {
     HeldOut result;
     for (std::uint32_t fold = 0; fold < folds; ++fold) {
         std::vector<double> others;
         for (std::size_t e = 0; e < episodes.size(); ++e)
-            if (fold_of[e] != fold && episodes[e].scores[of].steps > 0)
-                others.push_back(episodes[e].scores[of].worst);
+            if (fold_of[e] != fold && episodes[e][of].steps > 0)
+                others.push_back(episodes[e][of].worst);
         Fit found = fit_rank(std::move(others), monitor.calibration->threshold.alpha);
         auto* fitted = std::get_if<Fitted>(&found);
         if (fitted == nullptr) {
@@ -115,7 +116,7 @@ HeldOut held_out(const check::Monitor& monitor, const std::vector<MonitorEpisode
         mirror(*fitted, monitor.calibration->against == check::Against::missed_alarm);
         result.add(fitted->epsilon);
         for (std::size_t e = 0; e < episodes.size(); ++e) {
-            const MonitorScore& score = episodes[e].scores[of];
+            const MonitorScore& score = episodes[e][of];
             if (fold_of[e] != fold || score.steps == 0) continue;
             ++result.episodes;
             result.covered += score.worst < beyond ? 1 : 0;
@@ -127,26 +128,28 @@ HeldOut held_out(const check::Monitor& monitor, const std::vector<MonitorEpisode
 }  // namespace
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& predicates,
-                            const std::vector<Demonstration>& demonstrations, std::uint32_t folds) {
+                            const std::vector<Evidence>& evidence,
+                            const episodes::Identities& episodes, std::uint32_t folds) {
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes::recorded(demonstrations), folds);
+    const auto fold_of = episodes::folds_of(episodes, folds);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < predicates.size(); ++i) {
         const check::Predicate& predicate = model.predicates[predicates[i]];
-        text += held_out(predicate, demonstrations, i, fold_of, folds)
+        text += held_out(predicate, evidence[i], fold_of, folds)
                     .text(predicate.name, folds, "demonstration");
     }
     return text;
 }
 
 std::string report_of_folds(const check::Model& model, const std::vector<Index>& monitors,
-                            const std::vector<MonitorEpisode>& episodes, std::uint32_t folds) {
+                            const std::vector<MonitorScores>& scores,
+                            const episodes::Identities& episodes, std::uint32_t folds) {
     if (folds == 0) return "";
-    const auto fold_of = episodes::folds_of(episodes::recorded(episodes), folds);
+    const auto fold_of = episodes::folds_of(episodes, folds);
     std::string text = heading(folds);
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        text += held_out(monitor, episodes, i, fold_of, folds).text(monitor.name, folds, "episode");
+        text += held_out(monitor, scores, i, fold_of, folds).text(monitor.name, folds, "episode");
     }
     return text;
 }

@@ -14,28 +14,6 @@ using check::Claim;
 using check::ThresholdOrigin;
 using diag::counted;
 
-/// The counts of one predicate over all demonstrations.
-struct Totals {
-    std::uint64_t positives = 0;
-    std::uint64_t negatives = 0;
-    std::uint64_t unlabelled = 0;
-    std::uint64_t unmeasured = 0;
-    std::uint64_t without_score = 0;
-    std::uint64_t from_array = 0;
-
-    Totals(const std::vector<Demonstration>& demonstrations, std::size_t of) {
-        for (const Demonstration& demonstration : demonstrations) {
-            const Scores& scores = demonstration.scores[of];
-            positives += scores.positives;
-            negatives += scores.negatives;
-            unlabelled += scores.unlabelled;
-            unmeasured += scores.unmeasured;
-            without_score += scores.has_score ? 0 : 1;
-            from_array += scores.from_array ? 1 : 0;
-        }
-    }
-};
-
 std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     const check::Threshold& threshold = predicate.threshold;
     const char* from = predicate.upper_bound() ? "smallest" : "greatest";
@@ -75,29 +53,29 @@ std::string how(const check::Predicate& predicate, const Fitted& fitted) {
     return "";
 }
 
-std::string predicate_report(const check::Model& model, Index index,
-                             const std::vector<Demonstration>& demonstrations, std::size_t of,
+std::string predicate_report(const check::Model& model, Index index, const Evidence& evidence,
                              const Fitted& fitted) {
     const check::Predicate& predicate = model.predicates[index];
-    const Totals totals(demonstrations, of);
+    const std::uint64_t without_score = evidence.demonstrations - evidence.worst.size();
     std::string text =
         fmt::format("\n{}: {}{:.9g}\n    {}\n    labels: {} frames positive, {} negative",
                     predicate.name, predicate.text, predicate.threshold.value,
-                    how(predicate, fitted), totals.positives, totals.negatives);
-    if (totals.unlabelled > 0) text += fmt::format(", {} unknown and left out", totals.unlabelled);
+                    how(predicate, fitted), evidence.positives, evidence.negatives);
+    if (evidence.unlabelled > 0)
+        text += fmt::format(", {} unknown and left out", evidence.unlabelled);
     text += '\n';
-    if (totals.from_array > 0)
+    if (evidence.from_array > 0)
         text += fmt::format(
             "    labels of {} of {} are those of the array truth.{}, not of a truth in the spec\n",
-            totals.from_array, counted(demonstrations.size(), "demonstration"), predicate.name);
+            evidence.from_array, counted(evidence.demonstrations, "demonstration"), predicate.name);
     const bool by_demonstration =
         predicate.threshold.origin == ThresholdOrigin::conformal || predicate.threshold.adaptation;
-    if (by_demonstration && totals.without_score > 0)
+    if (by_demonstration && without_score > 0)
         text += fmt::format("    {} without a positive frame left out\n",
-                            counted(totals.without_score, "demonstration"));
-    if (totals.unmeasured > 0)
+                            counted(without_score, "demonstration"));
+    if (evidence.unmeasured > 0)
         text += fmt::format("    {} of unknown distance skipped\n",
-                            counted(totals.unmeasured, "labelled frame"));
+                            counted(evidence.unmeasured, "labelled frame"));
     return text;
 }
 
@@ -130,14 +108,12 @@ std::string monitor_report(const check::Model& model) {
 }  // namespace
 
 std::string report(const check::Model& model, const std::vector<Index>& predicates,
-                   const std::vector<Demonstration>& demonstrations,
+                   const std::vector<Evidence>& evidence, std::uint64_t frames,
                    const std::vector<Fitted>& fitted) {
-    std::uint64_t frames = 0;
-    for (const Demonstration& demonstration : demonstrations) frames += demonstration.frames;
-    std::string text = fmt::format("{}, {}\n", counted(demonstrations.size(), "demonstration"),
+    std::string text = fmt::format("{}, {}\n", counted(evidence[0].demonstrations, "demonstration"),
                                    counted(frames, "frame"));
     for (std::size_t i = 0; i < predicates.size(); ++i)
-        text += predicate_report(model, predicates[i], demonstrations, i, fitted[i]);
+        text += predicate_report(model, predicates[i], evidence[i], fitted[i]);
     return text + monitor_report(model);
 }
 

@@ -40,9 +40,9 @@ struct Totals {
     std::uint64_t unknown = 0;
     std::vector<double> scores;
 
-    Totals(const std::vector<MonitorEpisode>& episodes, std::size_t of) {
-        for (const MonitorEpisode& episode : episodes) {
-            const MonitorScore& score = episode.scores[of];
+    Totals(const std::vector<MonitorScores>& episodes, std::size_t of) {
+        for (const MonitorScores& episode : episodes) {
+            const MonitorScore& score = episode[of];
             steps += score.steps;
             unknown += score.unknown;
             if (score.steps == 0) continue;
@@ -82,7 +82,7 @@ void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t epi
 }
 
 thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor,
-                           const Fitted& fitted, const std::vector<MonitorEpisode>& episodes) {
+                           const Fitted& fitted, const episodes::Identities& episodes) {
     check::Provenance provenance = check::provenance(model, monitor);
     thresholds::Entry entry;
     entry.method = "conformal";
@@ -95,7 +95,9 @@ thresholds::Entry entry_of(const check::Model& model, const check::Monitor& moni
     entry.truth = std::move(provenance.truth);
     entry.targets = std::move(provenance.targets);
     entry.against = check::word(monitor.calibration->against);
-    for (const MonitorEpisode& episode : episodes) entry.episodes.push_back(episode.hash);
+    episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
+        entry.episodes.push_back(episode.hash);
+    });
     return entry;
 }
 
@@ -168,12 +170,20 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     const MonitorPlans plans{compiled->plan, truths->plan, truth};
 
     const episodes::Leaks leaks(model, *labelled);
-    const auto scored =
-        episodes::over_shared_episodes<MonitorEpisode>(request.episodes, request, sink, [&] {
+    episodes::Identities recorded;
+    std::vector<MonitorScores> scored;
+    std::uint64_t frames = 0;
+    const bool all_scored = episodes::over_shared_episodes<MonitorEpisode>(
+        request.episodes, request, sink,
+        [&] {
             return std::make_unique<MonitorScorer>(model, plans, leaks, monitors, request.names);
+        },
+        [&](std::size_t, MonitorEpisode episode) {
+            recorded.add(episode);
+            frames += episode.frames;
+            scored.push_back(std::move(episode.scores));
         });
-    if (!scored) return std::nullopt;
-    const auto recorded = episodes::recorded(*scored);
+    if (!all_scored) return std::nullopt;
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, before, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -182,26 +192,24 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     result.file.spec = model.name;
     result.file.etlc = request.version;
     episodes::record(recorded, allowance, result.file);
-    std::uint64_t frames = 0;
-    for (const MonitorEpisode& episode : *scored) frames += episode.frames;
     result.report =
-        fmt::format("{}, {}\n", counted(scored->size(), "episode"), counted(frames, "frame"));
+        fmt::format("{}, {}\n", counted(scored.size(), "episode"), counted(frames, "frame"));
     for (std::size_t i = 0; i < monitors.size(); ++i) {
         const check::Monitor& monitor = model.monitors[monitors[i]];
-        const Totals totals(*scored, i);
+        const Totals totals(scored, i);
         Fit fit = fit_rank(totals.scores, monitor.calibration->threshold.alpha);
         if (const auto* refusal = std::get_if<Refusal>(&fit)) {
-            refuse(monitor, totals, scored->size(), *refusal, sink);
+            refuse(monitor, totals, scored.size(), *refusal, sink);
             continue;
         }
         auto& fitted = std::get<Fitted>(fit);
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
-        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, *scored);
-        result.report += monitor_report(model, monitor, totals, fitted, scored->size());
+        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, recorded);
+        result.report += monitor_report(model, monitor, totals, fitted, scored.size());
     }
     if (sink.has_errors()) return std::nullopt;
-    result.report += report_of_folds(model, monitors, *scored, request.folds);
+    result.report += report_of_folds(model, monitors, scored, recorded, request.folds);
     thresholds::drop_unused_recordings(result.file);
     for (const thresholds::Allowance& used : result.file.allowances)
         result.report += fmt::format("\n{}\n", thresholds::text(used));

@@ -38,8 +38,10 @@ struct MonitorScore {
     double worst = 0;           ///< where steps > 0: the worst rho over them in any build
 };
 
+using MonitorScores = std::vector<MonitorScore>;  ///< per calibrated monitor
+
 struct MonitorEpisode : episodes::Recorded {
-    std::vector<MonitorScore> scores;  ///< per calibrated monitor
+    MonitorScores scores;
 };
 
 template <class Archive>

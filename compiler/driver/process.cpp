@@ -9,6 +9,7 @@
 #include <new>
 
 #include "data/files/descriptor.hpp"
+#include "data/spill/file.hpp"
 
 namespace etlc::driver {
 
@@ -23,6 +24,9 @@ int say_what_failed() noexcept {
         throw;
     } catch (const std::bad_alloc&) {
         print_error(kNoMemory);
+        return kFailed;
+    } catch (const data::SpillError& error) {
+        for (const std::string_view part : {"etlc: ", error.what(), "\n"}) print_error(part);
         return kFailed;
     } catch (const std::exception& error) {
         for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"})

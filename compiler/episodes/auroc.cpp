@@ -2,33 +2,17 @@
 
 #include <algorithm>
 #include <cmath>
-#include <type_traits>
+#include <utility>
 
 namespace etlc::episodes {
 
 namespace {
 
-/// How many frames of a class, or how much they count.
+/// How many frames of a class.
 struct Classes {
     double positives = 0;
     double negatives = 0;
 };
-
-/// Calls `visit(first, last, lower, tied)` for each run of frames of one score, `lower` being those
-/// of lower scores. A frame counts as often as `weight(frame)` says.
-template <class Frame, class Weight, class Visit>
-void for_each_tie(Frame* begin, Frame* end, const Weight& weight, const Visit& visit) {
-    Classes lower;
-    while (begin != end) {
-        Frame* const first = begin;
-        Classes tied;
-        for (; begin != end && begin->score == first->score; ++begin)
-            (begin->positive ? tied.positives : tied.negatives) += weight(*begin);
-        visit(first, begin, lower, tied);
-        lower.positives += tied.positives;
-        lower.negatives += tied.negatives;
-    }
-}
 
 /// Of a group, or of an episode those that it has a part in.
 struct Pairs {
@@ -38,20 +22,72 @@ struct Pairs {
     double negatives = 0;
 };
 
-/// Calls `visit(frame, ordered)` for each frame of those of ascending scores, with how many pairs
-/// it is in that are ordered.
-template <class Frame, class Visit>
-void for_each_in_order(Frame* begin, Frame* end, const Visit& visit) {
-    const auto positives = static_cast<double>(
-        std::count_if(begin, end, [](const Frame& frame) { return frame.positive; }));
-    for_each_tie(
-        begin, end, [](const Frame&) { return 1.0; },
-        [&](Frame* first, Frame* last, const Classes& lower, const Classes& tied) {
-            const double higher = positives - lower.positives - tied.positives;
-            for (; first != last; ++first)
-                visit(*first, first->positive ? lower.negatives + tied.negatives / 2
-                                              : higher + tied.positives / 2);
-        });
+/// The frames of an episode that have one score.
+struct Alike {
+    std::uint32_t episode = 0;
+    Classes frames;
+};
+
+/// Counts the pairs of a group that are ordered. Numbers of halves: exact in any order.
+class PairCounter {
+public:
+    /// `positives`: of the group; `lower_negatives`: of each episode, 0 at first.
+    PairCounter(double positives, std::vector<Pairs>& episodes,
+                std::vector<double>& lower_negatives)
+        : positives_(positives), episodes_(episodes), lower_negatives_(lower_negatives) {}
+
+    /// In ascending order of the score; those of an episode and of one score come together.
+    void add(float score, std::uint32_t episode, bool positive) {
+        if (!tied_.empty() && score != score_) end_tie();
+        score_ = score;
+        if (tied_.empty() || tied_.back().episode != episode) tied_.push_back({episode, {}});
+        Classes& frames = tied_.back().frames;
+        (positive ? frames.positives : frames.negatives) += 1;
+    }
+
+    Pairs finish() {
+        end_tie();
+        return {ordered_, 0, lower_.positives, lower_.negatives};
+    }
+
+private:
+    void end_tie() {
+        Classes all;
+        for (const Alike& alike : tied_) {
+            all.positives += alike.frames.positives;
+            all.negatives += alike.frames.negatives;
+        }
+        const double of_positive = lower_.negatives + all.negatives / 2;
+        const double of_negative =
+            positives_ - lower_.positives - all.positives + all.positives / 2;
+        for (const auto& [episode, frames] : tied_) {
+            Pairs& own = episodes_[episode];
+            double& own_lower = lower_negatives_[episode];
+            own.positives += frames.positives;
+            own.negatives += frames.negatives;
+            own.ordered += frames.positives * of_positive + frames.negatives * of_negative;
+            own.within += frames.positives * (own_lower + frames.negatives / 2);
+            own_lower += frames.negatives;
+        }
+        ordered_ += all.positives * of_positive;
+        lower_.positives += all.positives;
+        lower_.negatives += all.negatives;
+        tied_.clear();
+    }
+
+    double positives_;
+    std::vector<Pairs>& episodes_;
+    std::vector<double>& lower_negatives_;
+    float score_ = 0;
+    std::vector<Alike> tied_;
+    Classes lower_;
+    double ordered_ = 0;
+};
+
+double of_class(const std::vector<RankedFrame>& frames, bool positive) {
+    return static_cast<double>(
+        std::count_if(frames.begin(), frames.end(),
+                      [&](const RankedFrame& frame) { return frame.positive == positive; }));
 }
 
 void sort_by_score(std::vector<RankedFrame>& frames) {
@@ -60,58 +96,37 @@ void sort_by_score(std::vector<RankedFrame>& frames) {
         return a.episode != b.episode ? a.episode < b.episode : a.step < b.step;
     });
 }
-void sort_by_score(std::vector<Scored>& frames) {
-    std::sort(frames.begin(), frames.end(),
-              [](const Scored& a, const Scored& b) { return a.score < b.score; });
-}
 
-/// Of each episode the pairs within it; gives the episodes. Sorts the frames.
-std::vector<std::uint32_t> count_within(std::vector<Scored>& frames, std::vector<Pairs>& episodes) {
-    std::sort(frames.begin(), frames.end(), [](const Scored& a, const Scored& b) {
-        return a.episode != b.episode ? a.episode < b.episode : a.score < b.score;
-    });
-    std::vector<std::uint32_t> there;
-    for (std::size_t begin = 0, end = 0; begin < frames.size(); begin = end) {
-        const std::uint32_t episode = frames[begin].episode;
-        while (end < frames.size() && frames[end].episode == episode) ++end;
-        for_each_in_order(frames.data() + begin, frames.data() + end,
-                          [&](const Scored& frame, double ordered) {
-                              if (frame.positive) episodes[episode].within += ordered;
-                          });
-        there.push_back(episode);
+/// Which part of its pairs is ordered, of each of those of ascending scores.
+void set_ordered(std::vector<RankedFrame>& frames, const Pairs& all) {
+    Classes lower;
+    for (std::size_t i = 0, end = 0; i < frames.size(); i = end) {
+        Classes tied;
+        for (; end < frames.size() && frames[end].score == frames[i].score; ++end)
+            (frames[end].positive ? tied.positives : tied.negatives) += 1;
+        const double higher = all.positives - lower.positives - tied.positives;
+        for (std::size_t k = i; k < end; ++k) {
+            const double ordered = frames[k].positive ? lower.negatives + tied.negatives / 2
+                                                      : higher + tied.positives / 2;
+            const double pairs = frames[k].positive ? all.negatives : all.positives;
+            frames[k].ordered = pairs > 0 ? ordered / pairs : 1;
+        }
+        lower.positives += tied.positives;
+        lower.negatives += tied.negatives;
     }
-    return there;
-}
-std::vector<std::uint32_t> count_within(const std::vector<RankedFrame>& frames,
-                                        std::vector<Pairs>& episodes) {
-    std::vector<Scored> copies(frames.begin(), frames.end());
-    return count_within(copies, episodes);
 }
 
 struct Group {
     Pairs all;
-    std::vector<std::uint32_t> episodes;
+    std::vector<Pairs> episodes;  ///< of those that have frames in it
 };
 
-/// The pairs of a group, and of each episode in it. Numbers of halves: exact in any order.
-template <class Frame>
-Group count(std::vector<Frame>& frames, std::vector<Pairs>& episodes) {
-    Group group;
-    for (const Frame& frame : frames) {
-        ++(frame.positive ? episodes[frame.episode].positives : episodes[frame.episode].negatives);
-        ++(frame.positive ? group.all.positives : group.all.negatives);
-    }
-    sort_by_score(frames);
-    for_each_in_order(
-        frames.data(), frames.data() + frames.size(), [&](Frame& frame, double ordered) {
-            if constexpr (std::is_same_v<Frame, RankedFrame>) {
-                const double pairs = frame.positive ? group.all.negatives : group.all.positives;
-                frame.ordered = pairs > 0 ? ordered / pairs : 1;
-            }
-            episodes[frame.episode].ordered += ordered;
-            if (frame.positive) group.all.ordered += ordered;
-        });
-    group.episodes = count_within(frames, episodes);
+/// Of one group of what it counted: it leaves `episodes` empty for the next.
+Group group_of(const Pairs& all, std::vector<Pairs>& episodes) {
+    Group group{all, {}};
+    for (Pairs& pairs : episodes)
+        if (pairs.positives + pairs.negatives > 0)
+            group.episodes.push_back(std::exchange(pairs, {}));
     return group;
 }
 
@@ -130,67 +145,132 @@ Auroc with_interval(double value, const std::vector<double>& without_one) {
     return result;
 }
 
-template <class Frame>
-std::optional<Auroc> auroc_of(std::vector<std::vector<Frame>>& frames, std::size_t episodes) {
-    std::vector<Group> groups;
-    std::vector<Pairs> of_episodes(episodes);
+std::optional<Auroc> auroc_of(const std::vector<Group>& groups) {
     double ordered = 0;
     double pairs = 0;
-    for (std::vector<Frame>& group : frames) {
-        groups.push_back(count(group, of_episodes));
-        ordered += groups.back().all.ordered;
-        pairs += groups.back().all.positives * groups.back().all.negatives;
+    for (const Group& group : groups) {
+        ordered += group.all.ordered;
+        pairs += group.all.positives * group.all.negatives;
     }
     if (pairs == 0) return std::nullopt;
 
     std::vector<double> without_one;
-    for (const Group& group : groups)
-        for (const std::uint32_t episode : group.episodes) {
-            const Pairs& own = of_episodes[episode];
-            const double others =
-                pairs - group.all.positives * group.all.negatives +
-                (group.all.positives - own.positives) * (group.all.negatives - own.negatives);
+    for (const auto& [all, episodes] : groups)
+        for (const Pairs& own : episodes) {
+            const double others = pairs - all.positives * all.negatives +
+                                  (all.positives - own.positives) * (all.negatives - own.negatives);
             if (others > 0) without_one.push_back((ordered - own.ordered + own.within) / others);
         }
     return with_interval(ordered / pairs, without_one);
 }
 
+/// Of one group in every resample, twice the pairs that are ordered (a tie is half a pair), and the
+/// frames of the lower scores.
+class ResampledPairs {
+public:
+    explicit ResampledPairs(std::size_t resamples)
+        : ordered_twice_(resamples), positives_(resamples), negatives_(resamples) {}
+
+    void add(const FramesByScore& frames, const Weights& weights) {
+        Sums positives(positives_.size());
+        Sums negatives(positives_.size());
+        bool any_positive = false;
+        bool any_negative = false;
+        float score = 0;
+        const auto end_tie = [&] {
+            if (any_positive && any_negative)
+                mixed(positives, negatives);
+            else if (any_positive)
+                positive(positives);
+            if (any_positive) move(positives, positives_);
+            if (any_negative) move(negatives, negatives_);
+            any_positive = any_negative = false;
+        };
+        frames.for_each([&](const Scored& frame) {
+            if (frame.score != score) end_tie();
+            score = frame.score;
+            (frame.positive ? any_positive : any_negative) = true;
+            Sums& sums = frame.positive ? positives : negatives;
+            const Weights::Weight* const own = weights[frame.episode];
+            for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += own[r];
+        });
+        end_tie();
+    }
+
+    double ordered(std::size_t resample) const { return ordered_twice_[resample] / 2; }
+    double pairs(std::size_t resample) const { return positives_[resample] * negatives_[resample]; }
+
+private:
+    using Sums = std::vector<double>;
+
+    void mixed(const Sums& positives, const Sums& negatives) {
+        for (std::size_t r = 0; r < positives.size(); ++r)
+            ordered_twice_[r] += positives[r] * (2 * negatives_[r] + negatives[r]);
+    }
+    void positive(const Sums& positives) {
+        for (std::size_t r = 0; r < positives.size(); ++r)
+            ordered_twice_[r] += positives[r] * 2 * negatives_[r];
+    }
+    static void move(Sums& from, Sums& to) {
+        for (std::size_t r = 0; r < from.size(); ++r) {
+            to[r] += from[r];
+            from[r] = 0;
+        }
+    }
+
+    Sums ordered_twice_;
+    Sums positives_;
+    Sums negatives_;
+};
+
 }  // namespace
 
-Ranking::Ranking(std::vector<Scored> frames, const std::vector<std::uint32_t>& folds)
-    : frames_(std::move(frames)) {
-    const auto fold = [&](const Scored& frame) { return folds.empty() ? 0 : folds[frame.episode]; };
-    std::sort(frames_.begin(), frames_.end(), [&](const Scored& a, const Scored& b) {
-        return fold(a) != fold(b) ? fold(a) < fold(b) : a.score < b.score;
-    });
-    for (std::size_t i = 0; i < frames_.size(); ++i)
-        if (i == 0 || fold(frames_[i]) != fold(frames_[i - 1])) begins_.push_back(i);
-    begins_.push_back(frames_.size());
-}
-
-std::optional<double> Ranking::auroc(const std::vector<std::uint32_t>& weights) const {
-    double twice_ordered = 0;  // a tie is half a pair
-    double pairs = 0;
-    for (std::size_t fold = 0; fold + 1 < begins_.size(); ++fold) {
-        Classes all;
-        for_each_tie(
-            frames_.data() + begins_[fold], frames_.data() + begins_[fold + 1],
-            [&](const Scored& frame) { return weights[frame.episode]; },
-            [&](const Scored*, const Scored*, const Classes& lower, const Classes& tied) {
-                twice_ordered += tied.positives * (2 * lower.negatives + tied.negatives);
-                all = {lower.positives + tied.positives, lower.negatives + tied.negatives};
-            });
-        pairs += all.positives * all.negatives;
-    }
-    if (pairs == 0) return std::nullopt;
-    return twice_ordered / 2 / pairs;
-}
-
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
-    return auroc_of(groups, episodes);
+    std::vector<Group> counted;
+    std::vector<Pairs> pairs(episodes);
+    for (std::vector<RankedFrame>& frames : groups) {
+        std::vector<double> lower_negatives(episodes);
+        sort_by_score(frames);
+        PairCounter counter(of_class(frames, true), pairs, lower_negatives);
+        for (const RankedFrame& frame : frames)
+            counter.add(frame.score, frame.episode, frame.positive);
+        counted.push_back(group_of(counter.finish(), pairs));
+        set_ordered(frames, counted.back().all);
+    }
+    return auroc_of(counted);
 }
-std::optional<Auroc> auroc(std::vector<std::vector<Scored>>& groups, std::size_t episodes) {
-    return auroc_of(groups, episodes);
+
+std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Likely likely) {
+    // Negated scores order a pair as its frames would with their classes exchanged.
+    const bool exchanged = likely == Likely::smaller;
+    std::vector<Pairs> pairs(episodes);
+    std::vector<double> lower_negatives(episodes);
+    PairCounter counter(static_cast<double>(exchanged ? frames.negatives() : frames.positives()),
+                        pairs, lower_negatives);
+    frames.for_each([&](const Scored& frame) {
+        counter.add(frame.score, frame.episode, frame.positive != exchanged);
+    });
+    const Pairs all = counter.finish();
+    return auroc_of({group_of(all, pairs)});
+}
+
+std::vector<std::optional<double>> auroc(const std::vector<FramesByScore>& groups,
+                                         const Weights& weights) {
+    const std::size_t resamples = weights.resamples();
+    std::vector<double> ordered(resamples);
+    std::vector<double> pairs(resamples);
+    for (const FramesByScore& frames : groups) {
+        ResampledPairs group(resamples);
+        group.add(frames, weights);
+        for (std::size_t r = 0; r < resamples; ++r) {
+            ordered[r] += group.ordered(r);
+            pairs[r] += group.pairs(r);
+        }
+    }
+    std::vector<std::optional<double>> result(resamples);
+    for (std::size_t r = 0; r < resamples; ++r)
+        if (pairs[r] > 0) result[r] = ordered[r] / pairs[r];
+    return result;
 }
 
 }  // namespace etlc::episodes

@@ -11,33 +11,10 @@
 #include <optional>
 #include <vector>
 
+#include "episodes/frames_by_score.hpp"
+#include "episodes/weights.hpp"
+
 namespace etlc::episodes {
-
-struct Scored {
-    float score = 0;  ///< the greater, the more likely positive
-    std::uint32_t episode = 0;
-    bool positive = false;
-};
-
-template <class Archive>
-void fields(Archive& archive, Scored& frame) {
-    archive(frame.score, frame.episode, frame.positive);
-}
-
-/// Frames in order, for those who ask with many weights: resamples of the episodes.
-class Ranking {
-public:
-    /// `folds`: the groups, of each episode its own; empty: all are of one.
-    explicit Ranking(std::vector<Scored> frames, const std::vector<std::uint32_t>& folds = {});
-
-    /// With each episode's frames counted `weights[episode]` times; nothing where one of the
-    /// classes is empty.
-    std::optional<double> auroc(const std::vector<std::uint32_t>& weights) const;
-
-private:
-    std::vector<Scored> frames_;       ///< by fold, then by score
-    std::vector<std::size_t> begins_;  ///< of each fold in them; at last their number
-};
 
 struct RankedFrame : Scored {
     std::size_t step = 0;
@@ -58,7 +35,15 @@ struct Auroc {
 /// Frames of an episode are in one group. Sorts the frames and sets their `ordered`. Nothing where
 /// no group has frames of both classes.
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes);
-/// Where nothing is asked of a frame by itself, in less memory; the frames change their places.
-std::optional<Auroc> auroc(std::vector<std::vector<Scored>>& groups, std::size_t episodes);
+/// Which scores are the more likely positive.
+enum class Likely : std::uint8_t { greater, smaller };
+
+/// Of one group, where nothing is asked of a frame by itself: in memory of some 50 bytes an
+/// episode.
+std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Likely likely);
+
+/// In every resample the value; nothing where one of the classes is empty.
+std::vector<std::optional<double>> auroc(const std::vector<FramesByScore>& groups,
+                                         const Weights& weights);
 
 }  // namespace etlc::episodes

@@ -10,6 +10,7 @@
 #include <condition_variable>
 #include <exception>
 #include <functional>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <optional>
@@ -69,32 +70,52 @@ std::optional<std::vector<T>> over_episodes(const std::vector<std::string>& path
     return all;
 }
 
-/// The same, where what was made of an episode is too large to be kept: `take(i, result)` gets each
-/// in the order of the paths, never two at once, and no more than one a thread wait for their turn.
-/// False where an episode cannot be read: the sink then says why.
+/// The same, where what was made of all episodes is too much to be kept: `take(i, result)` gets
+/// each in the order of the paths, never two at once, and few wait for their turn. False where an
+/// episode cannot be read: the sink then says why.
 template <class T, class Request, class Make, class Take>
 bool in_order(const std::vector<std::string>& paths, const Request& request, diag::Sink& sink,
               Make make, Take take) {
+    constexpr std::size_t kMostWaiting = 8;
     std::atomic<std::size_t> next = 0;
     std::size_t turn = 0;
+    std::map<std::size_t, diag::Result<T>> waiting;
     std::mutex taking;
     std::condition_variable moved;
     std::vector<Fault> faults;
+    const auto take_next = [&] {
+        auto result = std::move(waiting.begin()->second);
+        waiting.erase(waiting.begin());
+        const auto taken = data::within_memory([&]() -> diag::Result<bool> {
+            if (!result) return result.failure();
+            take(turn, std::move(*result));
+            return true;
+        });
+        if (!taken) faults.push_back({paths[turn], taken.failure()});
+        ++turn;
+        if (request.progress) request.progress(turn, paths.size());
+    };
+    bool broken = false;  // nobody waits for a turn that does not come
+    const auto read = [&](auto& reader) {
+        for (std::size_t i = next++; i < paths.size(); i = next++) {
+            auto result = data::within_memory([&] { return reader.score(paths[i]); });
+            std::unique_lock lock(taking);
+            moved.wait(lock, [&] { return broken || turn == i || waiting.size() < kMostWaiting; });
+            if (broken) return;
+            waiting.emplace(i, std::move(result));
+            while (!waiting.empty() && waiting.begin()->first == turn) take_next();
+            moved.notify_all();
+        }
+    };
     const auto work = [&] {
         const auto reader = make();
-        for (std::size_t i = next++; i < paths.size(); i = next++) {
-            auto result = data::within_memory([&] { return reader->score(paths[i]); });
-            std::unique_lock lock(taking);
-            moved.wait(lock, [&] { return turn == i; });
-            auto taken = data::within_memory([&]() -> diag::Result<bool> {
-                if (!result) return result.failure();
-                take(i, std::move(*result));
-                return true;
-            });
-            ++turn;
+        try {
+            read(*reader);
+        } catch (...) {
+            const std::lock_guard lock(taking);
+            broken = true;
             moved.notify_all();
-            if (!taken) faults.push_back({paths[i], taken.failure()});
-            if (request.progress) request.progress(turn, paths.size());
+            throw;
         }
     };
     const std::exception_ptr failure = in_threads(request.jobs, paths.size(), work);

@@ -12,28 +12,42 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
+/// How many resamples of so many episodes are made at a time. With more than one there is less to
+/// read, and more than eight are needed for sums that keep a processor busy.
+std::size_t batch_of(std::size_t episodes) {
+    constexpr std::size_t kMemory = std::size_t{8} << 20U;
+    constexpr std::size_t kLeast = 8;
+    return std::clamp<std::size_t>(kMemory / (episodes * sizeof(Weights::Weight)), kLeast,
+                                   kResamples);
+}
+
 }  // namespace
 
-Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1) {}
+Bootstrap::Bootstrap(std::size_t episodes) : whole_(episodes, 1, 1) {}
 
-void Bootstrap::for_each_resample(const std::function<void(const Weights&)>& visit) const {
-    if (whole_.empty()) return;
+void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit) const {
+    const std::size_t episodes = whole_.episodes();
+    if (episodes == 0) return;
     episodes::Random random(kSeed);
-    Weights weights;
-    for (std::uint32_t resample = 0; resample < kResamples; ++resample) {
-        weights.assign(whole_.size(), 0);
-        for (std::size_t i = 0; i < whole_.size(); ++i) ++weights[random.below(whole_.size())];
+    const std::size_t batch = batch_of(episodes);
+    for (std::size_t begin = 0; begin < kResamples; begin += batch) {
+        Weights weights(episodes, std::min(batch, kResamples - begin), 0);
+        for (std::size_t r = 0; r < weights.resamples(); ++r)
+            for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)][r];
         visit(weights);
     }
 }
 
 Figure Bootstrap::figure(
-    const std::function<std::optional<double>(const Weights&)>& statistic) const {
-    Figure result{statistic(whole_), {}};
-    if (!result.value || whole_.size() < 2) return result;
+    const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const {
+    Figure result{statistic(whole_)[0], {}};
+    if (!result.value || whole_.episodes() < 2) return result;
     std::vector<std::optional<double>> values;
     values.reserve(kResamples);
-    for_each_resample([&](const Weights& weights) { values.push_back(statistic(weights)); });
+    for_each_batch([&](const Weights& weights) {
+        const auto some = statistic(weights);
+        values.insert(values.end(), some.begin(), some.end());
+    });
     result.interval = percentile_interval(values);
     return result;
 }

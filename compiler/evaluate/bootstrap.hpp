@@ -2,13 +2,15 @@
 // Takes: the number of episodes, and a statistic of how often each counts. Gives: the 2.5 %
 // and 97.5 % quantiles over kResamples draws with replacement (Efron's percentile interval). Keeps
 // true: the draws come from a fixed seed, so that the same data give the same interval, on every
-// machine and with any number of threads; memory is that of one draw.
+// machine and with any number of threads; memory is that of as many draws as fit 8 MB.
 #pragma once
 
 #include <cstdint>
 #include <functional>
 #include <optional>
 #include <vector>
+
+#include "episodes/weights.hpp"
 
 namespace etlc::evaluate {
 
@@ -25,18 +27,20 @@ struct Figure {
     std::optional<Interval> interval;
 };
 
-using Weights = std::vector<std::uint32_t>;  ///< per episode, how often it was drawn
+using episodes::Weights;
 
 class Bootstrap {
 public:
     explicit Bootstrap(std::size_t episodes);
 
-    /// Calls `visit` with each of the resamples, always the same ones in the same order.
-    void for_each_resample(const std::function<void(const Weights&)>& visit) const;
-    /// Every episode once.
+    /// Calls `visit` with all resamples, always the same ones in the same order, some at a time.
+    void for_each_batch(const std::function<void(const Weights&)>& visit) const;
+    /// One in which every episode counts once.
     const Weights& whole() const { return whole_; }
 
-    Figure figure(const std::function<std::optional<double>(const Weights&)>& statistic) const;
+    /// `statistic(weights)`: of each of their resamples, in order.
+    Figure figure(
+        const std::function<std::vector<std::optional<double>>(const Weights&)>& statistic) const;
 
 private:
     Weights whole_;

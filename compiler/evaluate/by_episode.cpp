@@ -25,13 +25,14 @@ void note(std::optional<EpisodeRow::Error>& first, const std::optional<std::uint
 }
 
 EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
-    const EpisodeResult& episode = judgement.episodes[e];
+    const std::uint32_t place = judgement.place[e];
+    const episodes::Recorded episode = judgement.episodes[place];
     EpisodeRow row;
     row.path = episode.path;
     if (!judgement.folds.empty()) row.fold = judgement.fold_of[e] + 1;
     row.frames = episode.frames;
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i) {
-        const PredicateEpisode& predicate = episode.predicates[i];
+        const PredicateEpisode predicate = judgement.predicates[i].episodes[place];
         const std::string& name = judgement.predicates[i].name;
         row.predicates.emplace_back(name, predicate.frames);
         row.claims.add(predicate.frames);
@@ -39,7 +40,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
     }
     const bool predicates_err = row.first_error.has_value();
     for (std::size_t m = 0; m < judgement.monitors.size(); ++m) {
-        const MonitorEpisode& monitor = episode.monitors[m];
+        const MonitorEpisode monitor = judgement.monitors[m].episodes[place];
         const std::string& name = judgement.monitors[m].name;
         if (is_wrong(monitor.episode)) row.wrong.push_back(name);
         if (judgement.predicates.empty()) row.claims.add(monitor.steps);
@@ -52,8 +53,7 @@ EpisodeRow row_of(const Judgement& judgement, std::size_t e) {
 
 std::vector<EpisodeRow> by_episode(const Judgement& judgement) {
     std::vector<EpisodeRow> rows;
-    for (std::size_t e = 0; e < judgement.episodes.size(); ++e)
-        rows.push_back(row_of(judgement, e));
+    for (std::size_t e = 0; e < judgement.place.size(); ++e) rows.push_back(row_of(judgement, e));
     std::stable_sort(rows.begin(), rows.end(), [](const EpisodeRow& a, const EpisodeRow& b) {
         return std::pair(a.wrong.size(), share_wrong(a.claims)) >
                std::pair(b.wrong.size(), share_wrong(b.claims));

@@ -1,5 +1,7 @@
 #include "evaluate/counts.hpp"
 
+#include <algorithm>
+
 namespace etlc::evaluate {
 
 namespace {
@@ -37,6 +39,26 @@ Rates rates(const Counts& c) {
     return {share(2 * hits, hits + c.false_positives + c.positives()),
             share(hits, hits + c.false_positives), share(hits, c.positives()),
             share(hits + c.true_negatives, c.total())};
+}
+
+std::vector<Rates> rates(const std::vector<Counts>& episodes, const episodes::Weights& weights) {
+    constexpr std::uint64_t Counts::*kCounts[] = {
+        &Counts::true_positives, &Counts::false_positives,  &Counts::false_negatives,
+        &Counts::true_negatives, &Counts::unsaid_positives, &Counts::unsaid_negatives};
+    std::vector<Rates> result(weights.resamples());
+    std::vector<Counts> sums(weights.resamples());
+    std::vector<std::uint64_t> sum(weights.resamples());
+    for (const auto count : kCounts) {
+        std::fill(sum.begin(), sum.end(), 0);
+        for (std::size_t e = 0; e < episodes.size(); ++e) {
+            const std::uint64_t own = episodes[e].*count;
+            if (own == 0) continue;
+            for (std::size_t r = 0; r < sum.size(); ++r) sum[r] += own * weights[e][r];
+        }
+        for (std::size_t r = 0; r < sum.size(); ++r) sums[r].*count = sum[r];
+    }
+    for (std::size_t r = 0; r < sums.size(); ++r) result[r] = rates(sums[r]);
+    return result;
 }
 
 Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total) {

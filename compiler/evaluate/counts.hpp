@@ -6,8 +6,10 @@
 
 #include <cstdint>
 #include <optional>
+#include <vector>
 
 #include "episodes/truth.hpp"
+#include "episodes/weights.hpp"
 
 namespace etlc::evaluate {
 
@@ -49,6 +51,8 @@ struct Rates {
 };
 
 Rates rates(const Counts& counts);
+/// Of the sum over all episodes, in each resample.
+std::vector<Rates> rates(const std::vector<Counts>& episodes, const episodes::Weights& weights);
 
 /// Of a claim that is the same every time, on data of which these are true and the rest is not.
 Rates rates_of_constant(bool claim, std::uint64_t positives, std::uint64_t total);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "episodes/auroc.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {
@@ -17,11 +18,15 @@ std::optional<std::size_t> find(const std::vector<Named>& all, const std::string
 }
 
 Figure less(const Bootstrap& bootstrap, const auto& second, const auto& first) {
-    return bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
-        const std::optional<double> a = first(weights);
-        const std::optional<double> b = second(weights);
-        if (!a || !b) return std::nullopt;
-        return *b - *a;
+    return bootstrap.figure([&](const Weights& weights) {
+        std::vector<std::optional<double>> result = second(weights);
+        const std::vector<std::optional<double>> before = first(weights);
+        for (std::size_t r = 0; r < result.size(); ++r)
+            if (result[r] && before[r])
+                *result[r] -= *before[r];
+            else
+                result[r].reset();
+        return result;
     });
 }
 
@@ -29,71 +34,70 @@ Figure less(const Bootstrap& bootstrap, const auto& second, const auto& first) {
 class Pair {
 public:
     Pair(const Judgement& first, const Judgement& second)
-        : first_(first), second_(second), bootstrap_(first.episodes.size()) {}
+        : first_(first), second_(second), bootstrap_(first.place.size()) {}
 
     Difference of_predicate(std::size_t a, std::size_t b) const {
-        const auto of = [](const EpisodeResult& e, std::size_t i) -> const PredicateEpisode& {
-            return e.predicates[i];
-        };
+        const Judgement::Predicate& first = first_.predicates[a];
+        const Judgement::Predicate& second = second_.predicates[b];
+        const auto counts = [](const PredicateEpisode& episode) { return episode.frames; };
         Difference result = compared(
-            a, b, [&](const auto& e, std::size_t i) -> const LabelRuns& { return of(e, i).truth; },
-            [&](const auto& e, std::size_t i) -> const Counts& { return of(e, i).frames; });
-        result.name = first_.predicates[a].name;
+            first.episodes, second.episodes,
+            [](const PredicateEpisode& x, const PredicateEpisode& y) { return x.truth == y.truth; },
+            counts);
+        result.name = first.name;
         result.level = "frames";
         if (result.other_truths > 0) return result;
-        const episodes::Ranking ranking_a = ranking_of(first_, a);
-        const episodes::Ranking ranking_b = ranking_of(second_, b);
         result.auroc = less(
-            bootstrap_, [&](const Weights& weights) { return ranking_b.auroc(weights); },
-            [&](const Weights& weights) { return ranking_a.auroc(weights); });
+            bootstrap_,
+            [&](const Weights& weights) { return episodes::auroc(second.frames, weights); },
+            [&](const Weights& weights) { return episodes::auroc(first.frames, weights); });
         return result;
     }
 
     std::vector<Difference> of_monitor(std::size_t a, std::size_t b) const {
-        const auto of = [](const EpisodeResult& e, std::size_t m) -> const MonitorEpisode& {
-            return e.monitors[m];
-        };
-        const auto whole = [&](const auto& e, std::size_t m) -> const Counts& {
-            return of(e, m).episode;
+        const Judgement::Monitor& first = first_.monitors[a];
+        const Judgement::Monitor& second = second_.monitors[b];
+        const auto same_outcome = [](const MonitorEpisode& x, const MonitorEpisode& y) {
+            return x.episode.positives() == y.episode.positives() &&
+                   x.episode.negatives() == y.episode.negatives();
         };
         std::vector<Difference> both = {
             compared(
-                a, b,
-                [&](const auto& e, std::size_t m) -> const LabelRuns& { return of(e, m).truth; },
-                [&](const auto& e, std::size_t m) -> const Counts& { return of(e, m).steps; }),
-            compared(
-                a, b,
-                [&](const auto& e, std::size_t m) {
-                    return std::pair(whole(e, m).positives(), whole(e, m).negatives());
-                },
-                whole)};
+                first.episodes, second.episodes,
+                [](const MonitorEpisode& x, const MonitorEpisode& y) { return x.truth == y.truth; },
+                [](const MonitorEpisode& episode) { return episode.steps; }),
+            compared(first.episodes, second.episodes, same_outcome,
+                     [](const MonitorEpisode& episode) { return episode.episode; })};
         both[0].level = "steps";
         both[1].level = "episodes";
         for (Difference& difference : both) {
             difference.of_monitor = true;
-            difference.name = first_.monitors[a].name;
+            difference.name = first.name;
         }
         return both;
     }
 
 private:
-    /// `a`, `b`: in the first and in the second. `truth(episode, index)`, `counts(episode, index)`.
-    Difference compared(std::size_t a, std::size_t b, const auto& truth, const auto& counts) const {
+    /// Of what the first and the second say. `same_truth(a, b)`, `counts(a)`: of an episode.
+    template <class T>
+    Difference compared(const data::Spool<T>& first, const data::Spool<T>& second,
+                        const auto& same_truth, const auto& counts) const {
         Difference result;
-        for (std::size_t e = 0; e < first_.episodes.size(); ++e)
+        for (std::size_t e = 0; e < first_.place.size(); ++e)
             result.other_truths +=
-                truth(first_.episodes[e], a) == truth(second_.episodes[e], b) ? 0 : 1;
+                same_truth(first[first_.place[e]], second[second_.place[e]]) ? 0 : 1;
         if (result.other_truths > 0) return result;
+        const std::vector<Counts> of_first = first_.each(first, counts);
+        const std::vector<Counts> of_second = second_.each(second, counts);
         const auto figure = [&](std::optional<double> Rates::*rate) {
-            const auto of = [&](const Judgement& judgement, std::size_t index) {
-                return [&judgement, &counts, index, rate](const Weights& weights) {
-                    Counts sum;
-                    for (std::size_t e = 0; e < weights.size(); ++e)
-                        sum.add(counts(judgement.episodes[e], index), weights[e]);
-                    return rates(sum).*rate;
+            const auto of = [rate](const std::vector<Counts>& each) {
+                return [&each, rate](const Weights& weights) {
+                    std::vector<std::optional<double>> values;
+                    for (const Rates& one : rates(each, weights)) values.push_back(one.*rate);
+                    return values;
                 };
             };
-            return less(bootstrap_, of(second_, b), of(first_, a));
+            return less(bootstrap_, of(of_second), of(of_first));
         };
         result.f1 = figure(&Rates::f1);
         result.precision = figure(&Rates::precision);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace etlc::evaluate {
@@ -46,14 +47,14 @@ struct Cell {
 /// The numbers at which the label of some episode changes, and the labels in between.
 class Cells {
 public:
-    explicit Cells(const std::vector<LabelRuns>& episodes) {
-        for (const LabelRuns& episode : episodes)
-            for (const LabelRuns::Run& run : episode.runs())
-                borders_.insert(borders_.end(), {run.begin, run.end});
-        std::sort(borders_.begin(), borders_.end());
-        borders_.erase(std::unique(borders_.begin(), borders_.end()), borders_.end());
+    explicit Cells(const EachEpisode& episodes) {
+        std::set<std::uint64_t> borders;
+        episodes([&](const LabelRuns& episode) {
+            for (const LabelRuns::Run& run : episode.runs()) borders.insert({run.begin, run.end});
+        });
+        borders_.assign(borders.begin(), borders.end());
         cells_.resize(borders_.empty() ? 0 : borders_.size() - 1);
-        for (const LabelRuns& episode : episodes) count(episode, true);
+        episodes([&](const LabelRuns& episode) { count(episode, true); });
     }
 
     /// Adds an episode's labels, or takes them away.
@@ -145,17 +146,19 @@ void LabelRuns::add(Label label) {
     ++next_;
 }
 
-std::optional<Counts> judged_by_duration(const std::vector<LabelRuns>& episodes) {
+std::optional<Counts> judged_by_duration(const EachEpisode& episodes) {
     Cells cells(episodes);
     Counts counts;
-    for (const LabelRuns& episode : episodes) {
+    bool has_rules = true;
+    episodes([&](const LabelRuns& episode) {
+        if (!has_rules) return;
         cells.count(episode, false);
         const auto rule = cells.best();
         cells.count(episode, true);
-        if (!rule) return std::nullopt;
-        judge(episode, *rule, counts);
-    }
-    if (counts.total() == 0) return std::nullopt;
+        has_rules = rule.has_value();
+        if (rule) judge(episode, *rule, counts);
+    });
+    if (!has_rules || counts.total() == 0) return std::nullopt;
     return counts;
 }
 

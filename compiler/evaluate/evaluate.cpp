@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <memory>
+#include <utility>
 
 #include "data/files/file.hpp"
 #include "episodes/admission.hpp"
@@ -13,18 +14,22 @@ namespace etlc::evaluate {
 namespace {
 
 /// At distance 0 a frame is easier to tell than any that is not a target.
-void warn_of_leaks(const check::Model& model, const std::vector<EpisodeResult>& episodes,
-                   const Request& request, diag::Sink& sink) {
-    const auto first = std::find_if(episodes.begin(), episodes.end(),
-                                    [](const EpisodeResult& episode) { return episode.leak; });
-    if (first == episodes.end()) return;
-    const auto leaked = std::count_if(first, episodes.end(),
-                                      [](const EpisodeResult& episode) { return episode.leak; });
-    auto& warning = sink.report(
-        data::in_file({diag::Code::target_in_evaluation, episodes::text(model, *first->leak)},
-                      request.episodes[static_cast<std::size_t>(first - episodes.begin())]));
+void warn_of_leaks(const check::Model& model, const Judgement& judgement, const Request& request,
+                   diag::Sink& sink) {
+    std::optional<std::size_t> first;
+    std::uint64_t leaked = 0;
+    judgement.for_each(judgement.episodes, [&](std::size_t e, const episodes::Recorded& episode) {
+        if (!episode.leak) return;
+        if (!first) first = e;
+        ++leaked;
+    });
+    if (!first) return;
+    const auto leak = judgement.episodes[judgement.place[*first]].leak;
+    auto& warning =
+        sink.report(data::in_file({diag::Code::target_in_evaluation, episodes::text(model, *leak)},
+                                  request.episodes[*first]));
     warning.note(fmt::format("{} of {} {} such a frame: the figures are better than on others",
-                             leaked, diag::counted(episodes.size(), "episode"),
+                             leaked, diag::counted(judgement.place.size(), "episode"),
                              leaked == 1 ? "has" : "have"));
     warning.note("targets have to come from other recordings");
 }
@@ -53,14 +58,18 @@ std::vector<std::pair<std::string, float>> calibrated_in(const check::Model& mod
 }
 
 /// Empty, and by name what it will be about.
-Judgement judgement_of(const check::Model& model, const Subject& subject, std::size_t episodes) {
+Judgement judgement_of(const check::Model& model, const Subject& subject, std::size_t episodes,
+                       std::size_t folds) {
     Judgement result;
     result.step_seconds = model.step_seconds;
-    result.episodes.resize(episodes);
+    result.place.resize(episodes);
     result.fold_of.resize(episodes);
-    for (const Index p : subject.labelled)
-        result.predicates.push_back(
-            {model.predicates[p].name, model.predicates[p].threshold.adaptation.has_value()});
+    for (const Index p : subject.labelled) {
+        auto& named = result.predicates.emplace_back();
+        named.name = model.predicates[p].name;
+        named.adaptive = model.predicates[p].threshold.adaptation.has_value();
+        named.frames.resize(folds);
+    }
     for (const MonitorSubject& monitor : subject.monitors) {
         auto& named = result.monitors.emplace_back();
         named.name = model.monitors[monitor.monitor].name;
@@ -70,18 +79,42 @@ Judgement judgement_of(const check::Model& model, const Subject& subject, std::s
     return result;
 }
 
-std::optional<std::vector<EpisodeResult>> scored(const Trial& trial, const Subject& subject,
-                                                 const Request& request, diag::Sink& sink) {
+/// Takes an episode of the request, of fold `fold`, into what is said of all.
+void add(EpisodeResult result, std::size_t episode, std::size_t fold, Judgement& judgement) {
+    judgement.place[episode] = static_cast<std::uint32_t>(judgement.episodes.size());
+    judgement.fold_of[episode] = static_cast<std::uint32_t>(fold);
+    judgement.episodes.add(result);
+    for (std::size_t i = 0; i < judgement.predicates.size(); ++i) {
+        Judgement::Predicate& predicate = judgement.predicates[i];
+        for (episodes::Scored frame : std::exchange(result.predicates[i].scored, {})) {
+            frame.episode = static_cast<std::uint32_t>(episode);
+            predicate.frames[fold].add(frame);
+        }
+        predicate.episodes.add(result.predicates[i]);
+    }
+    for (std::size_t m = 0; m < judgement.monitors.size(); ++m)
+        judgement.monitors[m].episodes.add(result.monitors[m]);
+}
+
+/// Scores the episodes of a trial. `own`: what tells them apart. False where not all were scored.
+bool score(const Trial& trial, std::size_t fold, const Subject& subject, const Request& request,
+           Judgement& judgement, episodes::Identities& own, diag::Sink& sink) {
     const auto truth =
         pipeline::compile(subject.truth.model, {request.limits, check::Values::boolean}, sink);
-    if (!truth) return std::nullopt;
+    if (!truth) return false;
     std::vector<std::string> paths;
     for (const std::size_t e : trial.episodes) paths.push_back(request.episodes[e]);
     const episodes::Leaks leaks(*trial.spec.model, subject.labelled);
-    return episodes::over_shared_episodes<EpisodeResult>(paths, request, sink, [&] {
-        return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
-                                               request.names);
-    });
+    return episodes::over_shared_episodes<EpisodeResult>(
+        paths, request, sink,
+        [&] {
+            return std::make_unique<EpisodeScorer>(trial.spec.plan, truth->plan, subject, leaks,
+                                                   request.names);
+        },
+        [&](std::size_t i, EpisodeResult result) {
+            if (trial.seen || !trial.fitted.episodes.empty()) own.add(result);
+            add(std::move(result), trial.episodes[i], fold, judgement);
+        });
 }
 
 }  // namespace
@@ -91,18 +124,19 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
     const check::Model& first = *trials[0].spec.model;
     const auto labelled = episodes::labelled_in_first(first, request, sink);
     if (!labelled) return std::nullopt;
-    Judgement result = judgement_of(first, subject(first, *labelled), request.episodes.size());
+    Judgement result =
+        judgement_of(first, subject(first, *labelled), request.episodes.size(), trials.size());
     if (!refuse_without_truth(first, subject(first, *labelled), sink)) return std::nullopt;
     for (std::size_t t = 0; t < trials.size(); ++t) {
         const Trial& trial = trials[t];
         const check::Model& model = *trial.spec.model;
-        auto episodes = scored(trial, subject(model, *labelled), request, sink);
-        if (!episodes) return std::nullopt;
+        episodes::Identities own;
+        if (!score(trial, t, subject(model, *labelled), request, result, own, sink))
+            return std::nullopt;
         thresholds::Allowance allowance;
         const bool has_seen = trial.seen || !trial.fitted.episodes.empty();
         if (has_seen)
-            allowance = episodes::admit_unseen(episodes::recorded(*episodes),
-                                               trial.seen.value_or(thresholds::File{}),
+            allowance = episodes::admit_unseen(own, trial.seen.value_or(thresholds::File{}),
                                                trial.fitted, request.allow_overlap, sink);
         if (trials.size() > 1) {
             result.folds.push_back({trial.episodes.size(), calibrated_in(model)});
@@ -111,13 +145,9 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
             if (allowance.overlapping > 0)
                 result.reservations.push_back(thresholds::text(allowance));
         }
-        for (std::size_t i = 0; i < trial.episodes.size(); ++i) {
-            result.episodes[trial.episodes[i]] = std::move((*episodes)[i]);
-            result.fold_of[trial.episodes[i]] = static_cast<std::uint32_t>(t);
-        }
     }
     if (sink.has_errors()) return std::nullopt;
-    warn_of_leaks(first, result.episodes, request, sink);
+    warn_of_leaks(first, result, request, sink);
     return result;
 }
 

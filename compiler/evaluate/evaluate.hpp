@@ -10,10 +10,13 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
+#include "episodes/frames_by_score.hpp"
 #include "episodes/shared/sharing.hpp"
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/by_episode.hpp"
@@ -49,16 +52,20 @@ struct Request {
     episodes::Sharing* sharing = nullptr;
 };
 
-/// What a spec said of the episodes, and what was true.
+/// What a spec said of the episodes, and what was true. Little of it is in memory, however many
+/// there are.
 struct Judgement {
     struct Predicate {
         std::string name;
         bool adaptive = false;
+        data::Spool<PredicateEpisode> episodes{};       ///< without their frames
+        std::vector<episodes::FramesByScore> frames{};  ///< of each fold; of one, where none are
     };
     struct Monitor {
         std::string name;
         std::vector<std::string> lacking;  ///< predicates without truth
         bool sequential = false;
+        data::Spool<MonitorEpisode> episodes{};
     };
     /// What was held out, and the thresholds of the rest by what they are of; of one fold nothing.
     struct Fold {
@@ -67,11 +74,25 @@ struct Judgement {
     };
     std::vector<Predicate> predicates;  ///< those with labels
     std::vector<Monitor> monitors;
-    std::vector<EpisodeResult> episodes;    ///< in the order of the request
-    std::vector<std::uint32_t> fold_of;     ///< per episode
+    episodes::Identities episodes;          ///< this, and those of predicates and monitors, by fold
+    std::vector<std::uint32_t> place;       ///< in them, per episode of the request
+    std::vector<std::uint32_t> fold_of;     ///< per episode of the request
     std::vector<Fold> folds;                ///< empty: no spec was made for a fold
     double step_seconds = 0;                ///< 0: the spec has no rate
     std::vector<std::string> reservations;  ///< what was passed over, in words
+
+    /// Calls `visit(e, item)` for the item of each episode, in the order of the request.
+    template <class T, class Visit>
+    void for_each(const data::Spool<T>& of, const Visit& visit) const {
+        for (std::size_t e = 0; e < place.size(); ++e) visit(e, of[place[e]]);
+    }
+    /// `get(item)` of each.
+    template <class T, class Get>
+    auto each(const data::Spool<T>& of, const Get& get) const {
+        std::vector<std::decay_t<decltype(get(std::declval<const T&>()))>> all;
+        for_each(of, [&](std::size_t, const T& item) { all.push_back(get(item)); });
+        return all;
+    }
 };
 
 /// Counts of claims, with intervals over episodes.
@@ -133,9 +154,6 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
                                diag::Sink& sink);
 
 Evaluation summarise(const Judgement& judgement);
-
-/// By what this predicate measured, all labelled frames.
-episodes::Ranking ranking_of(const Judgement& judgement, std::size_t predicate);
 
 /// Specs on the same episodes.
 struct SideBySide {

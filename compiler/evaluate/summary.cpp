@@ -1,6 +1,8 @@
 // From what was said and what was true of every episode to figures with intervals.
 #include <algorithm>
+#include <functional>
 
+#include "episodes/auroc.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {
@@ -9,15 +11,13 @@ namespace {
 
 /// `each`: of every episode; `truths`: by the number that is its duration, or its step's.
 Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
-            const std::vector<LabelRuns>& truths) {
-    const auto sum = [&](const Weights& weights) {
-        Counts counts;
-        for (std::size_t e = 0; e < each.size(); ++e) counts.add(each[e], weights[e]);
-        return rates(counts);
-    };
-    const Rates whole = sum(bootstrap.whole());
+            const EachEpisode& truths) {
+    const Rates whole = rates(each, bootstrap.whole())[0];
     std::vector<Rates> resampled;
-    bootstrap.for_each_resample([&](const Weights& weights) { resampled.push_back(sum(weights)); });
+    bootstrap.for_each_batch([&](const Weights& weights) {
+        const auto some = rates(each, weights);
+        resampled.insert(resampled.end(), some.begin(), some.end());
+    });
     const auto figure = [&](std::optional<double> Rates::*rate) {
         Figure result{whole.*rate, {}};
         if (!result.value || each.size() < 2) return result;
@@ -38,126 +38,129 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
 }
 
 /// What was true of whole episodes, by their lengths.
-std::vector<LabelRuns> by_length(const std::vector<EpisodeResult>& episodes,
-                                 const std::vector<Counts>& each) {
-    std::vector<LabelRuns> truths;
+EachEpisode by_length(const Judgement& judgement, const std::vector<Counts>& each) {
+    return [&](const std::function<void(const LabelRuns&)>& visit) {
+        judgement.for_each(judgement.episodes,
+                           [&](std::size_t e, const episodes::Recorded& episode) {
+                               LabelRuns truth(episode.frames);
+                               if (each[e].total() > 0)
+                                   truth.add(each[e].positives() > 0 ? Label::yes : Label::no);
+                               visit(truth);
+                           });
+    };
+}
+
+/// What was true of frames or steps.
+template <class T>
+EachEpisode truths(const Judgement& judgement, const data::Spool<T>& of) {
+    return [&](const std::function<void(const LabelRuns&)>& visit) {
+        judgement.for_each(of, [&](std::size_t, const T& item) { visit(item.truth); });
+    };
+}
+
+/// What an episode adds to a sum, and to what it is divided by.
+struct Part {
+    std::int64_t part = 0;
+    std::uint64_t whole = 0;
+};
+
+/// The part of the whole, in each resample. Nothing where there is no whole.
+std::vector<std::optional<double>> shares(const std::vector<Part>& episodes,
+                                          const Weights& weights) {
+    std::vector<std::int64_t> parts(weights.resamples());
+    std::vector<std::uint64_t> wholes(weights.resamples());
     for (std::size_t e = 0; e < episodes.size(); ++e) {
-        truths.emplace_back(episodes[e].frames);
-        if (each[e].total() > 0) truths[e].add(each[e].positives() > 0 ? Label::yes : Label::no);
+        const auto [part, whole] = episodes[e];
+        if (whole == 0) continue;
+        for (std::size_t r = 0; r < parts.size(); ++r) {
+            parts[r] += part * weights[e][r];
+            wholes[r] += whole * weights[e][r];
+        }
     }
-    return truths;
+    std::vector<std::optional<double>> result(parts.size());
+    for (std::size_t r = 0; r < parts.size(); ++r)
+        if (wholes[r] > 0)
+            result[r] = static_cast<double>(parts[r]) / static_cast<double>(wholes[r]);
+    return result;
 }
 
-/// `get(episode)` of every episode.
-template <class Get>
-auto of_each(const std::vector<EpisodeResult>& episodes, const Get& get) {
-    std::vector<decltype(get(episodes[0]))> all;
-    for (const EpisodeResult& episode : episodes) all.push_back(get(episode));
-    return all;
+Figure share(const Bootstrap& bootstrap, const std::vector<Part>& episodes) {
+    return bootstrap.figure([&](const Weights& weights) { return shares(episodes, weights); });
 }
 
-Detection detection(const Bootstrap& bootstrap, const std::vector<EpisodeResult>& episodes,
-                    std::size_t monitor) {
+Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<Turn>>& turns) {
     Detection result;
     std::vector<std::int64_t> delays;
-    for (const EpisodeResult& episode : episodes) {
-        const auto& turn = episode.monitors[monitor].turn;
+    std::vector<Part> detected(turns.size());
+    for (std::size_t e = 0; e < turns.size(); ++e) {
+        const auto& turn = turns[e];
         if (!turn) continue;
         ++result.turns;
         result.missed += turn->delay ? 0 : 1;
         result.early += turn->delay && *turn->delay < 0 ? 1 : 0;
-        if (turn->delay) delays.push_back(*turn->delay);
+        if (!turn->delay) continue;
+        delays.push_back(*turn->delay);
+        detected[e] = {*turn->delay, 1};
     }
     if (delays.empty()) return result;
     std::sort(delays.begin(), delays.end());
     const std::size_t n = delays.size();
     result.median = static_cast<double>(delays[(n - 1) / 2] + delays[n / 2]) / 2;
-    result.mean = bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
-        std::int64_t sum = 0;
-        std::int64_t count = 0;
-        for (std::size_t e = 0; e < episodes.size(); ++e) {
-            const auto& turn = episodes[e].monitors[monitor].turn;
-            if (!turn || !turn->delay) continue;
-            sum += weights[e] * *turn->delay;
-            count += weights[e];
-        }
-        if (count == 0) return std::nullopt;
-        return static_cast<double>(sum) / static_cast<double>(count);
-    });
+    result.mean = share(bootstrap, detected);
     return result;
 }
 
 /// Of the episodes with a positive frame, those of which none is missed: what conformal calibration
 /// promises with P >= 1 - alpha.
 Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
-    return bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
-        std::uint64_t with_positives = 0;
-        std::uint64_t covered = 0;
-        for (std::size_t e = 0; e < each.size(); ++e) {
-            if (each[e].positives() == 0) continue;
-            with_positives += weights[e];
-            covered += each[e].true_positives == each[e].positives() ? weights[e] : 0;
-        }
-        if (with_positives == 0) return std::nullopt;
-        return static_cast<double>(covered) / static_cast<double>(with_positives);
-    });
+    std::vector<Part> covered;
+    for (const Counts& counts : each)
+        covered.push_back({counts.true_positives == counts.positives() ? 1 : 0,
+                           counts.positives() > 0 ? std::uint64_t{1} : 0});
+    return share(bootstrap, covered);
 }
 
 PredicateScore predicate_score(const Bootstrap& bootstrap, const Judgement& judgement,
                                std::size_t i) {
-    const auto& episodes = judgement.episodes;
-    const auto counts =
-        of_each(episodes, [&](const EpisodeResult& e) { return e.predicates[i].frames; });
+    const Judgement::Predicate& predicate = judgement.predicates[i];
     PredicateScore result;
-    result.name = judgement.predicates[i].name;
-    result.adaptive = judgement.predicates[i].adaptive;
-    result.frames =
-        score(bootstrap, counts,
-              of_each(episodes, [&](const EpisodeResult& e) { return e.predicates[i].truth; }));
-    for (const EpisodeResult& episode : episodes) {
-        result.unmeasured += episode.predicates[i].unmeasured;
-        result.arrays += episode.predicates[i].from_array ? 1 : 0;
-    }
+    result.name = predicate.name;
+    result.adaptive = predicate.adaptive;
+    std::vector<Counts> counts;
+    judgement.for_each(predicate.episodes, [&](std::size_t, const PredicateEpisode& episode) {
+        counts.push_back(episode.frames);
+        result.unmeasured += episode.unmeasured;
+        result.arrays += episode.from_array ? 1 : 0;
+    });
+    result.frames = score(bootstrap, counts, truths(judgement, predicate.episodes));
     result.coverage = coverage(bootstrap, counts);
-    const episodes::Ranking ranking = ranking_of(judgement, i);
-    result.auroc = bootstrap.figure([&](const Weights& weights) { return ranking.auroc(weights); });
+    result.auroc = bootstrap.figure(
+        [&](const Weights& weights) { return episodes::auroc(predicate.frames, weights); });
     return result;
 }
 
 MonitorScore monitor_score(const Bootstrap& bootstrap, const Judgement& judgement, std::size_t m) {
-    const auto& episodes = judgement.episodes;
+    const Judgement::Monitor& monitor = judgement.monitors[m];
     MonitorScore result;
-    result.name = judgement.monitors[m].name;
-    result.lacking = judgement.monitors[m].lacking;
+    result.name = monitor.name;
+    result.lacking = monitor.lacking;
     if (!result.lacking.empty()) return result;
-    const auto of_monitor = [&](const auto& get) {
-        return of_each(episodes, [&](const EpisodeResult& e) { return get(e.monitors[m]); });
+    const auto of_each = [&](const auto& get) { return judgement.each(monitor.episodes, get); };
+    const auto judged = [&](const std::vector<Counts>& each) {
+        return score(bootstrap, each, by_length(judgement, each));
     };
-    const auto steps = of_monitor([](const MonitorEpisode& e) { return e.steps; });
-    const auto whole = of_monitor([](const MonitorEpisode& e) { return e.episode; });
-    const auto in_order =
-        of_monitor([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); });
-    result.steps =
-        score(bootstrap, steps, of_monitor([](const MonitorEpisode& e) { return e.truth; }));
-    result.episodes = score(bootstrap, whole, by_length(episodes, whole));
-    result.detection = detection(bootstrap, episodes, m);
-    if (judgement.monitors[m].sequential)
-        result.ordering = score(bootstrap, in_order, by_length(episodes, in_order));
+    result.steps = score(bootstrap, of_each([](const MonitorEpisode& e) { return e.steps; }),
+                         truths(judgement, monitor.episodes));
+    result.episodes = judged(of_each([](const MonitorEpisode& e) { return e.episode; }));
+    result.detection =
+        detection(bootstrap, of_each([](const MonitorEpisode& e) { return e.turn; }));
+    if (monitor.sequential)
+        result.ordering =
+            judged(of_each([](const MonitorEpisode& e) { return e.ordering.value_or(Counts{}); }));
     return result;
 }
 
 }  // namespace
-
-episodes::Ranking ranking_of(const Judgement& judgement, std::size_t predicate) {
-    std::vector<episodes::Scored> frames;
-    for (std::uint32_t e = 0; e < judgement.episodes.size(); ++e) {
-        for (episodes::Scored frame : judgement.episodes[e].predicates[predicate].scored) {
-            frame.episode = e;
-            frames.push_back(frame);
-        }
-    }
-    return episodes::Ranking(std::move(frames), judgement.fold_of);
-}
 
 Evaluation summarise(const Judgement& judgement) {
     Evaluation result;
@@ -166,14 +169,14 @@ Evaluation summarise(const Judgement& judgement) {
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
     data::Recordings earlier;
-    for (const EpisodeResult& episode : judgement.episodes) {
+    judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
         result.frames += episode.frames;
         const auto overlap = earlier.find(episode.content);
         earlier.add(episode.content);
         result.repeated += overlap && overlap->equal ? 1 : 0;
         result.overlapping += overlap && !overlap->equal ? 1 : 0;
         result.leaked += episode.leak ? 1 : 0;
-    }
+    });
     const Bootstrap bootstrap(judgement.episodes.size());
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i)
         result.predicates.push_back(predicate_score(bootstrap, judgement, i));

@@ -4,6 +4,8 @@
 #include <new>
 #include <stdexcept>
 
+#include "data/spill/file.hpp"
+
 namespace etlc::library {
 
 namespace {
@@ -40,6 +42,13 @@ etlc_status Message::say_what_failed() noexcept {
     } catch (const std::length_error&) {
         text_ = "there is not enough memory for this";
         return ETLC_OUT_OF_MEMORY;
+    } catch (const data::SpillError& error) {
+        try {
+            return say(ETLC_OUT_OF_MEMORY, "{}", error.what());
+        } catch (...) {
+            text_ = "there is not enough memory for this";
+            return ETLC_OUT_OF_MEMORY;
+        }
     } catch (const std::exception& error) {
         try {
             return say(ETLC_INTERNAL, "internal error: {}", error.what());

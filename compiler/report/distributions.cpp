@@ -12,13 +12,15 @@ constexpr double kPicture = 256;  ///< parts of a side of the curves' picture
 
 using episodes::Scored;
 
+/// The greatest scores first.
 std::vector<Scored> finite_frames(const evaluate::Judgement& judgement, std::size_t i) {
     std::vector<Scored> frames;
-    for (const evaluate::EpisodeResult& episode : judgement.episodes)
-        for (const Scored& frame : episode.predicates[i].scored)
+    for (const episodes::FramesByScore& fold : judgement.predicates[i].frames)
+        fold.for_each([&](const Scored& frame) {
             if (std::isfinite(frame.score)) frames.push_back(frame);
-    std::sort(frames.begin(), frames.end(),
-              [](const Scored& a, const Scored& b) { return a.score > b.score; });
+        });
+    std::stable_sort(frames.begin(), frames.end(),
+                     [](const Scored& a, const Scored& b) { return a.score > b.score; });
     return frames;
 }
 

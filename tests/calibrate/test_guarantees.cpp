@@ -136,13 +136,13 @@ Episode random_episode(Random& random) {
     return episode;
 }
 
-calibrate::Demonstration score(const Episode& episode) {
-    calibrate::Demonstration result;
-    result.scores.resize(2);
+/// Per predicate.
+std::vector<calibrate::Scores> score(const Episode& episode) {
+    std::vector<calibrate::Scores> result(2);
     for (int t = 0; t < kSteps; ++t)
         for (std::size_t p = 0; p < 2; ++p) {
             if (!(p == 0 ? episode.a : episode.b)[static_cast<std::size_t>(t)]) continue;
-            calibrate::Scores& scores = result.scores[p];
+            calibrate::Scores& scores = result[p];
             const float delta = episode.samples[static_cast<std::size_t>(t)][p].values[0];
             const auto reach = static_cast<double>(delta);
             scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
@@ -183,13 +183,15 @@ TEST(Claims, AreTrueOfDrawnEpisodes) {
     std::vector<int> missed_alarm(model.monitors.size());
     int draws = 0;
     for (int draw = 0; draw < kDraws; ++draw) {
-        std::vector<calibrate::Demonstration> demonstrations;
-        for (int i = 0; i < kDemonstrations; ++i)
-            demonstrations.push_back(score(random_episode(random)));
+        calibrate::Evidence evidence[2];
+        for (int i = 0; i < kDemonstrations; ++i) {
+            const std::vector<calibrate::Scores> scores = score(random_episode(random));
+            for (const Index p : {0U, 1U}) evidence[p].add(scores[p]);
+        }
         const Episode test = random_episode(random);
         bool fitted = true;
         for (const Index p : {0U, 1U}) {
-            const auto fit = calibrate::fit(model.predicates[p], demonstrations, p);
+            const auto fit = calibrate::fit(model.predicates[p], evidence[p]);
             if (const auto* found = std::get_if<calibrate::Fitted>(&fit))
                 model.predicates[p].threshold.value = found->epsilon;
             else

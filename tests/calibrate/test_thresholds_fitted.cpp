@@ -19,7 +19,6 @@
 namespace etlc::tests {
 namespace {
 
-using calibrate::Demonstration;
 using calibrate::Fitted;
 using calibrate::Refusal;
 using calibrate::Scores;
@@ -45,8 +44,8 @@ check::Model model_of(const std::string& comparison, const std::string& threshol
 
 /// What scoring these episodes gives, scalars being exact; by the definitions of
 /// docs/calibration.md.
-std::vector<Demonstration> demonstrations(const std::vector<Episode>& episodes, bool upper) {
-    std::vector<Demonstration> result;
+calibrate::Evidence evidence(const std::vector<Episode>& episodes, bool upper) {
+    calibrate::Evidence result;
     for (const Episode& episode : episodes) {
         Scores scores;
         for (const Frame& frame : episode) {
@@ -58,8 +57,7 @@ std::vector<Demonstration> demonstrations(const std::vector<Episode>& episodes, 
             scores.worst_reach = scores.has_score ? std::max(scores.worst_reach, reach) : reach;
             scores.has_score = true;
         }
-        result.emplace_back();
-        result.back().scores.push_back(std::move(scores));
+        result.add(scores);
     }
     return result;
 }
@@ -107,8 +105,7 @@ TEST(Fitted, RanksAsBruteForceDoes) {
                 const auto count = scores.size();
                 const std::size_t k =
                     ((100 - static_cast<std::size_t>(percent)) * (count + 1) + 99) / 100;
-                const auto fit =
-                    calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+                const auto fit = calibrate::fit(model.predicates[0], evidence(episodes, upper));
                 if (count == 0 || k > count) {
                     ASSERT_EQ(std::get<Refusal>(fit),
                               count == 0 ? Refusal::no_positives : Refusal::too_few);
@@ -153,9 +150,9 @@ TEST(Fitted, AdaptiveOnesStartAtTheConformalThreshold) {
         const auto adaptive = model_of(
             comparison, "calibrated(adaptive, alpha = 0.2, gamma = 0.1, lo = -1.5, hi = 1.5)");
         for (int n = 1; n <= 200; ++n) {
-            const auto all = demonstrations(random_episodes(random, n), upper);
-            const auto expected = calibrate::fit(conformal.predicates[0], all, 0);
-            const auto fit = calibrate::fit(adaptive.predicates[0], all, 0);
+            const auto all = evidence(random_episodes(random, n), upper);
+            const auto expected = calibrate::fit(conformal.predicates[0], all);
+            const auto fit = calibrate::fit(adaptive.predicates[0], all);
             if (const auto* refusal = std::get_if<Refusal>(&expected)) {
                 ASSERT_EQ(std::get<Refusal>(fit), *refusal);
                 continue;
@@ -229,8 +226,7 @@ TEST(Fitted, F1AsBruteForceDoes) {
                     }
                 }
             }
-            const auto fit =
-                calibrate::fit(model.predicates[0], demonstrations(episodes, upper), 0);
+            const auto fit = calibrate::fit(model.predicates[0], evidence(episodes, upper));
             if (best == 0) {
                 ASSERT_EQ(std::get<Refusal>(fit),
                           any_positive ? Refusal::no_f1 : Refusal::no_positives);
@@ -258,7 +254,7 @@ TEST(Fitted, F1IsHalfwayToTheNextValue) {
     const auto fit = [](const std::string& comparison, const Episode& frames) {
         const auto model = model_of(comparison, "calibrated(f1)");
         return std::get<Fitted>(
-            calibrate::fit(model.predicates[0], demonstrations({frames}, comparison[0] == '<'), 0));
+            calibrate::fit(model.predicates[0], evidence({frames}, comparison[0] == '<')));
     };
     const Episode apart{{1, true}, {1.5F, true}, {9, false}, {9.5F, false}};
     EXPECT_EQ(fit("<=", apart).epsilon, 5.25F);
@@ -285,8 +281,7 @@ TEST(Fitted, F1IsHalfwayToTheNextValue) {
 TEST(Fitted, InfiniteScoresAreRefused) {
     const auto model = model_of("<=", "calibrated(conformal, alpha = 0.5)");
     const auto fit = [&](float last) {
-        return calibrate::fit(model.predicates[0],
-                              demonstrations({{{1, true}}, {{last, true}}}, true), 0);
+        return calibrate::fit(model.predicates[0], evidence({{{1, true}}, {{last, true}}}, true));
     };
     EXPECT_EQ(std::get<Refusal>(fit(kInfinity)), Refusal::not_finite);
     EXPECT_EQ(std::get<Refusal>(fit(FLT_MAX)), Refusal::not_finite);  // no float32 beyond it

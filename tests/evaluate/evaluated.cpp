@@ -64,10 +64,10 @@ check::Model model_of(const std::string& spec) {
 evaluate::Judgement judged(const std::string& spec, const std::vector<std::string>& episodes,
                            unsigned jobs) {
     diag::Sink sink;
-    const auto result = run(spec, episodes, jobs, sink);
+    auto result = run(spec, episodes, jobs, sink);
     for (const diag::Diagnostic& finding : sink.sorted())
         EXPECT_EQ(finding.severity(), diag::Severity::warning) << finding.message;
-    return result ? *result : evaluate::Judgement{};
+    return result ? std::move(*result) : evaluate::Judgement{};
 }
 
 evaluate::Evaluation evaluated(const std::string& spec, const std::vector<std::string>& episodes,

@@ -123,8 +123,8 @@ TEST(Folds, AreDealtByContentAlone) {
         episodes[e].hash = fmt::format("{:016x}", random());
     }
     const auto deal = [&](const std::vector<std::size_t>& order) {
-        std::vector<const episodes::Recorded*> in_order;
-        for (const std::size_t e : order) in_order.push_back(&episodes[e]);
+        episodes::Identities in_order;
+        for (const std::size_t e : order) in_order.add(episodes[e]);
         const auto folds = episodes::folds_of(in_order, 5);
         std::vector<std::uint32_t> by_episode(order.size());
         for (std::size_t i = 0; i < order.size(); ++i) by_episode[order[i]] = folds[i];

@@ -28,6 +28,12 @@ LabelRuns whole(std::uint64_t length, char is) {
     return runs;
 }
 
+std::optional<Counts> judged(const std::vector<LabelRuns>& episodes) {
+    return judged_by_duration([&](const std::function<void(const LabelRuns&)>& visit) {
+        for (const LabelRuns& episode : episodes) visit(episode);
+    });
+}
+
 struct Right {
     std::uint64_t positives = 0;
     std::uint64_t negatives = 0;
@@ -36,7 +42,7 @@ struct Right {
 
 /// How many of the true labels, and of the false ones, the duration gets right.
 std::optional<Right> right(const std::vector<LabelRuns>& episodes) {
-    const auto counts = judged_by_duration(episodes);
+    const auto counts = judged(episodes);
     if (!counts) return std::nullopt;
     return Right{counts->true_positives, counts->true_negatives};
 }
@@ -72,7 +78,7 @@ TEST(Duration, IsAlwaysTrueOrFalseWhereNoThresholdIsBetter) {
 }
 
 TEST(Duration, LeavesOutWhatIsNotKnown) {
-    const auto counts = judged_by_duration({steps("n?yy"), steps("nn?y"), steps("?nyy")});
+    const auto counts = judged({steps("n?yy"), steps("nn?y"), steps("?nyy")});
     ASSERT_TRUE(counts);
     EXPECT_EQ(counts->unlabelled, 3U);
     EXPECT_EQ(counts->total(), 9U);
@@ -150,7 +156,7 @@ TEST(Duration, IsTheBestThresholdOnAllOtherEpisodes) {
             for (const auto& [number, is] : labels_of(episodes[left]))
                 expected.add(rule.says(number) ? Label::yes : Label::no, is);
         }
-        const auto found = judged_by_duration(episodes);
+        const auto found = judged(episodes);
         ASSERT_EQ(found.has_value(), all_have_others && expected.total() > 0);
         if (found) {
             EXPECT_EQ(*found, expected) << round;

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <random>
 
+#include "episodes/random.hpp"
 #include "evaluate/bootstrap.hpp"
 #include "evaluate/counts.hpp"
 
@@ -92,9 +93,16 @@ TEST(Rates, OfClaimsThatDoNotLook) {
     }
 }
 
-std::vector<Weights> resamples_of(std::size_t episodes) {
-    std::vector<Weights> all;
-    Bootstrap(episodes).for_each_resample([&](const Weights& weights) { all.push_back(weights); });
+using Drawn = std::vector<std::uint32_t>;  ///< how often, per episode
+
+std::vector<Drawn> resamples_of(std::size_t episodes) {
+    std::vector<Drawn> all;
+    Bootstrap(episodes).for_each_batch([&](const Weights& weights) {
+        for (std::size_t r = 0; r < weights.resamples(); ++r) {
+            all.emplace_back();
+            for (std::size_t e = 0; e < episodes; ++e) all.back().push_back(weights[e][r]);
+        }
+    });
     return all;
 }
 
@@ -102,14 +110,54 @@ TEST(Bootstrap, DrawsEpisodesWithReplacement) {
     const auto resamples = resamples_of(50);
     ASSERT_EQ(resamples.size(), kResamples);
     std::vector<double> drawn(50);
-    for (const Weights& weights : resamples) {
+    for (const Drawn& weights : resamples) {
         EXPECT_EQ(std::accumulate(weights.begin(), weights.end(), 0U), 50U);
         for (std::size_t e = 0; e < 50; ++e) drawn[e] += weights[e];
     }
     for (const double times : drawn) EXPECT_NEAR(times, kResamples, 6 * std::sqrt(kResamples));
     EXPECT_EQ(resamples, resamples_of(50));
     // The first draws, so that a table made elsewhere is the same.
-    EXPECT_EQ(resamples_of(3)[0], (Weights{0, 1, 2}));
+    EXPECT_EQ(resamples_of(3)[0], (Drawn{0, 1, 2}));
+}
+
+/// The draws are one sequence, however many are made at a time.
+TEST(Bootstrap, MakesManyEpisodesBatchByBatch) {
+    constexpr std::size_t kMany = 10'000;
+    std::size_t batches = 0;
+    episodes::Random random(2026);
+    Bootstrap(kMany).for_each_batch([&](const Weights& weights) {
+        ++batches;
+        for (std::size_t r = 0; r < weights.resamples(); ++r) {
+            Drawn expected(kMany);
+            for (std::size_t i = 0; i < kMany; ++i) ++expected[random.below(kMany)];
+            for (std::size_t e = 0; e < kMany; ++e) ASSERT_EQ(weights[e][r], expected[e]);
+        }
+    });
+    EXPECT_GT(batches, 1U);
+}
+
+TEST(Rates, OfResamplesAreThoseOfTheSums) {
+    std::mt19937 random(8);
+    constexpr std::size_t kEpisodes = 7;
+    std::vector<Counts> each(kEpisodes);
+    Weights weights(kEpisodes, 5, 0);
+    for (std::size_t e = 0; e < kEpisodes; ++e) {
+        each[e] = {random() % 5, random() % 5, random() % 5, random() % 5,
+                   random() % 3, random() % 3, random() % 3};
+        for (std::size_t r = 0; r < 5; ++r)
+            weights[e][r] = static_cast<Weights::Weight>(r == 0 ? 0 : random() % 4);
+    }
+    const std::vector<Rates> found = rates(each, weights);
+    for (std::size_t r = 0; r < 5; ++r) {
+        Counts sum;
+        for (std::size_t e = 0; e < kEpisodes; ++e) sum.add(each[e], weights[e][r]);
+        const Rates expected = rates(sum);
+        EXPECT_EQ(found[r].f1, expected.f1);
+        EXPECT_EQ(found[r].precision, expected.precision);
+        EXPECT_EQ(found[r].recall, expected.recall);
+        EXPECT_EQ(found[r].agreement, expected.agreement);
+    }
+    EXPECT_FALSE(found[0].agreement) << "nothing counts";
 }
 
 TEST(Bootstrap, IntervalsCoverAMean) {
@@ -122,12 +170,13 @@ TEST(Bootstrap, IntervalsCoverAMean) {
     for (int round = 0; round < 200; ++round) {
         std::vector<double> values(40);
         for (double& value : values) value = uniform(random);
-        const Figure figure =
-            bootstrap.figure([&](const Weights& weights) -> std::optional<double> {
-                double sum = 0;
-                for (std::size_t i = 0; i < values.size(); ++i) sum += weights[i] * values[i];
-                return sum / 40;
-            });
+        const Figure figure = bootstrap.figure([&](const Weights& weights) {
+            std::vector<std::optional<double>> means(weights.resamples(), 0);
+            for (std::size_t i = 0; i < values.size(); ++i)
+                for (std::size_t r = 0; r < means.size(); ++r)
+                    *means[r] += weights[i][r] * values[i] / 40;
+            return means;
+        });
         ASSERT_TRUE(figure.value && figure.interval);
         EXPECT_LE(figure.interval->low, *figure.value);
         EXPECT_GE(figure.interval->high, *figure.value);
@@ -150,7 +199,9 @@ TEST(Bootstrap, QuantilesAreThoseOfTheValuesThatAreThere) {
 }
 
 TEST(Bootstrap, OfOneEpisodeHasNoInterval) {
-    const auto one = [](const Weights&) { return std::optional(1.0); };
+    const auto one = [](const Weights& weights) {
+        return std::vector<std::optional<double>>(weights.resamples(), 1.0);
+    };
     EXPECT_FALSE(Bootstrap(1).figure(one).interval);
     EXPECT_TRUE(Bootstrap(2).figure(one).interval);
 }

@@ -3,13 +3,15 @@
 
 #include <gtest/gtest.h>
 
+#include <cfloat>
 #include <cmath>
+#include <limits>
 #include <random>
 
 namespace etlc::episodes {
 namespace {
 
-using Weights = std::vector<std::uint32_t>;
+using PerEpisode = std::vector<std::uint32_t>;
 
 constexpr std::uint32_t kEpisodes = 6;
 
@@ -22,8 +24,8 @@ std::vector<Scored> random_frames(std::mt19937& random, std::size_t most) {
     return frames;
 }
 
-std::optional<double> by_pairs(const std::vector<Scored>& frames, const Weights& folds,
-                               const Weights& weights) {
+std::optional<double> by_pairs(const std::vector<Scored>& frames, const PerEpisode& folds,
+                               const PerEpisode& weights) {
     double ordered = 0;
     double pairs = 0;
     for (const Scored& a : frames) {
@@ -45,55 +47,100 @@ void expect_near(const std::optional<double>& found, const std::optional<double>
     }
 }
 
-TEST(Ranking, CountsPairsOfFramesOfAFold) {
+/// What the resamples of `weights` give.
+std::vector<std::optional<double>> resampled(const std::vector<Scored>& frames,
+                                             const PerEpisode& folds,
+                                             const std::vector<PerEpisode>& weights) {
+    std::vector<FramesByScore> groups(2);
+    for (const Scored& frame : frames) groups[folds[frame.episode]].add(frame);
+    Weights all(kEpisodes, weights.size(), 0);
+    for (std::size_t r = 0; r < weights.size(); ++r)
+        for (std::size_t e = 0; e < kEpisodes; ++e)
+            all[e][r] = static_cast<Weights::Weight>(weights[r][e]);
+    return auroc(groups, all);
+}
+
+TEST(Auroc, CountsPairsOfFramesOfAFoldInEveryResample) {
     std::mt19937 random(3);
     for (int round = 0; round < 300; ++round) {
         const std::vector<Scored> frames = random_frames(random, 40);
-        Weights weights(kEpisodes);
-        for (std::uint32_t& weight : weights) weight = random() % 4;
-        const Weights one(kEpisodes, 0);
-        const Weights two{0, 1, 0, 1, 0, 1};
-        expect_near(Ranking(frames).auroc(weights), by_pairs(frames, one, weights));
-        expect_near(Ranking(frames, two).auroc(weights), by_pairs(frames, two, weights));
+        std::vector<PerEpisode> weights(5, PerEpisode(kEpisodes));
+        for (PerEpisode& resample : weights)
+            for (std::uint32_t& weight : resample) weight = random() % 4;
+        for (const PerEpisode& folds :
+             {PerEpisode{0, 0, 0, 0, 0, 0}, PerEpisode{0, 1, 0, 1, 0, 1}}) {
+            const auto found = resampled(frames, folds, weights);
+            for (std::size_t r = 0; r < weights.size(); ++r)
+                expect_near(found[r], by_pairs(frames, folds, weights[r]));
+        }
     }
 }
 
-/// The same figure as the ranking's, and for its interval what the ranking says without each
-/// episode.
+TEST(FramesByScore, KeepsScoresAndTheirOrder) {
+    constexpr float kInfinity = std::numeric_limits<float>::infinity();
+    const std::vector<float> ascending{-kInfinity, -FLT_MAX, -1.5F,   -1e-45F,  0,
+                                       1e-45F,     1.5F,     FLT_MAX, kInfinity};
+    FramesByScore frames;
+    for (std::uint32_t i = 0; i < ascending.size(); ++i)
+        frames.add({ascending[ascending.size() - 1 - i], i, i % 2 == 0});
+    frames.add({-0.0F, 2'000'000'000, true});
+    std::vector<float> found;
+    frames.for_each([&](const Scored& frame) {
+        if (frame.episode == 2'000'000'000) {
+            EXPECT_TRUE(frame.positive);
+            EXPECT_FALSE(std::signbit(frame.score));
+            return;
+        }
+        EXPECT_EQ(frame.positive, frame.episode % 2 == 0);
+        EXPECT_EQ(frame.score, ascending[ascending.size() - 1 - frame.episode]);
+        found.push_back(frame.score);
+    });
+    EXPECT_EQ(found, ascending);
+    EXPECT_EQ(frames.positives(), 6U);
+    EXPECT_EQ(frames.negatives(), 4U);
+}
+
+/// The same figure as by pairs, and for its interval what they say without each episode.
 TEST(Auroc, LeavesOutOneEpisodeAtATime) {
     std::mt19937 random(4);
     int intervals = 0;
     for (int round = 0; round < 100; ++round) {
         const std::vector<Scored> frames = random_frames(random, 80);
-        const Weights folds{0, 1, 0, 1, 0, 1};
+        const PerEpisode folds =
+            round % 2 == 0 ? PerEpisode(kEpisodes) : PerEpisode{0, 1, 0, 1, 0, 1};
         std::vector<std::vector<RankedFrame>> groups(2);
+        FramesByScore alone;
+        FramesByScore negated;
         std::vector<bool> there(kEpisodes);
         for (const Scored& frame : frames) {
             groups[folds[frame.episode]].push_back({frame, 0, 0});
+            alone.add(frame);
+            negated.add({-frame.score, frame.episode, frame.positive});
             there[frame.episode] = true;
         }
-        std::vector<std::vector<Scored>> alone(groups.size());
-        for (std::size_t g = 0; g < groups.size(); ++g)
-            alone[g].assign(groups[g].begin(), groups[g].end());
-        const Ranking ranking(frames, folds);
         const auto found = auroc(groups, kEpisodes);
-        const auto same = auroc(alone, kEpisodes);
-        ASSERT_EQ(same.has_value(), found.has_value());
-        const auto value = ranking.auroc(Weights(kEpisodes, 1));
+        const auto value = by_pairs(frames, folds, PerEpisode(kEpisodes, 1));
         expect_near(found ? std::optional(found->value) : std::nullopt, value);
+        if (folds[1] == 0) {
+            for (const auto& same : {auroc(alone, kEpisodes, Likely::greater),
+                                     auroc(negated, kEpisodes, Likely::smaller)}) {
+                ASSERT_EQ(same.has_value(), found.has_value());
+                if (!found) continue;
+                EXPECT_EQ(same->value, found->value);
+                ASSERT_EQ(same->interval.has_value(), found->interval.has_value());
+                if (!found->interval) continue;
+                EXPECT_EQ(same->interval->low, found->interval->low);
+                EXPECT_EQ(same->interval->high, found->interval->high);
+            }
+        }
         std::vector<double> without;
         for (std::uint32_t e = 0; e < kEpisodes; ++e) {
-            Weights weights(kEpisodes, 1);
+            PerEpisode weights(kEpisodes, 1);
             weights[e] = 0;
             if (!there[e]) continue;
-            if (const auto one = ranking.auroc(weights)) without.push_back(*one);
+            if (const auto one = by_pairs(frames, folds, weights)) without.push_back(*one);
         }
-        if (!found) continue;
-        EXPECT_EQ(same->value, found->value);
-        ASSERT_EQ(same->interval.has_value(), found->interval.has_value());
-        if (!found->interval) continue;
-        EXPECT_EQ(same->interval->low, found->interval->low);
-        EXPECT_EQ(same->interval->high, found->interval->high);
+        if (!found || !found->interval) continue;
         ++intervals;
         const auto n = static_cast<double>(without.size());
         double mean = 0;

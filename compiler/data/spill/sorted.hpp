@@ -35,7 +35,7 @@ public:
 
     /// Calls `visit(value)` for each, in order.
     template <class Visit>
-    void for_each(const Visit& visit) {
+    void for_each(const Visit& visit) const {
         sort();
         if (runs_.empty()) {
             for (const T& value : last_) visit(value);
@@ -79,11 +79,11 @@ private:
         std::size_t at_ = 0;
     };
 
-    void store(const std::vector<T>& values) {
+    void store(const std::vector<T>& values) const {
         stored_.append({reinterpret_cast<const char*>(values.data()), values.size() * sizeof(T)});
     }
 
-    void store_run() {
+    void store_run() const {
         std::sort(last_.begin(), last_.end());
         runs_.push_back(stored_.size() / sizeof(T));
         store(last_);
@@ -91,7 +91,7 @@ private:
     }
 
     /// Once all are there.
-    void sort() {
+    void sort() const {
         if (is_sorted_) return;
         is_sorted_ = true;
         if (runs_.empty()) return std::sort(last_.begin(), last_.end());
@@ -101,7 +101,7 @@ private:
     }
 
     /// All runs become one.
-    void merge() {
+    void merge() const {
         const SpillFile runs = std::exchange(stored_, {});
         std::vector<Window> windows;
         const std::size_t block = std::max<std::size_t>(16, kRun / runs_.size());
@@ -130,10 +130,11 @@ private:
         runs_ = {0};
     }
 
-    std::vector<T> last_;              ///< those of no run
-    std::vector<std::uint64_t> runs_;  ///< where each begins, in values
-    SpillFile stored_;
-    bool is_sorted_ = true;
+    // Put in order by the first who asks for it.
+    mutable std::vector<T> last_;              ///< those of no run
+    mutable std::vector<std::uint64_t> runs_;  ///< where each begins, in values
+    mutable SpillFile stored_;
+    mutable bool is_sorted_ = true;
 };
 
 }  // namespace etlc::data

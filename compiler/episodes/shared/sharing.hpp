@@ -63,27 +63,26 @@ std::optional<std::vector<Index>> labelled_in_first(const check::Model& model,
     return std::move(*labelled);
 }
 
-/// As over_episodes. Of a shard only its own are read, their results go into its part, and nothing
-/// comes back; where parts are merged, nothing is read.
-template <class T, class Request, class Make>
-std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string>& paths,
-                                                   const Request& request, diag::Sink& sink,
-                                                   Make make) {
-    if (request.sharing == nullptr) return over_episodes<T>(paths, request, sink, make);
+/// As in_order. Of a shard only its own are read, their results go into its part, and none is
+/// taken; where parts are merged, nothing is read. Whether all were taken; where not, and this is
+/// no shard, the sink now says why.
+template <class T, class Request, class Make, class Take>
+bool over_shared_episodes(const std::vector<std::string>& paths, const Request& request,
+                          diag::Sink& sink, Make make, Take take) {
+    if (request.sharing == nullptr) return in_order<T>(paths, request, sink, make, take);
     Part& part = request.sharing->part();
     if (request.sharing->merges()) {
-        std::vector<T> all;
         for (std::size_t place = 0; place < paths.size(); ++place) {
             auto result = data::unpacked<T>(part.results.at(place));
             if (!result) {
                 sink.report(data::in_file(
                     {diag::Code::damaged_part, "its result is not one of this version of etlc"},
                     paths[place]));
-                return std::nullopt;
+                return false;
             }
-            all.push_back(std::move(*result));
+            take(place, std::move(*result));
         }
-        return all;
+        return true;
     }
     std::vector<std::size_t> places;
     std::vector<std::string> own;
@@ -93,11 +92,10 @@ std::optional<std::vector<T>> over_shared_episodes(const std::vector<std::string
         places.push_back(place);
         own.push_back(paths[place]);
     }
-    const auto results = over_episodes<T>(own, request, sink, make);
-    if (results)
-        for (std::size_t i = 0; i < places.size(); ++i)
-            part.results.emplace(places[i], data::packed((*results)[i]));
-    return std::nullopt;
+    in_order<T>(own, request, sink, make, [&](std::size_t i, const T& result) {
+        part.results.emplace(places[i], data::packed(result));
+    });
+    return false;
 }
 
 }  // namespace etlc::episodes
