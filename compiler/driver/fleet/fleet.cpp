@@ -119,7 +119,7 @@ bool go_on_in_ranks(char** argv) {
 
 std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& paths,
                                             diag::Sink& sink) {
-    std::vector<episodes::Part> parts;
+    episodes::Joined all;
     for (const std::string& path : paths) {
         auto part = episodes::read_part(path);
         if (!part) {
@@ -133,11 +133,10 @@ std::optional<episodes::Sharing> read_parts(const std::vector<std::string>& path
                 path));
             return std::nullopt;
         }
-        parts.push_back(std::move(*part));
+        if (!all.add(std::move(*part), path, sink)) return std::nullopt;
     }
-    auto all = episodes::joined(std::move(parts), paths, sink);
-    if (!all) return std::nullopt;
-    return episodes::Sharing::merge(std::move(*all), paths);
+    if (!all.is_complete(sink)) return std::nullopt;
+    return episodes::Sharing::merge(std::move(all), paths);
 }
 
 std::vector<std::string> merged_call(const episodes::Part& part, const std::string& output) {

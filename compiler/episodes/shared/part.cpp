@@ -4,6 +4,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -38,34 +39,6 @@ std::string difference(const Part& a, const Part& b) {
         return "was made with another spec, or other targets or thresholds, than the first";
     if (a.episodes != b.episodes) return "was made over other episodes than the first";
     return "was made with other labels in the first episode";
-}
-
-/// `path`: of one of the parts.
-bool complete(const Part& all, const std::vector<std::uint32_t>& shards, const std::string& path,
-              diag::Sink& sink) {
-    std::vector<std::uint32_t> missing;
-    for (std::uint32_t shard = 1; shard <= all.shards; ++shard)
-        if (!std::binary_search(shards.begin(), shards.end(), shard)) missing.push_back(shard);
-    if (!missing.empty()) {
-        constexpr std::size_t kMostTold = 8;
-        const auto end =
-            missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostTold));
-        sink.report(data::in_file(
-            {Code::incomplete_parts,
-             fmt::format("is one of {}, of which these are missing: {}{}",
-                         diag::counted(all.shards, "shard"), fmt::join(missing.begin(), end, ", "),
-                         missing.size() > kMostTold ? ", ..." : "")},
-            path));
-        return false;
-    }
-    for (std::size_t place = 0; place < all.episodes.size(); ++place) {
-        if (all.results.count(place) != 0) continue;
-        sink.report(data::in_file(
-            {Code::incomplete_parts, "no shard has read it: its file has changed in between"},
-            all.episodes[place]));
-        return false;
-    }
-    return true;
 }
 
 }  // namespace
@@ -108,40 +81,61 @@ diag::Result<Part> read_part(const std::string& path) {
     return parse_part(*bytes);
 }
 
-std::optional<Part> joined(std::vector<Part> parts, const std::vector<std::string>& paths,
-                           diag::Sink& sink) {
-    Part all = std::move(parts.front());
-    std::map<std::uint32_t, std::string> seen = {{all.shard, paths.front()}};
-    for (std::size_t i = 1; i < parts.size(); ++i) {
-        Part& part = parts[i];
-        if (!same_call(all, part)) {
-            sink.report(data::in_file({Code::part_of_another, difference(all, part)}, paths[i]))
-                .note(fmt::format("the first is {}", paths.front()));
-            return std::nullopt;
-        }
-        const auto [before, is_new] = seen.emplace(part.shard, paths[i]);
-        if (!is_new) {
-            sink.report(data::in_file(
-                {Code::incomplete_parts, fmt::format("is shard {} of {}, which {} is as well",
-                                                     part.shard, part.shards, before->second)},
-                paths[i]));
-            return std::nullopt;
-        }
-        for (auto& [place, bytes] : part.results) {
-            if (all.results.emplace(place, std::move(bytes)).second) continue;
-            sink.report(data::in_file(
-                {Code::incomplete_parts,
-                 fmt::format("has {}, which another shard has as well: its file has changed "
-                             "in between",
-                             all.episodes[place])},
-                paths[i]));
-            return std::nullopt;
-        }
+bool Joined::add(Part part, const std::string& path, diag::Sink& sink) {
+    const auto refuse = [&](Code code, std::string why) -> diag::Diagnostic& {
+        return sink.report(data::in_file({code, std::move(why)}, path));
+    };
+    const auto results = std::exchange(part.results, {});
+    if (shards_.empty()) {
+        call_ = std::move(part);
+        at_.assign(call_.episodes.size(), kNone);
+        first_ = path;
+        shards_.emplace(call_.shard, path);
+    } else if (!same_call(call_, part)) {
+        refuse(Code::part_of_another, difference(call_, part))
+            .note(fmt::format("the first is {}", first_));
+        return false;
+    } else if (const auto [before, is_new] = shards_.emplace(part.shard, path); !is_new) {
+        refuse(Code::incomplete_parts, fmt::format("is shard {} of {}, which {} is as well",
+                                                   part.shard, part.shards, before->second));
+        return false;
     }
-    std::vector<std::uint32_t> shards;
-    for (const auto& [shard, path] : seen) shards.push_back(shard);
-    if (!complete(all, shards, paths.front(), sink)) return std::nullopt;
-    return all;
+    for (const auto& [place, bytes] : results) {
+        if (at_[place] != kNone) {
+            refuse(Code::incomplete_parts,
+                   fmt::format("has {}, which another shard has as well: its file has changed "
+                               "in between",
+                               call_.episodes[place]));
+            return false;
+        }
+        at_[place] = static_cast<std::uint32_t>(results_.size());
+        results_.add(bytes);
+    }
+    return true;
+}
+
+bool Joined::is_complete(diag::Sink& sink) const {
+    std::vector<std::uint32_t> missing;
+    for (std::uint32_t shard = 1; shard <= call_.shards; ++shard)
+        if (!shards_.contains(shard)) missing.push_back(shard);
+    if (!missing.empty()) {
+        constexpr std::size_t kMostTold = 8;
+        const auto end =
+            missing.begin() + static_cast<std::ptrdiff_t>(std::min(missing.size(), kMostTold));
+        sink.report(data::in_file(
+            {Code::incomplete_parts, fmt::format("is one of {}, of which these are missing: {}{}",
+                                                 diag::counted(call_.shards, "shard"),
+                                                 fmt::join(missing.begin(), end, ", "),
+                                                 missing.size() > kMostTold ? ", ..." : "")},
+            first_));
+        return false;
+    }
+    const auto unread = std::find(at_.begin(), at_.end(), kNone);
+    if (unread == at_.end()) return true;
+    sink.report(data::in_file(
+        {Code::incomplete_parts, "no shard has read it: its file has changed in between"},
+        call_.episodes[static_cast<std::size_t>(unread - at_.begin())]));
+    return false;
 }
 
 }  // namespace etlc::episodes

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/spill/spool.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::episodes {
@@ -48,9 +49,28 @@ std::string as_file(std::string_view body);
 diag::Result<Part> read_part(const std::string& path);
 diag::Result<Part> parse_part(std::string_view bytes);
 
-/// All shards of a call, in any order, as one part. `paths`: of the parts, for messages. Nothing
-/// where the sink now says why not, E1103 or E1104.
-std::optional<Part> joined(std::vector<Part> parts, const std::vector<std::string>& paths,
-                           diag::Sink& sink);
+/// The shards of a call, in any order, as one part whose results are not in memory.
+class Joined {
+public:
+    /// The next of them. `path`: of its file, for messages. False where the sink now says why it is
+    /// none of the others' call, E1103, or is there twice, E1104.
+    bool add(Part part, const std::string& path, diag::Sink& sink);
+    /// False where one of them is missing, or an episode: the sink then says so, E1104.
+    bool is_complete(diag::Sink& sink) const;
+
+    /// Without results.
+    const Part& call() const { return call_; }
+    /// Packed, of an episode by its place.
+    std::string result(std::size_t place) const { return results_[at_[place]]; }
+
+private:
+    static constexpr std::uint32_t kNone = UINT32_MAX;
+
+    Part call_;                                    ///< of the first
+    std::string first_;                            ///< its path
+    std::map<std::uint32_t, std::string> shards_;  ///< by number, their paths
+    std::vector<std::uint32_t> at_;                ///< by place, which of the results
+    data::Spool<std::string> results_;
+};
 
 }  // namespace etlc::episodes

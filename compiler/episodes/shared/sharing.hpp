@@ -24,15 +24,18 @@ public:
         result.contents_ = std::move(contents);
         return result;
     }
-    /// All of them, as `joined` gives them, from these files.
-    static Sharing merge(Part all, std::vector<std::string> files) {
-        Sharing result(std::move(all), true);
+    /// All of them, from these files.
+    static Sharing merge(Joined all, std::vector<std::string> files) {
+        Sharing result(all.call(), true);
+        result.all_ = std::move(all);
         result.files_ = std::move(files);
         return result;
     }
 
     bool merges() const { return merges_; }
     Part& part() { return part_; }
+    /// Where parts are merged: what was made of an episode.
+    std::string result(std::size_t place) const { return all_.result(place); }
     /// What is merged, which no result may be written over.
     const std::vector<std::string>& files() const { return files_; }
     /// The file in which processes keep by what episodes are shared out; empty: none.
@@ -42,6 +45,7 @@ private:
     Sharing(Part part, bool merges) : part_(std::move(part)), merges_(merges) {}
 
     Part part_;
+    Joined all_;
     bool merges_;
     std::vector<std::string> files_;
     std::string contents_;
@@ -73,7 +77,7 @@ bool over_shared_episodes(const std::vector<std::string>& paths, const Request& 
     Part& part = request.sharing->part();
     if (request.sharing->merges()) {
         for (std::size_t place = 0; place < paths.size(); ++place) {
-            auto result = data::unpacked<T>(part.results.at(place));
+            auto result = data::unpacked<T>(request.sharing->result(place));
             if (!result) {
                 sink.report(data::in_file(
                     {diag::Code::damaged_part, "its result is not one of this version of etlc"},
