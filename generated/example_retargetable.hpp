@@ -61,6 +61,7 @@ inline etlmon::Named<etlmon::Verdict, 1> named(const Verdicts& verdicts) noexcep
 namespace thresholds {
 inline constexpr size_t near_goal = 16;
 }  // namespace thresholds
+
 /// Where target sets begin, a row after the other.
 namespace targets {
 inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements

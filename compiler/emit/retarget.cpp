@@ -71,6 +71,7 @@ void print_places(Printer& out, const Context& context, std::string_view space,
     out.line("namespace {} {{", space);
     print_aligned(out, lines, "///<");
     out.line("}}  // namespace {}", space);
+    out.line();
 }
 
 void print_layout(Printer& out, const Context& context) {
@@ -132,7 +133,6 @@ void print_parameters(Printer& out, const Context& context) {
     print_places(out, context, "constants", "Where the numbers of expressions lie, likewise.");
     print_places(out, context, "targets", "Where target sets begin, a row after the other.");
     print_places(out, context, "projections", "Where projections A (z - m) begin: A, and m.");
-    out.line();
     print_layout(out, context);
     print_doc(out,
               "A block of parameters, in flash or in memory, at a multiple of 64 bytes: all of it "
