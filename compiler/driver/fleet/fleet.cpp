@@ -5,9 +5,12 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <iostream>
 #include <string_view>
 
+#include "data/files/atomic_file.hpp"
 #include "data/files/child.hpp"
+#include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/traces/episodes.hpp"
@@ -41,6 +44,26 @@ std::vector<std::string> without(const std::vector<std::string>& call,
     return rest;
 }
 
+/// From standard input; nothing at its end.
+std::optional<std::uint32_t> next_shard(std::uint32_t shards) {
+    std::uint32_t shard = 0;
+    if (!(std::cin >> shard) || shard == 0 || shard > shards) return std::nullopt;
+    return shard;
+}
+
+/// In the folder; says so on standard output.
+std::optional<diag::Failure> keep_part(const std::string& folder, const episodes::Part& part) {
+    const std::string path = fmt::format("{}/{}.part", folder, part.shard);
+    auto failure =
+        data::write_file_atomically(path, episodes::write(part), Code::unwritable_output);
+    if (failure) {
+        failure->message = fmt::format("{}: {}", path, failure->message);
+        return failure;
+    }
+    if (data::write_all(STDOUT_FILENO, fmt::format("{}\n", part.shard))) return std::nullopt;
+    return diag::Failure{Code::unwritable_output, "nobody waits for the parts any more"};
+}
+
 }  // namespace
 
 std::optional<episodes::Sharing> sharing_of(const ShardRequest& request,
@@ -51,8 +74,13 @@ std::optional<episodes::Sharing> sharing_of(const ShardRequest& request,
     part.call = without(call, {"--shard", "--part", "-j", "--jobs"});
     part.shard = request.shard;
     part.shards = request.shards;
-    const char* const contents = std::getenv("ETLC_CONTENTS");  // of a rank, see mpi.cpp
-    return episodes::Sharing::shard(std::move(part), contents == nullptr ? "" : contents);
+    const char* const given = std::getenv("ETLC_CONTENTS");  // of a rank, see mpi.cpp
+    const std::string contents = given == nullptr ? "" : given;
+    if (!request.from_input) return episodes::Sharing::shard(std::move(part), contents);
+    return episodes::Sharing::shards(
+        std::move(part), contents,
+        {[shards = request.shards] { return next_shard(shards); },
+         [folder = request.part](const episodes::Part& done) { return keep_part(folder, done); }});
 }
 
 std::vector<std::string> find_shared_episodes(episodes::Sharing* sharing,
@@ -88,7 +116,7 @@ bool is_shard(const episodes::Sharing* sharing) {
 }
 
 bool write_part(episodes::Sharing& sharing, const std::string& path, diag::Sink& sink) {
-    if (sink.refused()) return false;
+    if (sink.refused() || sharing.has_turns()) return !sink.refused();
     const episodes::Part& part = sharing.part();
     OutputFiles files(sink);
     return files.add(path, episodes::write(part)) &&

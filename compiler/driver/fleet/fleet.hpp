@@ -18,6 +18,9 @@ struct ShardRequest {
     std::uint32_t shard = 0;   ///< 1 to `shards`
     std::uint32_t shards = 0;  ///< 0: the call is not shared out
     std::string part;          ///< the file that this shard writes
+    /// Which shards, standard input says, a number a line. Each goes to NUMBER.part in the folder
+    /// `part`, and its number to standard output. `shard` is 0.
+    bool from_input = false;
 };
 
 /// `call`: the arguments, from the command on. Nothing where it is not shared out.

@@ -1,10 +1,12 @@
 // etlc-mpi calibrate|evaluate ...: the call, shared out among the ranks of an MPI job.
 // Takes: the arguments of `etlc`, which starts this where it finds itself in a job of several
-// ranks; besides them --parts FOLDER and --resume. Gives: what the call gives, byte for byte: ranks
-// run `etlc ... --shard I/N` as they become free, then the first runs `etlc merge`. Keeps true: a
-// shard that is done stays done, whatever becomes of the job; --resume runs only the others.
+// ranks; besides them --parts FOLDER and --resume. Gives: what the call gives, byte for byte: each
+// rank runs an `etlc ... --shard -/N` and tells it the next shard as it becomes free, then the
+// first runs `etlc merge`. Keeps true: a shard that is done stays done, whatever becomes of the
+// job; --resume runs only the others.
 #include <fcntl.h>
 #include <mpi.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -18,6 +20,7 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <utility>
 #include <vector>
 
 namespace {
@@ -25,7 +28,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// More than ranks, so that one that is done early takes over from one that is late.
-constexpr int kShardsPerRank = 4;
+constexpr int kShardsPerRank = 16;
 
 struct Job {
     std::vector<std::string> call;  ///< the arguments, from the command on
@@ -63,9 +66,9 @@ fs::path etlc_path() {
     return fs::exists(beside, error) ? beside : folder.parent_path().parent_path() / "bin" / "etlc";
 }
 
-/// Runs etlc to its end. `is_heard`: what it prints is shown. Gives: its exit status; of one that a
-/// signal has ended, 128 and the signal.
-int run_etlc(const std::vector<std::string>& arguments, bool is_heard) {
+/// Starts etlc; descriptors that are not negative become its standard input and output. 0, and
+/// said why, where it cannot be.
+pid_t start_etlc(const std::vector<std::string>& arguments, int input, int output) {
     std::string program = etlc_path().string();
     std::vector<char*> words = {program.data()};
     std::vector<std::string> copies = arguments;
@@ -73,17 +76,20 @@ int run_etlc(const std::vector<std::string>& arguments, bool is_heard) {
     words.push_back(nullptr);
     posix_spawn_file_actions_t actions;
     posix_spawn_file_actions_init(&actions);
-    if (!is_heard)
-        posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, "/dev/null", O_WRONLY, 0);
+    if (input >= 0) posix_spawn_file_actions_adddup2(&actions, input, STDIN_FILENO);
+    if (output >= 0) posix_spawn_file_actions_adddup2(&actions, output, STDOUT_FILENO);
     pid_t process = 0;
     const int error =
         posix_spawn(&process, program.c_str(), &actions, nullptr, words.data(), environ);
     posix_spawn_file_actions_destroy(&actions);
-    if (error != 0) {
-        std::fprintf(stderr, "etlc-mpi: %s cannot be run: %s\n", program.c_str(),
-                     std::strerror(error));
-        return 1;
-    }
+    if (error == 0) return process;
+    std::fprintf(stderr, "etlc-mpi: %s cannot be run: %s\n", program.c_str(), std::strerror(error));
+    return 0;
+}
+
+/// Its exit status once it has ended; where a signal has ended it, 128 and the signal.
+int status_of(pid_t process) {
+    if (process == 0) return 1;
     int status = 0;
     while (waitpid(process, &status, 0) < 0 && errno == EINTR) {
     }
@@ -99,21 +105,64 @@ std::string contents_path(const Job& job) {
     return (fs::path(job.parts) / "contents").string();
 }
 
-/// 0 where the shard's part is there.
-int run_shard(const Job& job, int shard) {
-    const std::string part = part_path(job, shard);
-    std::error_code error;
-    if (fs::exists(part, error)) return 0;  // of the job that is resumed: files appear whole
-    const std::string name = std::to_string(shard) + "/" + std::to_string(job.shards);
-    std::vector<std::string> call = job.call;
-    call.insert(call.end(), {"--shard", name, "--part", part});
-    if (!job.has_jobs) call.insert(call.end(), {"--jobs", "1"});
-    const int status = run_etlc(call, false);
-    if (status != 0)
-        std::fprintf(stderr, "etlc-mpi: rank %d: shard %s ended with status %d; --resume goes on\n",
-                     job.rank, name.c_str(), status);
-    return status;
-}
+/// An etlc that makes one shard after the other, as it is told.
+class Maker {
+public:
+    explicit Maker(const Job& job) : job_(job) {}
+    Maker(const Maker&) = delete;
+    Maker& operator=(const Maker&) = delete;
+    ~Maker() { finish(); }
+
+    /// 0 where the shard's part is there.
+    int make(int shard) {
+        std::error_code error;
+        if (fs::exists(part_path(job_, shard), error))
+            return 0;  // of the job that is resumed: files appear whole
+        if (process_ == 0 && !start()) return 1;
+        if (std::fprintf(to_, "%d\n", shard) > 0 && std::fflush(to_) == 0) {
+            int made = 0;
+            if (std::fscanf(from_, "%d", &made) == 1 && made == shard) return 0;
+        }
+        const int status = std::max(1, finish());
+        std::fprintf(stderr,
+                     "etlc-mpi: rank %d: shard %d/%d ended with status %d; --resume goes on\n",
+                     job_.rank, shard, job_.shards, status);
+        return status;
+    }
+
+    /// Its exit status; 0 where none was started.
+    int finish() {
+        if (process_ == 0) return 0;
+        std::fclose(to_);
+        std::fclose(from_);
+        return status_of(std::exchange(process_, 0));
+    }
+
+private:
+    bool start() {
+        std::vector<std::string> call = job_.call;
+        call.insert(call.end(),
+                    {"--shard", "-/" + std::to_string(job_.shards), "--part", job_.parts});
+        if (!job_.has_jobs) call.insert(call.end(), {"--jobs", "1"});
+        int numbers[2];
+        int answers[2];
+        if (::pipe2(numbers, O_CLOEXEC) != 0 || ::pipe2(answers, O_CLOEXEC) != 0) {
+            std::fprintf(stderr, "etlc-mpi: no more files can be opened\n");
+            return false;
+        }
+        process_ = start_etlc(call, numbers[0], answers[1]);
+        ::close(numbers[0]);
+        ::close(answers[1]);
+        to_ = ::fdopen(numbers[1], "w");
+        from_ = ::fdopen(answers[0], "r");
+        return process_ != 0;
+    }
+
+    const Job& job_;
+    pid_t process_ = 0;
+    std::FILE* to_ = nullptr;
+    std::FILE* from_ = nullptr;
+};
 
 /// Hands out 0, 1, 2, ... among the ranks.
 class Counter {
@@ -149,10 +198,12 @@ int run_shards(const Job& job) {
     int worst = 0;
     {
         Counter counter;
+        Maker maker(job);
         for (int next = counter.take(); next < job.shards; next = counter.take()) {
-            worst = std::max(worst, run_shard(job, next + 1));
+            worst = std::max(worst, maker.make(next + 1));
             if (worst != 0) counter.take(job.shards);  // nobody begins another
         }
+        worst = std::max(worst, maker.finish());
         MPI_Barrier(MPI_COMM_WORLD);
     }
     int all = 0;
@@ -180,7 +231,7 @@ int make_folder(const Job& job) {
 int merge(const Job& job) {
     std::vector<std::string> call = {"merge"};
     for (int shard = 1; shard <= job.shards; ++shard) call.push_back(part_path(job, shard));
-    const int status = run_etlc(call, true);
+    const int status = status_of(start_etlc(call, -1, -1));
     if (status != 0) return status;
     std::error_code error;
     for (std::size_t i = 1; i < call.size(); ++i) fs::remove(call[i], error);
@@ -218,6 +269,7 @@ int main(int argc, char** argv) {
     // Ranks tell each other a few numbers. Open MPI need not look for a fast network for them,
     // which takes a fifth of a second; what the user has set counts.
     ::setenv("OMPI_MCA_pml", "ob1", 0);
+    ::signal(SIGPIPE, SIG_IGN);  // of an etlc that has ended
     MPI_Init(&argc, &argv);
     const int status = run(argc, argv);
     MPI_Finalize();

@@ -9,9 +9,15 @@ namespace etlc::driver {
 
 namespace {
 
-/// "3/64"
+/// "3/64"; of a rank of an MPI job "-/64".
 bool read_shard(std::string_view text, ShardRequest& request) {
     const char* const end = text.data() + text.size();
+    if (text.starts_with("-/")) {
+        request.from_input = true;
+        const auto [rest, error] = std::from_chars(text.data() + 2, end, request.shards);
+        return error == std::errc() && rest == end && request.shards >= 1 &&
+               request.shards <= episodes::kMostShards;
+    }
     const auto [slash, error] = std::from_chars(text.data(), end, request.shard);
     if (error != std::errc() || slash == end || *slash != '/') return false;
     const auto [rest, wrong] = std::from_chars(slash + 1, end, request.shards);

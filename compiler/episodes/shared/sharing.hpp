@@ -1,9 +1,12 @@
 // A call whose episodes are shared out among processes.
-// Takes: a shard's number, or all parts of a call. Gives: of a shard, its part; of all parts, what
-// one process would have made of each episode. Keeps true: what comes after the reading of episodes
-// is done once, over all of them in the order of the call, so it gives the bytes of one process.
+// Takes: the numbers of shards, or all parts of a call. Gives: of a shard, its part; of all parts,
+// what one process would have made of each episode. Keeps true: what comes after the reading of
+// episodes is done once, over all of them in the order of the call, so it gives the bytes of one
+// process.
 #pragma once
 
+#include <functional>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,10 +21,22 @@ namespace etlc::episodes {
 
 class Sharing {
 public:
+    /// Of a process that makes several shards: which comes next, and what becomes of its part.
+    struct Turns {
+        std::function<std::optional<std::uint32_t>()> next;
+        std::function<std::optional<diag::Failure>(const Part&)> keep;
+    };
+
     /// One shard: `part` says which, and of what call. `contents`: as contents_of takes it.
     static Sharing shard(Part part, std::string contents) {
         Sharing result(std::move(part), false);
         result.contents_ = std::move(contents);
+        return result;
+    }
+    /// Several, one after the other.
+    static Sharing shards(Part part, std::string contents, Turns turns) {
+        Sharing result = shard(std::move(part), std::move(contents));
+        result.turns_ = std::move(turns);
         return result;
     }
     /// All of them, from these files.
@@ -33,6 +48,19 @@ public:
     }
 
     bool merges() const { return merges_; }
+    bool has_turns() const { return turns_.next != nullptr; }
+    /// False where no shard is left; else `part()` is that of the next, still empty.
+    bool begin_shard() {
+        if (!has_turns()) return !std::exchange(has_begun_, true);
+        const auto next = turns_.next();
+        part_.results.clear();
+        part_.shard = next.value_or(0);
+        return next.has_value();
+    }
+    /// Its part is complete.
+    std::optional<diag::Failure> end_shard() const {
+        return has_turns() ? turns_.keep(part_) : std::nullopt;
+    }
     Part& part() { return part_; }
     /// Where parts are merged: what was made of an episode.
     std::string result(std::size_t place) const { return all_.result(place); }
@@ -47,6 +75,8 @@ private:
     Part part_;
     Joined all_;
     bool merges_;
+    bool has_begun_ = false;
+    Turns turns_;
     std::vector<std::string> files_;
     std::string contents_;
 };
@@ -88,17 +118,24 @@ bool over_shared_episodes(const std::vector<std::string>& paths, const Request& 
         }
         return true;
     }
-    std::vector<std::size_t> places;
-    std::vector<std::string> own;
     const auto contents = contents_of(paths, request.sharing->contents());
-    for (std::size_t place = 0; place < paths.size(); ++place) {
-        if (shard_of(contents[place], part.shards) != part.shard) continue;
-        places.push_back(place);
-        own.push_back(paths[place]);
+    while (request.sharing->begin_shard()) {
+        std::vector<std::size_t> places;
+        std::vector<std::string> own;
+        for (std::size_t place = 0; place < paths.size(); ++place) {
+            if (shard_of(contents[place], part.shards) != part.shard) continue;
+            places.push_back(place);
+            own.push_back(paths[place]);
+        }
+        if (!in_order<T>(own, request, sink, make, [&](std::size_t i, const T& result) {
+                part.results.emplace(places[i], data::packed(result));
+            }))
+            return false;
+        if (const auto failure = request.sharing->end_shard()) {
+            sink.report({failure->code, failure->message});
+            return false;
+        }
     }
-    in_order<T>(own, request, sink, make, [&](std::size_t i, const T& result) {
-        part.results.emplace(places[i], data::packed(result));
-    });
     return false;
 }
 
