@@ -171,7 +171,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
     }
     if (sink.has_errors()) return std::nullopt;
     demonstrations.for_each([&](std::size_t, const episodes::Recorded& demonstration) {
-        result.file.episodes.push_back(demonstration.hash);
+        result.file.episodes.push_back(episodes::hash_of(demonstration));
     });
     result.report = report(calibrated, predicates, evidence, frames, all) +
                     report_of_folds(model, predicates, evidence, demonstrations, request.folds) +

@@ -96,7 +96,7 @@ thresholds::Entry entry_of(const check::Model& model, const check::Monitor& moni
     entry.targets = std::move(provenance.targets);
     entry.against = check::word(monitor.calibration->against);
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
-        entry.episodes.push_back(episode.hash);
+        entry.episodes.push_back(episodes::hash_of(episode));
     });
     return entry;
 }

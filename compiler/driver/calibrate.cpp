@@ -107,7 +107,9 @@ bool calibrate(const source::File& file, const CalibrateRequest& request, diag::
     // The report comes before the file takes its name: where a part of it is lost, nothing has
     // changed.
     OutputFiles files(sink);
-    return files.add(output, thresholds::write(result->file)) &&
+    return files.begin(output) &&
+           thresholds::write(result->file,
+                             [&](std::string_view piece) { return files.write(piece); }) &&
            files.add(output == kStandardOutput ? "/dev/stderr" : std::string(kStandardOutput),
                      source::visible_lines(result->report)) &&
            files.commit();

@@ -50,7 +50,8 @@ public:
         if (!begin(root, {"format", "inputs"})) return *failure_;
         const Json* inputs = member(root, "", "inputs", Json::Kind::object, "an object");
         for (std::size_t i = 0; inputs != nullptr && i < inputs->keys.size() && !failure_; ++i)
-            marks[inputs->keys[i]] = hash(inputs->items[i], "inputs." + inputs->keys[i]);
+            marks[inputs->keys[i]] =
+                data::hash_text(hash(inputs->items[i], "inputs." + inputs->keys[i]));
         if (failure_) return *failure_;
         return marks;
     }
@@ -65,7 +66,7 @@ private:
 
     std::string hash_at(const Json& object, const std::string& path, const std::string& key) {
         const Json* value = member(object, path, key, Json::Kind::string, "a content hash");
-        return value == nullptr ? "" : hash(*value, path + "." + key);
+        return value == nullptr ? "" : data::hash_text(hash(*value, path + "." + key));
     }
 
     Encoder encoder(const Json& json, const std::string& path) {

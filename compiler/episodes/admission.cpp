@@ -6,6 +6,7 @@
 
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
+#include "episodes/overlaps.hpp"
 
 namespace etlc::episodes {
 
@@ -54,46 +55,23 @@ private:
     std::vector<Refusal> all_;
 };
 
-using Contents = std::map<std::string, data::EpisodeContent>;
-
-/// Episodes that something in a file was made from.
-class Seen {
-public:
-    /// `hashes`: of the episodes; `contents`: of them and of others.
-    Seen(const Contents& contents, std::vector<std::string> hashes) : hashes_(std::move(hashes)) {
-        std::sort(hashes_.begin(), hashes_.end());
-        for (const std::string& hash : hashes_)
-            if (const auto known = contents.find(hash); known != contents.end())
-                recordings_.add(known->second);
-    }
-
-    std::optional<data::Overlap> find(const Recorded& episode) const {
-        if (std::binary_search(hashes_.begin(), hashes_.end(), episode.hash))
-            return data::Overlap{0, 1, true};
-        return recordings_.find(episode.content);
-    }
-
-private:
-    std::vector<std::string> hashes_;  ///< sorted
-    data::Recordings recordings_;
-};
-
 /// Refuses what something in a file was made from.
 class Unseen {
 public:
-    /// `one`: what messages call such an episode; `advice`: the notes where it comes up again;
-    /// `allowing`: another, where it does in part.
-    Unseen(const Contents& contents, const std::vector<std::string>& hashes, bool allows, Code code,
-           std::string one, const std::string& advice, std::string_view allowing)
-        : seen_(contents, hashes),
+    /// `source`: which one it is of the search; `one`: what messages call such an episode;
+    /// `advice`: the notes where it comes up again; `allowing`: another, where it does in part.
+    Unseen(const OverlapSearch& search, std::size_t source, bool allows, Code code, std::string one,
+           const std::string& advice, std::string_view allowing)
+        : search_(search),
+          source_(source),
           allows_(allows),
           one_(std::move(one)),
           equal_(code, {advice}),
           in_part_(code, {advice, std::string(allowing)}) {}
 
     enum class Met : std::uint8_t { never, passed_over, refused };
-    Met look_at(const Recorded& episode) {
-        const auto found = seen_.find(episode);
+    Met look_at(std::size_t e, const Recorded& episode) {
+        const auto found = search_.find(source_, e, episode);
         if (!found) return Met::never;
         if (allows_ && !found->equal) return Met::passed_over;
         if (found->equal)
@@ -109,17 +87,31 @@ public:
     }
 
 private:
-    Seen seen_;
+    const OverlapSearch& search_;
+    std::size_t source_;
     bool allows_;
     std::string one_;
     Refusals equal_;
     Refusals in_part_;
 };
 
+enum SourceNumber : std::size_t { fitted_file, thresholds_file };
+
+/// What was fitted, then what was calibrated.
+OverlapSearch search(const Identities& episodes, const fitted::File& fitted,
+                     const thresholds::File& thresholds, std::vector<std::uint64_t> calibrated_on,
+                     bool each_other) {
+    return {
+        episodes,
+        {{fitted.recordings, fitted.episodes}, {thresholds.recordings, std::move(calibrated_on)}},
+        each_other};
+}
+
 /// Refuses what something was fitted on.
-Unseen not_fitted_on(const fitted::File& file, bool allows, std::string_view allowing) {
-    return {file.recordings,
-            file.episodes,
+Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool allows,
+                     std::string_view allowing) {
+    return {search,
+            fitted_file,
             allows,
             Code::episode_fitted_on,
             fmt::format("an episode that the projections, targets or metrics in {} were fitted on",
@@ -132,12 +124,14 @@ Unseen not_fitted_on(const fitted::File& file, bool allows, std::string_view all
 /// Looks at one episode after the other.
 class Admission {
 public:
-    Admission(const check::Model& model, const thresholds::File& before, const fitted::File& fitted,
-              const std::string& reason)
+    Admission(const check::Model& model, const Identities& episodes, const thresholds::File& before,
+              const fitted::File& fitted, const std::string& reason)
         : model_(model),
+          episodes_(episodes),
           allows_(!reason.empty()),
-          not_fitted_on_(not_fitted_on(fitted, allows_, kHowToAllow)),
-          unseen_(before.recordings, before.episodes, allows_, Code::not_disjoint,
+          search_(search(episodes, fitted, before, before.episodes, true)),
+          not_fitted_on_(not_fitted_on(search_, fitted, allows_, kHowToAllow)),
+          unseen_(search_, thresholds_file, allows_, Code::not_disjoint,
                   "an episode that thresholds of predicates were calibrated on",
                   "calibrate monitors on other episodes: fitted on the same ones, the thresholds "
                   "are better there than they will be",
@@ -145,13 +139,13 @@ public:
         passed_over_.reason = reason;
     }
 
-    void look_at(const Recorded& episode) {
-        const Unseen::Met fitted_on = not_fitted_on_.look_at(episode);
+    void look_at(std::size_t e, const Recorded& episode) {
+        const Unseen::Met fitted_on = not_fitted_on_.look_at(e, episode);
         if (fitted_on == Unseen::Met::refused) return;  // its frames are what was fitted
-        const Unseen::Met calibrated_on = unseen_.look_at(episode);
+        const Unseen::Met calibrated_on = unseen_.look_at(e, episode);
         const bool overlaps =
             fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
-        passed_over_.overlapping += look_at_earlier(episode) || overlaps ? 1 : 0;
+        passed_over_.overlapping += look_at_earlier(e, episode) || overlaps ? 1 : 0;
         if (episode.leak && allows_) ++passed_over_.leaked;
         if (episode.leak && !allows_)
             (of_scalars(*episode.leak) ? scalar_leaks_ : leaks_)
@@ -168,12 +162,10 @@ public:
 
 private:
     /// Whether an overlap was passed over.
-    bool look_at_earlier(const Recorded& episode) {
-        const auto found = recordings_.find(episode.content);
-        recordings_.add(episode.content);
-        paths_.push_back(episode.path);
+    bool look_at_earlier(std::size_t e, const Recorded& episode) {
+        const auto found = search_.find_earlier(e, episode);
         if (!found) return false;
-        const std::string other = data::in_quotes(paths_[found->other]);
+        const std::string other = data::in_quotes(episodes_[found->other].path);
         if (found->equal)
             repeated_.add(episode, "is the same episode as " + other);
         else if (!allows_)
@@ -186,11 +178,11 @@ private:
     }
 
     const check::Model& model_;
+    const Identities& episodes_;
     bool allows_;
+    OverlapSearch search_;
     Unseen not_fitted_on_;
     Unseen unseen_;
-    data::Recordings recordings_;
-    std::vector<std::string> paths_;  ///< in the order of recordings_
     thresholds::Allowance passed_over_;
     Refusals repeated_{
         Code::duplicate_episode,
@@ -224,8 +216,9 @@ std::string text(const check::Model& model, const Leak& leak) {
 thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink) {
-    Admission admission(model, before, fitted, reason);
-    episodes.for_each([&](std::size_t, const Recorded& episode) { admission.look_at(episode); });
+    Admission admission(model, episodes, before, fitted, reason);
+    episodes.for_each(
+        [&](std::size_t e, const Recorded& episode) { admission.look_at(e, episode); });
     return std::move(admission).conclude(sink);
 }
 
@@ -236,15 +229,16 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
         "reason stands next to the figures";
     thresholds::Allowance passed_over{reason};
-    Unseen not_fitted = not_fitted_on(fitted, !reason.empty(), kAllowing);
+    const OverlapSearch among =
+        search(episodes, fitted, thresholds, thresholds::all_episodes(thresholds), false);
+    Unseen not_fitted = not_fitted_on(among, fitted, !reason.empty(), kAllowing);
     Unseen unseen(
-        thresholds.recordings, thresholds::all_episodes(thresholds), !reason.empty(),
-        Code::episode_calibrated_on,
+        among, thresholds_file, !reason.empty(), Code::episode_calibrated_on,
         fmt::format("an episode that the thresholds in {} were calibrated on", thresholds.path),
         "keep the episodes for evaluation apart from those for calibration", kAllowing);
-    episodes.for_each([&](std::size_t, const Recorded& episode) {
-        const Unseen::Met fitted_on = not_fitted.look_at(episode);
-        const Unseen::Met calibrated_on = unseen.look_at(episode);
+    episodes.for_each([&](std::size_t e, const Recorded& episode) {
+        const Unseen::Met fitted_on = not_fitted.look_at(e, episode);
+        const Unseen::Met calibrated_on = unseen.look_at(e, episode);
         const bool overlaps =
             fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
         passed_over.overlapping += overlaps ? 1 : 0;
@@ -257,7 +251,7 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
 void record(const Identities& episodes, const thresholds::Allowance& allowance,
             thresholds::File& file) {
     episodes.for_each([&](std::size_t, const Recorded& episode) {
-        file.recordings[episode.hash] = episode.content;
+        file.recordings.add(hash_of(episode), episode.content);
     });
     if (allowance.overlapping + allowance.leaked > 0) file.allowances.push_back(allowance);
 }

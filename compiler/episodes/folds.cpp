@@ -8,10 +8,9 @@
 namespace etlc::episodes {
 
 std::vector<std::size_t> by_content(const Identities& episodes) {
-    std::vector<std::uint64_t> hashes;  // 16 hex digits each
-    episodes.for_each([&](std::size_t, const Recorded& episode) {
-        hashes.push_back(std::stoull(episode.hash, nullptr, 16));
-    });
+    std::vector<std::uint64_t> hashes;
+    episodes.for_each(
+        [&](std::size_t, const Recorded& episode) { hashes.push_back(hash_of(episode)); });
     std::vector<std::size_t> order(episodes.size());
     std::iota(order.begin(), order.end(), std::size_t{0});
     std::stable_sort(order.begin(), order.end(),

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
+#include "data/files/hash.hpp"
 #include "data/spill/spool.hpp"
 #include "data/traces/episodes.hpp"
 #include "data/traces/trace.hpp"
@@ -33,7 +34,7 @@ struct Wanted {
 /// What an episode is told by once it has been read.
 struct Recorded {
     std::string path;
-    std::string hash;
+    std::string hash;  ///< 16 hex digits
     data::EpisodeContent content;
     std::uint64_t frames = 0;
     std::optional<Leak> leak;  ///< the first one
@@ -42,6 +43,11 @@ struct Recorded {
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
     archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
+}
+
+/// Its hash as a number, as files of thresholds and of fitted things have it.
+inline std::uint64_t hash_of(const Recorded& recorded) {
+    return data::hash_of_text(recorded.hash).value_or(0);  // which all of EpisodeHash are
 }
 
 /// Of all episodes of a call, in their order.

@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "episodes/auroc.hpp"
+#include "episodes/overlaps.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {
@@ -168,13 +169,16 @@ Evaluation summarise(const Judgement& judgement) {
     result.step_seconds = judgement.step_seconds;
     result.reservations = judgement.reservations;
     result.folds = judgement.folds;
-    data::Recordings earlier;
+    episodes::Identities in_order;  // of the request, in which folds do not come
+    if (!judgement.folds.empty())
+        judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
+            in_order.add(episode);
+        });
+    const auto alike = episodes::overlaps(judgement.folds.empty() ? judgement.episodes : in_order);
+    result.repeated = alike.repeated;
+    result.overlapping = alike.overlapping;
     judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
         result.frames += episode.frames;
-        const auto overlap = earlier.find(episode.content);
-        earlier.add(episode.content);
-        result.repeated += overlap && overlap->equal ? 1 : 0;
-        result.overlapping += overlap && !overlap->equal ? 1 : 0;
         result.leaked += episode.leak ? 1 : 0;
     });
     const Bootstrap bootstrap(judgement.episodes.size());

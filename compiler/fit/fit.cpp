@@ -82,7 +82,7 @@ fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const So
     entry.frames = solution.counts.holds;
     for (const Source* source : solution.medoids)
         entry.medoids.push_back(
-            {collection.readings.episodes()[source->episode].hash, source->frame.step});
+            {hash_of(collection.readings.episodes()[source->episode]), source->frame.step});
     return entry;
 }
 
@@ -128,8 +128,8 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
         result.file.entries[all.model.fitted[i].name] =
             entry_of(all.model, all.model.fitted[i], all.solutions[i], *collection);
     for (const episodes::Recorded& episode : read) {
-        result.file.episodes.push_back(episode.hash);
-        result.file.recordings[episode.hash] = episode.content;
+        result.file.episodes.push_back(hash_of(episode));
+        result.file.recordings.add(hash_of(episode), episode.content);
     }
     if (allowance.overlapping + allowance.leaked > 0) result.file.allowances.push_back(allowance);
     result.report = report(all.model, *collection, all.solutions, *separations);

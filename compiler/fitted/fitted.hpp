@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "data/traces/overlap.hpp"
+#include "data/traces/known.hpp"
 #include "diag/diag.hpp"
 #include "thresholds/thresholds.hpp"
 
@@ -19,7 +19,7 @@ namespace etlc::fitted {
 
 /// A frame of an episode.
 struct Frame {
-    std::string episode;  ///< content hash, 16 hex digits
+    std::uint64_t episode = 0;  ///< content hash
     std::uint64_t step = 0;
 };
 
@@ -43,10 +43,9 @@ struct File {
     std::string spec;
     std::string etlc;  ///< version that wrote it
     std::map<std::string, Entry> entries;
-    /// Content hashes of the episodes behind the entries, 16 hex digits each.
-    std::vector<std::string> episodes;
-    /// By content hash, what tells them apart.
-    std::map<std::string, data::EpisodeContent> recordings;
+    /// Content hashes of the episodes behind the entries.
+    std::vector<std::uint64_t> episodes;
+    data::KnownEpisodes recordings;  ///< what tells them apart
     std::vector<thresholds::Allowance> allowances;
 };
 

@@ -8,6 +8,7 @@
 #include "data/quote.hpp"
 #include "fitted/fitted.hpp"
 #include "thresholds/described.hpp"
+#include "thresholds/items.hpp"
 
 namespace etlc::fitted {
 namespace {
@@ -33,7 +34,8 @@ bool is_name(const std::string& text) {
 /// The description and the arrays that it names to File.
 class Reader : private thresholds::DescribedArrays {
 public:
-    explicit Reader(const data::Archive& archive) : DescribedArrays(archive, kDescription) {}
+    Reader(const data::Archive& archive, thresholds::Items& items)
+        : DescribedArrays(archive, kDescription), items_(items) {}
 
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
@@ -50,8 +52,8 @@ public:
         const Json* entries = member(root, "", "entries", Json::Kind::object, "an object");
         for (std::size_t i = 0; entries != nullptr && i < entries->keys.size() && !failure_; ++i)
             file.entries.emplace(entries->keys[i], entry(entries->items[i], entries->keys[i]));
-        file.episodes = episodes(root, "");
-        file.recordings = recordings(root);
+        file.episodes = episodes(root, "", items_);
+        file.recordings = recordings(root, items_);
         if (root.find("allowances") != nullptr) file.allowances = allowances(root);
         if (failure_) return *failure_;
         return file;
@@ -125,14 +127,26 @@ private:
                 {hash(*episode, place + ".episode"), count(frame, place, "step")});
         }
     }
+
+    thresholds::Items& items_;
 };
 
-diag::Result<File> read_from(const data::ArchivePlace& place, const std::string& path) {
+diag::Result<File> read_all(const data::ArchivePlace& place, const std::string& path) {
     const auto archive = data::Archive::open(place);
     if (!archive) return archive.failure();
-    const auto root = thresholds::read_description(*archive, kDescription);
+    thresholds::Items items(kDescription.invalid);
+    const auto root = thresholds::read_description(*archive, kDescription, items.taker());
+    if (const auto twice = items.twice()) return *twice;
     if (!root) return root.failure();
-    return Reader(*archive).read(*root, path);
+    return Reader(*archive, items).read(*root, path);
+}
+
+diag::Result<File> read_from(const data::ArchivePlace& place, const std::string& path) {
+    try {
+        return read_all(place, path);
+    } catch (const data::SpillError& error) {
+        return Failure{Code::unreadable_data_file, error.what()};
+    }
 }
 
 }  // namespace

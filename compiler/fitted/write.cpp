@@ -1,6 +1,7 @@
 #include <fmt/format.h>
 
 #include "data/arrays/npz_writer.hpp"
+#include "data/files/hash.hpp"
 #include "fitted/fitted.hpp"
 #include "thresholds/fields.hpp"
 
@@ -13,7 +14,8 @@ std::string medoids(const std::vector<Frame>& frames) {
     std::string result = "[";
     for (const Frame& frame : frames)
         result += fmt::format("{}\n        {{ \"episode\": {}, \"step\": {} }}",
-                              result.size() > 1 ? "," : "", json_text(frame.episode), frame.step);
+                              result.size() > 1 ? "," : "",
+                              json_text(data::hash_text(frame.episode)), frame.step);
     return result + "\n      ]";
 }
 
@@ -54,8 +56,16 @@ std::string write(const File& file) {
     };
     line("spec", json_text(file.spec));
     line("entries", thresholds::json_object(entries, 2));
-    line("episodes", thresholds::json_episodes(file.episodes, 2));
-    line("recordings", thresholds::json_recordings(file.recordings));
+    thresholds::Pieces to([&](std::string_view piece) {
+        description += piece;
+        return true;
+    });
+    to.add("  \"episodes\": ");
+    thresholds::write_episodes(file.episodes, 2, to);
+    to.add(",\n  \"recordings\": ");
+    thresholds::write_recordings(file.recordings, to);
+    to.add(",\n");
+    to.finish();
     if (!file.allowances.empty()) line("allowances", thresholds::json_allowances(file.allowances));
     description += fmt::format("  \"etlc\": {}\n}}\n", json_text(file.etlc));
     members.front() = {"fitted.json", std::move(description)};

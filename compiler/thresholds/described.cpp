@@ -6,6 +6,7 @@
 
 #include "data/arrays/npy.hpp"
 #include "data/quote.hpp"
+#include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
 
@@ -13,14 +14,25 @@ using data::in_quotes;
 using diag::Code;
 using diag::Failure;
 
-diag::Result<Json> read_description(const data::Archive& archive, const Description& of) {
-    const auto text = archive.file(of.member, kMaxDescriptionBytes);
-    if (!text && text.failure().code == Code::no_such_array)
+diag::Result<Json> read_description(const data::Archive& archive, const Description& of,
+                                    const ItemTaker& taker) {
+    const auto bytes = archive.file(of.member, kMaxFileBytes);
+    if (!bytes && bytes.failure().code == Code::no_such_array)
         return Failure{of.malformed, fmt::format("has no member '{}', expected a file that '{}' "
                                                  "wrote",
                                                  of.member, of.command)};
-    if (!text) return text.failure();
-    return parse_json(*text, kMaxDescriptionValues, of.malformed, of.invalid);
+    if (!bytes) return bytes.failure();
+    Text text(**bytes, kMaxDescriptionBytes, of.malformed);
+    auto root = parse_json(text, kMaxDescriptionValues, of.malformed, of.invalid, taker);
+    if (text.failure()) return *text.failure();
+    // A damaged archive is that first of all: reading on to the end compares the checksum.
+    const std::uint64_t size = text.finish();
+    if (text.failure()) return *text.failure();
+    if (size != (*bytes)->size())
+        return Failure{Code::malformed_archive,
+                       fmt::format("member {} has other than {} bytes", in_quotes(of.member),
+                                   (*bytes)->size())};
+    return root;
 }
 
 DescribedArrays::Numbers DescribedArrays::floats(const std::string& key, std::size_t rank,

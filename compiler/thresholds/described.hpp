@@ -16,8 +16,8 @@
 
 namespace etlc::thresholds {
 
-/// Archives whose arrays take more are refused, and so are descriptions that take more or hold more
-/// JSON values.
+/// Archives whose arrays take more are refused, and so are descriptions of which more stays in
+/// memory, as kMaxKeptBytes and kMaxValues have it.
 inline constexpr std::uint64_t kMaxArrayBytes = 256ULL << 20U;
 inline constexpr std::uint64_t kMaxDescriptionBytes = 64ULL << 20U;
 inline constexpr std::uint64_t kMaxDescriptionValues = 1ULL << 21U;
@@ -31,8 +31,9 @@ struct Description {
     diag::Code invalid;
 };
 
-/// The description as a tree.
-diag::Result<Json> read_description(const data::Archive& archive, const Description& of);
+/// The description as a tree, but for the items that are taken.
+diag::Result<Json> read_description(const data::Archive& archive, const Description& of,
+                                    const ItemTaker& taker = {});
 
 /// Reads the fields of a description, and the arrays that it names.
 class DescribedArrays : protected Fields {

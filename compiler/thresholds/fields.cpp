@@ -7,26 +7,30 @@
 #include <iterator>
 #include <nlohmann/json.hpp>
 
+#include "data/files/hash.hpp"
+#include "data/number.hpp"
 #include "data/quote.hpp"
+#include "thresholds/items.hpp"
 
 namespace etlc::thresholds {
 
 using data::in_quotes;
 using diag::Failure;
 
-namespace {
-
-bool is_hash(const std::string& text) {
-    const auto hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
-    return text.size() == 16 && std::all_of(text.begin(), text.end(), hex);
+std::uint64_t Fields::hash(const Json& json, const std::string& path) {
+    const auto hash =
+        json.kind == Json::Kind::string ? data::hash_of_text(json.text) : std::nullopt;
+    if (!hash) fail(path, json, "a content hash of 16 hex digits");
+    return hash.value_or(0);
 }
 
-}  // namespace
-
-std::string Fields::hash(const Json& json, const std::string& path) {
-    if (json.kind != Json::Kind::string || !is_hash(json.text))
-        fail(path, json, "a content hash of 16 hex digits");
-    return json.text;
+double Fields::score(const Json& json, const std::string& path) {
+    const bool infinite =
+        json.kind == Json::Kind::string && (json.text == "inf" || json.text == "-inf");
+    if (json.kind == Json::Kind::number || infinite)
+        return data::parse_number(json.text).value_or(0);
+    fail(path, json, "a number, 'inf' or '-inf'");
+    return 0;
 }
 
 std::string Fields::text(const Json& object, const std::string& path, const std::string& key) {
@@ -89,29 +93,21 @@ std::uint64_t Fields::count(const Json& json, const std::string& path, const std
     return result;
 }
 
-std::vector<std::string> Fields::episodes(const Json& object, const std::string& path) {
-    const Json* array =
-        member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
-    std::vector<std::string> result;
-    for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i)
-        result.push_back(hash(array->items[i],
-                              fmt::format("{}{}episodes[{}]", path, path.empty() ? "" : ".", i)));
-    return result;
+std::vector<std::uint64_t> Fields::episodes(const Json& object, const std::string& path,
+                                            Items& items) {
+    member(object, path, "episodes", Json::Kind::array, "an array of content hashes");
+    if (failure_) return {};
+    auto found = items.episodes(path.empty() ? "episodes" : path + ".episodes");
+    failure_ = std::move(found.failure);
+    return std::move(found.values);
 }
 
-std::map<std::string, data::EpisodeContent> Fields::recordings(const Json& root) {
-    const Json* object = member(root, "", "recordings", Json::Kind::object, "an object");
-    std::map<std::string, data::EpisodeContent> result;
-    for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i) {
-        const std::string place = "recordings." + object->keys[i];
-        const Json& inputs = object->items[i];
-        if (!is_hash(object->keys[i]) || inputs.kind != Json::Kind::object)
-            fail(place, inputs, "an object named by a content hash of 16 hex digits");
-        data::EpisodeContent& of_inputs = result[object->keys[i]];
-        for (std::size_t k = 0; k < inputs.keys.size() && !failure_; ++k)
-            of_inputs[inputs.keys[k]] = content(inputs.items[k], place + "." + inputs.keys[k]);
-    }
-    return result;
+data::KnownEpisodes Fields::recordings(const Json& root, Items& items) {
+    member(root, "", "recordings", Json::Kind::object, "an object");
+    if (failure_) return {};
+    auto found = items.recordings();
+    failure_ = std::move(found.failure);
+    return std::move(found.values);
 }
 
 data::InputContent Fields::content(const Json& json, const std::string& path) {
@@ -120,7 +116,8 @@ data::InputContent Fields::content(const Json& json, const std::string& path) {
     const std::string& digits = json.text;
     data::InputContent result;
     bool sound = json.kind == Json::Kind::string && digits.size() > kHash && digits[kHash] == ':' &&
-                 digits.size() % kUnit == 1 && is_hash(digits.substr(0, kHash));
+                 digits.size() % kUnit == 1 &&
+                 data::hash_of_text(digits.substr(0, kHash)).has_value();
     for (std::size_t at = kHash + 1; sound && at < digits.size(); at += kUnit) {
         std::uint32_t unit = 0;
         const char* end = digits.data() + at + kUnit;
@@ -166,19 +163,20 @@ std::string json_object(const std::map<std::string, std::string>& members, std::
     return result + fmt::format("\n{:{}}}}", "", indent);
 }
 
-std::string json_episodes(const std::vector<std::string>& hashes, std::size_t indent) {
-    if (hashes.empty()) return "[]";
-    std::string result = "[";
-    for (const std::string& hash : hashes)
-        result += fmt::format("{}\n{:{}}{}", result.size() > 1 ? "," : "", "", indent + 2,
-                              json_text(hash));
-    return result + fmt::format("\n{:{}}]", "", indent);
+void write_episodes(const std::vector<std::uint64_t>& hashes, std::size_t indent, Pieces& to) {
+    if (hashes.empty()) return to.add("[]");
+    to.add("[");
+    for (std::size_t i = 0; i < hashes.size(); ++i)
+        to.add(fmt::format("{}\n{:{}}\"{}\"", i > 0 ? "," : "", "", indent + 2,
+                           data::hash_text(hashes[i])));
+    to.add(fmt::format("\n{:{}}]", "", indent));
 }
 
 /// Per episode and input, the hash, a colon and the sketch, eight digits a unit.
-std::string json_recordings(const std::map<std::string, data::EpisodeContent>& all) {
-    std::map<std::string, std::string> members;
-    for (const auto& [hash, content] : all) {
+void write_recordings(const data::KnownEpisodes& all, Pieces& to) {
+    if (all.empty()) return to.add("{}");
+    std::string_view before = "{";
+    all.for_each([&](std::uint64_t hash, const data::EpisodeContent& content) {
         std::map<std::string, std::string> inputs;
         for (const auto& [name, of_input] : content) {
             std::string digits = of_input.hash + ":";
@@ -186,9 +184,11 @@ std::string json_recordings(const std::map<std::string, data::EpisodeContent>& a
                 fmt::format_to(std::back_inserter(digits), "{:08x}", unit);
             inputs[name] = json_text(digits);
         }
-        members[hash] = json_object(inputs, 4);
-    }
-    return json_object(members, 2);
+        to.add(fmt::format("{}\n    \"{}\": {}", before, data::hash_text(hash),
+                           json_object(inputs, 4)));
+        before = ",";
+    });
+    to.add("\n  }");
 }
 
 std::string json_allowances(const std::vector<Allowance>& all) {

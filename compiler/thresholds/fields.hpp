@@ -1,6 +1,7 @@
 // Reading the fields of a JSON tree, and those that every file with episodes behind it has: their
 // hashes, what tells them apart, and what --allow-overlap passed over.
-// Takes: the tree. Gives: values of the kinds asked for. Keeps true: the first thing wrong stays in
+// Takes: the tree, and the items that are not in it (thresholds/items.hpp). Gives: values of the
+// kinds asked for. Keeps true: the first thing wrong stays in
 // `failure_`, and what follows it is not looked at; its message names the key, what was found and
 // what was expected.
 #pragma once
@@ -10,9 +11,10 @@
 #include <string>
 #include <vector>
 
-#include "data/traces/overlap.hpp"
+#include "data/traces/known.hpp"
 #include "diag/diag.hpp"
 #include "thresholds/json.hpp"
+#include "thresholds/pieces.hpp"
 
 namespace etlc::thresholds {
 
@@ -22,6 +24,8 @@ struct Allowance {
     std::uint64_t overlapping = 0;  ///< episodes that share most of their content with another
     std::uint64_t leaked = 0;       ///< episodes with a target among their frames
 };
+
+class Items;
 
 class Fields {
 protected:
@@ -38,11 +42,13 @@ protected:
                        Json::Kind kind, const std::string& expected);
     std::string text(const Json& object, const std::string& path, const std::string& key);
     std::uint64_t count(const Json& object, const std::string& path, const std::string& key);
-    std::string hash(const Json& json, const std::string& path);
+    std::uint64_t hash(const Json& json, const std::string& path);
+    double score(const Json& json, const std::string& path);
+    data::InputContent content(const Json& json, const std::string& path);
 
-    /// The content hashes in the array "episodes".
-    std::vector<std::string> episodes(const Json& object, const std::string& path);
-    std::map<std::string, data::EpisodeContent> recordings(const Json& root);
+    /// The content hashes in the array "episodes", whose items are in `items`.
+    std::vector<std::uint64_t> episodes(const Json& object, const std::string& path, Items& items);
+    data::KnownEpisodes recordings(const Json& root, Items& items);
     std::vector<Allowance> allowances(const Json& root);
 
     void check_keys(const Json& object, const std::string& path,
@@ -52,8 +58,6 @@ protected:
     std::optional<diag::Failure> failure_;
 
 private:
-    data::InputContent content(const Json& json, const std::string& path);
-
     diag::Code invalid_;
     diag::Code unknown_format_;
 };
@@ -61,8 +65,8 @@ private:
 /// The other way: JSON text of what the functions of the same names read, `indent` blanks deep.
 std::string json_text(const std::string& value);
 std::string json_object(const std::map<std::string, std::string>& members, std::size_t indent);
-std::string json_episodes(const std::vector<std::string>& hashes, std::size_t indent);
-std::string json_recordings(const std::map<std::string, data::EpisodeContent>& all);
 std::string json_allowances(const std::vector<Allowance>& all);
+void write_episodes(const std::vector<std::uint64_t>& hashes, std::size_t indent, Pieces& to);
+void write_recordings(const data::KnownEpisodes& all, Pieces& to);
 
 }  // namespace etlc::thresholds

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <unordered_set>
@@ -18,13 +19,41 @@ using diag::Failure;
 
 constexpr int kNumberOverflow = 406;  ///< nlohmann's id of this error
 
+/// The bytes of a text, for nlohmann's parser.
+class Bytes {
+public:
+    using iterator_category = std::input_iterator_tag;
+    using value_type = char;
+    using difference_type = std::ptrdiff_t;
+    using pointer = const char*;
+    using reference = char;
+
+    explicit Bytes(Text* text = nullptr) : text_(text) {}
+    char operator*() const { return text_->peek(); }
+    Bytes& operator++() {
+        text_->advance();
+        return *this;
+    }
+    /// With the end.
+    bool operator==(const Bytes&) const { return text_->at_end(); }
+    bool operator!=(const Bytes& end) const { return !(*this == end); }
+
+private:
+    Text* text_;
+};
+
 /// Builds the tree from nlohmann's events. Returning false stops the parser.
 class Builder {
 public:
-    Builder(const std::string& text, std::uint64_t max_values, Code malformed, Code invalid)
-        : text_(text), max_values_(max_values), malformed_(malformed), invalid_(invalid) {}
+    Builder(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
+            const ItemTaker& taker)
+        : text_(text),
+          max_values_(max_values),
+          malformed_(malformed),
+          invalid_(invalid),
+          taker_(taker) {}
 
-    bool null() { return add({}) != nullptr; }
+    bool null() { return add({}) != nullptr && complete(); }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
     bool number_integer(std::int64_t value) {
         return leaf(Json::Kind::number, std::to_string(value));
@@ -44,23 +73,27 @@ public:
     bool end_array() { return close(); }
 
     bool key(std::string& name) {
-        if (!seen_.back().insert(name).second) {
+        Open& object = open_.back();
+        if (!object.take && !object.seen.insert(name).second) {
             failure_ = Failure{
                 invalid_, fmt::format("key {} stands twice in one object", data::in_quotes(name))};
             return false;
         }
-        open_.back()->keys.push_back(std::move(name));
+        if (!object.take) object.json->keys.push_back(name);
+        path_.back() = std::move(name);
         return true;
     }
 
     bool parse_error(std::size_t position, const std::string&,
                      const nlohmann::json::exception& error) {
-        std::string what = "its end";
-        if (error.id == kNumberOverflow)
-            what = "a number that no double holds";
-        else if (position <= text_.size())  // counts the bytes read, the unexpected one included
-            what = data::in_quotes(character(position > 0 ? position - 1 : 0));
-        const source::Position place = place_of(position);
+        // The position counts the bytes read, the unexpected one included.
+        const std::uint64_t at = position > 0 ? position - 1 : 0;
+        const source::Position place = text_.place(at);
+        std::string what = "a number that no double holds";
+        if (error.id != kNumberOverflow) {
+            const std::string found = text_.character(at);
+            what = found.empty() ? "its end" : data::in_quotes(found);
+        }
         failure_ = Failure{malformed_, fmt::format("is no JSON: unexpected {}", what), place.line,
                            place.column};
         return false;
@@ -70,11 +103,20 @@ public:
     Json take() { return std::move(root_); }
 
 private:
+    /// An array or object that has begun.
+    struct Open {
+        Json* json;
+        TakeItem take;                         ///< its items; nothing: the tree does
+        std::uint64_t values;                  ///< up to it, itself included
+        std::size_t taken = 0;                 ///< items
+        std::unordered_set<std::string> seen;  ///< keys
+    };
+
     bool leaf(Json::Kind kind, std::string text) {
         Json json;
         json.kind = kind;
         json.text = std::move(text);
-        return add(std::move(json)) != nullptr;
+        return add(std::move(json)) != nullptr && complete();
     }
 
     bool open(Json::Kind kind) {
@@ -87,15 +129,30 @@ private:
         json.kind = kind;
         Json* added = add(std::move(json));
         if (added == nullptr) return false;
-        open_.push_back(added);
-        seen_.emplace_back();
+        TakeItem take = taker_ ? taker_(path_, kind) : nullptr;
+        if (take) text_.pass(true);
+        open_.push_back({added, std::move(take), values_, 0, {}});
+        path_.emplace_back();
         return true;
     }
 
     bool close() {
         open_.pop_back();
-        seen_.pop_back();
-        return true;
+        path_.pop_back();
+        return complete();
+    }
+
+    /// A value that was added last.
+    bool complete() {
+        if (open_.empty() || !open_.back().take) return true;
+        Open& in = open_.back();
+        const Json item = std::move(in.json->items.back());
+        in.json->items.pop_back();
+        values_ = in.values;
+        Taken taken = in.take(in.taken++, path_.back(), item);
+        text_.pass(taken.keeps);
+        failure_ = std::move(taken.failure);
+        return !failure_;
     }
 
     /// Pointers to open arrays and objects stay good: only the innermost one grows.
@@ -111,40 +168,20 @@ private:
             root_ = std::move(json);
             return &root_;
         }
-        auto& items = open_.back()->items;
+        auto& items = open_.back().json->items;
         items.push_back(std::move(json));
         return &items.back();
     }
 
-    static bool continuation(char c) { return (static_cast<unsigned char>(c) & 0xc0U) == 0x80U; }
-
-    /// The UTF-8 character that begins at byte `at`.
-    std::string_view character(std::size_t at) const {
-        std::size_t end = at + 1;
-        while (end < text_.size() && end < at + 4 && continuation(text_[end])) ++end;
-        return std::string_view(text_).substr(at, end - at);
-    }
-
-    source::Position place_of(std::size_t position) const {
-        const std::string_view before =
-            std::string_view(text_).substr(0, position > 0 ? position - 1 : 0);
-        const auto lines = std::count(before.begin(), before.end(), '\n');
-        const std::size_t line_begin = before.rfind('\n') + 1;  // npos + 1 is 0
-        const std::string_view line = before.substr(line_begin);
-        const auto columns =
-            static_cast<std::size_t>(line.end() - line.begin()) -
-            static_cast<std::size_t>(std::count_if(line.begin(), line.end(), continuation));
-        return {static_cast<std::uint32_t>(lines + 1), static_cast<std::uint32_t>(columns + 1)};
-    }
-
-    const std::string& text_;
+    Text& text_;
     std::uint64_t max_values_;
     Code malformed_;
     Code invalid_;
+    const ItemTaker& taker_;
     std::uint64_t values_ = 0;
     Json root_;
-    std::vector<Json*> open_;
-    std::vector<std::unordered_set<std::string>> seen_;  ///< keys of each open object
+    std::vector<Open> open_;
+    std::vector<std::string> path_;  ///< of each that is open, the key of its last value
     std::optional<Failure> failure_;
 };
 
@@ -155,12 +192,20 @@ const Json* Json::find(const std::string& key) const {
     return found == keys.end() ? nullptr : &items[static_cast<std::size_t>(found - keys.begin())];
 }
 
-diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code malformed,
-                              Code invalid) {
-    Builder builder(text, max_values, malformed, invalid);
-    nlohmann::json::sax_parse(text, &builder);
+diag::Result<Json> parse_json(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
+                              const ItemTaker& taker) {
+    Builder builder(text, max_values, malformed, invalid, taker);
+    nlohmann::json::sax_parse(Bytes(&text), Bytes(), &builder);
+    if (text.failure()) return *text.failure();
     if (auto failure = builder.failure()) return *failure;
     return builder.take();
+}
+
+diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code malformed,
+                              Code invalid, const ItemTaker& taker) {
+    const auto bytes = data::from_memory(text);
+    Text all(*bytes, text.size(), malformed);
+    return parse_json(all, max_values, malformed, invalid, taker);
 }
 
 std::string describe(const Json& json) {

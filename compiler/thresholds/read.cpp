@@ -3,12 +3,12 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
-#include <set>
 
-#include "data/files/file.hpp"
+#include "data/files/bytes.hpp"
+#include "data/files/hash.hpp"
 #include "data/number.hpp"
 #include "data/quote.hpp"
-#include "thresholds/fields.hpp"
+#include "thresholds/items.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {
@@ -21,7 +21,8 @@ using diag::Failure;
 /// Tree to File.
 class Reader : private Fields {
 public:
-    Reader() : Fields(Code::invalid_thresholds, Code::unknown_thresholds_format) {}
+    explicit Reader(Items& items)
+        : Fields(Code::invalid_thresholds, Code::unknown_thresholds_format), items_(items) {}
 
     diag::Result<File> read(const Json& root, const std::string& path) {
         File file;
@@ -38,8 +39,8 @@ public:
         file.etlc = text(root, "", "etlc");
         entries(root, "predicates", "predicate", file.predicates);
         if (root.find("monitors") != nullptr) entries(root, "monitors", "formula", file.monitors);
-        if (root.find("episodes") != nullptr) file.episodes = episodes(root, "");
-        if (root.find("recordings") != nullptr) file.recordings = recordings(root);
+        if (root.find("episodes") != nullptr) file.episodes = episodes(root, "", items_);
+        if (root.find("recordings") != nullptr) file.recordings = recordings(root, items_);
         if (root.find("allowances") != nullptr) file.allowances = allowances(root);
         if (failure_) return *failure_;
         return file;
@@ -83,7 +84,7 @@ private:
         result.targets = targets(json, path);
         if (!of_monitor) return result;
         result.against = against(json, path);
-        result.episodes = episodes(json, path);
+        result.episodes = episodes(json, path, items_);
         return result;
     }
 
@@ -120,26 +121,19 @@ private:
     }
 
     std::vector<double> scores(const Json& json, const std::string& path) {
-        const Json* array = member(json, path, "scores", Json::Kind::array, "an array of numbers");
-        std::vector<double> result;
-        for (std::size_t i = 0; array != nullptr && i < array->items.size() && !failure_; ++i) {
-            const Json& item = array->items[i];
-            const bool infinite =
-                item.kind == Json::Kind::string && (item.text == "inf" || item.text == "-inf");
-            if (item.kind != Json::Kind::number && !infinite)
-                fail(fmt::format("{}.scores[{}]", path, i), item, "a number, 'inf' or '-inf'");
-            else
-                result.push_back(data::parse_number(item.text).value_or(0));
-        }
-        return result;
+        member(json, path, "scores", Json::Kind::array, "an array of numbers");
+        if (failure_) return {};
+        auto found = items_.scores(path + ".scores");
+        failure_ = std::move(found.failure);
+        return std::move(found.values);
     }
 
     std::map<std::string, std::string> targets(const Json& json, const std::string& path) {
         const Json* object = member(json, path, "targets", Json::Kind::object, "an object");
         std::map<std::string, std::string> result;
         for (std::size_t i = 0; object != nullptr && i < object->keys.size() && !failure_; ++i)
-            result[object->keys[i]] =
-                hash(object->items[i], fmt::format("{}.targets.{}", path, object->keys[i]));
+            result[object->keys[i]] = data::hash_text(
+                hash(object->items[i], fmt::format("{}.targets.{}", path, object->keys[i])));
         return result;
     }
 
@@ -149,21 +143,45 @@ private:
             fail(path + ".against", *json.find("against"), "'missed_alarm' or 'missed_success'");
         return value;
     }
+
+    Items& items_;
 };
+
+diag::Result<File> read_all(data::ByteSource& source, const std::string& path) {
+    if (source.size() > kMaxFileBytes)
+        return Failure{
+            Code::unreadable_thresholds,
+            fmt::format("is larger than {} bytes, the most that is read", kMaxFileBytes)};
+    Text text(source, kMaxKeptBytes, Code::unreadable_thresholds);
+    Items items(Code::invalid_thresholds);
+    const auto root = parse_json(text, kMaxValues, Code::malformed_thresholds,
+                                 Code::invalid_thresholds, items.taker());
+    if (const auto twice = items.twice()) return *twice;
+    if (!root) return root.failure();
+    return Reader(items).read(*root, path);
+}
+
+diag::Result<File> read_from(data::ByteSource& source, const std::string& path) {
+    try {
+        return read_all(source, path);
+    } catch (const data::SpillError& error) {
+        return Failure{Code::unreadable_thresholds, error.what()};
+    }
+}
 
 }  // namespace
 
-std::vector<std::string> all_episodes(const File& file) {
-    std::vector<std::string> result = file.episodes;
+std::vector<std::uint64_t> all_episodes(const File& file) {
+    std::vector<std::uint64_t> result = file.episodes;
     for (const auto& [name, entry] : file.monitors)
         result.insert(result.end(), entry.episodes.begin(), entry.episodes.end());
     return result;
 }
 
 void drop_unused_recordings(File& file) {
-    const std::vector<std::string> episodes = all_episodes(file);
-    const std::set<std::string> used(episodes.begin(), episodes.end());
-    std::erase_if(file.recordings, [&](const auto& known) { return !used.contains(known.first); });
+    std::vector<std::uint64_t> used = all_episodes(file);
+    std::sort(used.begin(), used.end());
+    file.recordings.keep(used);
 }
 
 std::string text(const Allowance& allowance) {
@@ -180,15 +198,13 @@ std::string text(const Allowance& allowance) {
 }
 
 diag::Result<File> read(const std::string& path) {
-    auto bytes = data::read_file(path, kMaxFileBytes, Code::unreadable_thresholds);
-    if (!bytes) return bytes.failure();
-    return parse(*bytes, path);
+    const auto source = data::open_file(path);
+    if (!source) return Failure{Code::unreadable_thresholds, source.failure().message};
+    return read_from(**source, path);
 }
 
 diag::Result<File> parse(const std::string& json, const std::string& path) {
-    auto root = parse_json(json, kMaxValues, Code::malformed_thresholds, Code::invalid_thresholds);
-    if (!root) return root.failure();
-    return Reader().read(*root, path);
+    return read_from(*data::from_memory(json), path);
 }
 
 }  // namespace etlc::thresholds

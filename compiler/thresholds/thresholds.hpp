@@ -9,14 +9,18 @@
 #include <string>
 #include <vector>
 
-#include "data/traces/overlap.hpp"
+#include "data/traces/known.hpp"
 #include "diag/diag.hpp"
 #include "thresholds/fields.hpp"
+#include "thresholds/pieces.hpp"
 
 namespace etlc::thresholds {
 
-/// Larger files are refused, and so are files of more JSON values.
-inline constexpr std::uint64_t kMaxFileBytes = 64ULL << 20U;
+/// Larger files are refused: millions of episodes come to less, and temporary files take as much.
+inline constexpr std::uint64_t kMaxFileBytes = 4ULL << 30U;
+/// Of what stays in memory, the bytes of its text, and JSON values in a tree: all but "recordings"
+/// and, of the values, what is in arrays of episodes and scores.
+inline constexpr std::uint64_t kMaxKeptBytes = 64ULL << 20U;
 inline constexpr std::uint64_t kMaxValues = 1ULL << 21U;
 
 struct Entry {
@@ -33,7 +37,7 @@ struct Entry {
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
     std::string against;                         ///< monitors: missed_alarm or missed_success
     /// Monitors: hashes of the episodes that it was calibrated on.
-    std::vector<std::string> episodes;
+    std::vector<std::uint64_t> episodes;
 };
 
 struct File {
@@ -42,16 +46,16 @@ struct File {
     std::string etlc;  ///< version that wrote it
     std::map<std::string, Entry> predicates;
     std::map<std::string, Entry> monitors;
-    /// Content hashes of the episodes behind `predicates`, 16 hex digits each.
-    std::vector<std::string> episodes;
+    /// Content hashes of the episodes behind `predicates`.
+    std::vector<std::uint64_t> episodes;
     /// Of the episodes behind predicates and monitors, by content hash, what tells them apart;
     /// those that are not in it, from another version, are told apart by their hashes alone.
-    std::map<std::string, data::EpisodeContent> recordings;
+    data::KnownEpisodes recordings;
     std::vector<Allowance> allowances;  ///< of each call of `etlc calibrate` that made use of it
 };
 
 /// Of all episodes that some threshold was calibrated on.
-std::vector<std::string> all_episodes(const File& file);
+std::vector<std::uint64_t> all_episodes(const File& file);
 
 /// Those of episodes that no threshold in the file was calibrated on.
 void drop_unused_recordings(File& file);
@@ -65,7 +69,9 @@ std::string text(const Allowance& allowance);
 diag::Result<File> read(const std::string& path);
 diag::Result<File> parse(const std::string& json, const std::string& path);
 
-/// JSON, two blanks of indentation a level, keys in a fixed order, a line feed at the end.
+/// JSON, two blanks of indentation a level, keys in a fixed order, a line feed at the end: a piece
+/// after the other. False where `take` did not take one.
+bool write(const File& file, const Pieces::Take& take);
 std::string write(const File& file);
 
 }  // namespace etlc::thresholds

@@ -22,59 +22,80 @@ std::string number(Number value) {
     return {buffer.data(), end};
 }
 
-std::string scores(const std::vector<double>& values) {
-    std::string result = "[";
-    for (const double value : values) {
-        if (result.size() > 1) result += ", ";
-        result += number(value);
-    }
-    return result + "]";
+void write_scores(const std::vector<double>& values, Pieces& to) {
+    to.add("[");
+    for (std::size_t i = 0; i < values.size(); ++i) to.add((i > 0 ? ", " : "") + number(values[i]));
+    to.add("]");
 }
 
-std::string entry(const Entry& entry, const std::string& what) {
+void write_entry(const Entry& entry, const std::string& what, Pieces& to) {
     std::map<std::string, std::string> targets;
     for (const auto& [name, hash] : entry.targets) targets[name] = json_text(hash);
-    std::string result = "{\n";
-    const auto line = [&](const std::string& key, const std::string& value, const char* end) {
-        result += fmt::format("      \"{}\": {}{}\n", key, value, end);
+    const auto line = [&](const std::string& key, const std::string& value,
+                          std::string_view end = ",\n") {
+        to.add(fmt::format("      \"{}\": {}{}", key, value, end));
     };
-    line("method", json_text(entry.method), ",");
-    if (!entry.alpha.empty()) line("alpha", entry.alpha, ",");
-    line("epsilon", number(entry.epsilon), ",");
-    line("n", std::to_string(entry.n), ",");
-    line("k", std::to_string(entry.k), ",");
-    line("scores", scores(entry.scores), ",");
-    line(what, json_text(entry.predicate), ",");
-    line("truth", json_text(entry.truth), ",");
+    to.add("{\n");
+    line("method", json_text(entry.method));
+    if (!entry.alpha.empty()) line("alpha", entry.alpha);
+    line("epsilon", number(entry.epsilon));
+    line("n", std::to_string(entry.n));
+    line("k", std::to_string(entry.k));
+    line("scores", "", "");
+    write_scores(entry.scores, to);
+    to.add(",\n");
+    line(what, json_text(entry.predicate));
+    line("truth", json_text(entry.truth));
     const bool of_monitor = !entry.against.empty();
-    line("targets", json_object(targets, 6), of_monitor ? "," : "");
+    line("targets", json_object(targets, 6), of_monitor ? ",\n" : "\n");
     if (of_monitor) {
-        line("against", json_text(entry.against), ",");
-        line("episodes", json_episodes(entry.episodes, 6), "");
+        line("against", json_text(entry.against));
+        line("episodes", "", "");
+        write_episodes(entry.episodes, 6, to);
+        to.add("\n");
     }
-    return result + "    }";
+    to.add("    }");
 }
 
-std::string entries(const std::map<std::string, Entry>& all, const std::string& what) {
-    std::map<std::string, std::string> members;
-    for (const auto& [name, one] : all) members[name] = entry(one, what);
-    return json_object(members, 2);
+void write_entries(const std::map<std::string, Entry>& all, const std::string& what, Pieces& to) {
+    if (all.empty()) return to.add("{}");
+    std::string_view before = "{";
+    for (const auto& [name, one] : all) {
+        to.add(fmt::format("{}\n    {}: ", before, json_text(name)));
+        write_entry(one, what, to);
+        before = ",";
+    }
+    to.add("\n  }");
 }
 
 }  // namespace
 
+bool write(const File& file, const Pieces::Take& take) {
+    Pieces to(take);
+    to.add(fmt::format("{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": ",
+                       json_text(file.spec)));
+    write_entries(file.predicates, "predicate", to);
+    to.add(",\n  \"monitors\": ");
+    write_entries(file.monitors, "formula", to);
+    to.add(",\n  \"episodes\": ");
+    write_episodes(file.episodes, 2, to);
+    if (!file.recordings.empty()) {
+        to.add(",\n  \"recordings\": ");
+        write_recordings(file.recordings, to);
+    }
+    if (!file.allowances.empty())
+        to.add(",\n  \"allowances\": " + json_allowances(file.allowances));
+    to.add(fmt::format(",\n  \"etlc\": {}\n}}\n", json_text(file.etlc)));
+    return to.finish();
+}
+
 std::string write(const File& file) {
-    std::string result = "{\n  \"format\": 1,\n";
-    const auto line = [&](const std::string& key, const std::string& value) {
-        result += fmt::format("  \"{}\": {},\n", key, value);
-    };
-    line("spec", json_text(file.spec));
-    line("predicates", entries(file.predicates, "predicate"));
-    line("monitors", entries(file.monitors, "formula"));
-    line("episodes", json_episodes(file.episodes, 2));
-    if (!file.recordings.empty()) line("recordings", json_recordings(file.recordings));
-    if (!file.allowances.empty()) line("allowances", json_allowances(file.allowances));
-    return result + fmt::format("  \"etlc\": {}\n}}\n", json_text(file.etlc));
+    std::string all;
+    write(file, [&](std::string_view piece) {
+        all += piece;
+        return true;
+    });
+    return all;
 }
 
 }  // namespace etlc::thresholds

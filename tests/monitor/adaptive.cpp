@@ -31,7 +31,7 @@ std::string made_adaptive(const std::string& line, Random& random) {
 }
 
 thresholds::Entry entry(const check::Model& model, check::Index predicate, float start,
-                        std::vector<std::string>& episodes) {
+                        std::vector<std::uint64_t>& episodes) {
     const check::Provenance provenance = check::provenance(model, predicate);
     thresholds::Entry result;
     result.method = "adaptive";

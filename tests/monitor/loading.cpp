@@ -11,6 +11,7 @@
 #include <fstream>
 #include <iterator>
 #include <limits>
+#include <numeric>
 
 #include "check/check.hpp"
 #include "check/formulas/horizons.hpp"
@@ -90,7 +91,7 @@ std::string read_text(const std::string& path) {
     return {std::istreambuf_iterator<char>(stream), std::istreambuf_iterator<char>()};
 }
 
-std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry) {
+std::vector<std::uint64_t> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry) {
     const double least =
         static_cast<double>(upper_bound ? epsilon : -epsilon) - static_cast<double>(FLT_MIN);
     const double score = std::nextafter(least, -std::numeric_limits<double>::infinity());
@@ -98,8 +99,8 @@ std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, threshold
     entry.n = check::scores_needed(entry.alpha);
     entry.k = entry.n;
     entry.scores.assign(entry.n, upper_bound ? score : -score);
-    std::vector<std::string> episodes;
-    for (std::uint64_t i = 0; i < entry.n; ++i) episodes.push_back(fmt::format("{:016x}", i));
+    std::vector<std::uint64_t> episodes(entry.n);
+    std::iota(episodes.begin(), episodes.end(), std::uint64_t{0});
     return episodes;
 }
 

@@ -23,7 +23,7 @@ std::optional<check::Model> load_with_thresholds(const std::string& text,
 
 /// Makes the entry one that was calibrated from n equal scores of n episodes, the fewest that alpha
 /// takes, so that it has this threshold. Takes its alpha; gives the episodes.
-std::vector<std::string> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry);
+std::vector<std::uint64_t> calibrate_to(float epsilon, bool upper_bound, thresholds::Entry& entry);
 /// Before there are thresholds: calibrated ones are NaN.
 std::optional<check::Model> load_uncalibrated(const std::string& text);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <functional>
 #include <limits>
+#include <numeric>
 
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/consistency.hpp"
@@ -14,9 +15,9 @@ namespace {
 
 using thresholds::Entry;
 
-std::vector<std::string> episodes(int count) {
-    std::vector<std::string> result;
-    for (int i = 0; i < count; ++i) result.push_back("00000000000000" + std::to_string(10 + i));
+std::vector<std::uint64_t> episodes(std::size_t count) {
+    std::vector<std::uint64_t> result(count);
+    std::iota(result.begin(), result.end(), std::uint64_t{0x10});
     return result;
 }
 
@@ -43,7 +44,7 @@ Entry pooled(const std::string& method) {
 
 /// What is said of the entry after the change; empty where it is believed.
 std::string said(Entry entry, const std::function<void(Entry&)>& change, bool upper_bound = true,
-                 const std::vector<std::string>& of = episodes(10)) {
+                 const std::vector<std::uint64_t>& of = episodes(10)) {
     change(entry);
     const auto found = contradiction(entry, "predicates.p", upper_bound, of);
     return found ? found->message : "";
@@ -93,7 +94,7 @@ TEST(Consistency, EpisodesAreThereOnceEach) {
         said(
             good, [](Entry&) {}, true, episodes(8)),
         "'episodes' has 8 elements, expected at least 9: one for each score of 'predicates.p'");
-    std::vector<std::string> twice = episodes(10);
+    std::vector<std::uint64_t> twice = episodes(10);
     twice[7] = twice[2];
     EXPECT_EQ(said(
                   good, [](Entry&) {}, true, twice),

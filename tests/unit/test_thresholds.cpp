@@ -89,7 +89,7 @@ TEST(Thresholds, ReadsWhatIsThere) {
     EXPECT_EQ(file->path, "dubins.thresholds.json");
     EXPECT_EQ(file->spec, "dubins");
     EXPECT_EQ(file->etlc, "0.1.0");
-    EXPECT_EQ(file->episodes, (std::vector<std::string>{"0000000000000001", "ffffffffffffffff"}));
+    EXPECT_EQ(file->episodes, (std::vector<std::uint64_t>{1, 0xffff'ffff'ffff'ffff}));
     ASSERT_EQ(file->predicates.size(), 2U);
     const Entry& at_a = file->predicates.at("at_a");
     EXPECT_EQ(at_a.method, "conformal");
@@ -106,8 +106,7 @@ TEST(Thresholds, ReadsWhatIsThere) {
     EXPECT_EQ(file->monitors.at("reach").predicate, "F at_a");
     EXPECT_EQ(file->monitors.at("reach").alpha, "5e-2");
     EXPECT_EQ(file->monitors.at("reach").against, "missed_success");
-    EXPECT_EQ(all_episodes(*file), (std::vector<std::string>{"0000000000000001", "ffffffffffffffff",
-                                                             "00000000000000aa"}));
+    EXPECT_EQ(all_episodes(*file), (std::vector<std::uint64_t>{1, 0xffff'ffff'ffff'ffff, 0xaa}));
 }
 
 TEST(Thresholds, WritingWhatWasReadChangesNothing) {

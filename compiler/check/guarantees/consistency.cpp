@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <set>
+#include <numeric>
 
 #include "check/guarantees/conformal.hpp"
 #include "check/numbers/decimal.hpp"
+#include "data/files/hash.hpp"
+#include "data/traces/suspects.hpp"
 
 namespace etlc::check {
 
@@ -58,21 +60,33 @@ Found counts(const Entry& entry, const std::string& place) {
     return std::nullopt;
 }
 
+/// The place of the first that stands before it too.
+std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes) {
+    std::vector<std::uint32_t> order(hashes.size());
+    std::iota(order.begin(), order.end(), std::uint32_t{0});
+    std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+        return hashes[a] != hashes[b] ? hashes[a] < hashes[b] : a < b;
+    });
+    std::optional<std::size_t> first;
+    for (std::size_t i = 1; i < order.size(); ++i)
+        if (hashes[order[i]] == hashes[order[i - 1]] && (!first || order[i] < *first))
+            first = order[i];
+    return first;
+}
+
 Found episodes_of(const Entry& entry, const std::string& place,
-                  const std::vector<std::string>& episodes) {
+                  const std::vector<std::uint64_t>& episodes) {
     const std::string list = entry.against.empty() ? "episodes" : place + ".episodes";
     const std::uint64_t least = keeps_all(entry) ? entry.n : 1;
     if (episodes.size() < least)
         return Contradiction{fmt::format(
             "'{}' has {}, expected at least {}{}", list, diag::counted(episodes.size(), "element"),
             least, keeps_all(entry) ? fmt::format(": one for each score of '{}'", place) : "")};
-    std::set<std::string> seen;
-    for (std::size_t i = 0; i < episodes.size(); ++i)
-        if (!seen.insert(episodes[i]).second)
-            return Contradiction{fmt::format(
-                "'{}[{}]' is '{}', which stands in it before; expected each episode once", list, i,
-                episodes[i])};
-    return std::nullopt;
+    const std::optional<std::size_t> again = first_again(episodes);
+    if (!again) return std::nullopt;
+    return Contradiction{
+        fmt::format("'{}[{}]' is '{}', which stands in it before; expected each episode once", list,
+                    *again, data::hash_text(episodes[*again]))};
 }
 
 /// What an F1-optimal threshold follows from, in words, and what it then is.
@@ -104,27 +118,42 @@ Found threshold(const Entry& entry, const std::string& place, bool upper_bound) 
 }  // namespace
 
 Found contradiction(const Entry& entry, const std::string& place, bool upper_bound,
-                    const std::vector<std::string>& episodes) {
+                    const std::vector<std::uint64_t>& episodes) {
     if (Found found = counts(entry, place)) return found;
     if (Found found = episodes_of(entry, place, episodes)) return found;
     return threshold(entry, place, upper_bound);
 }
 
-std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
-                                          const thresholds::File& file) {
-    const std::set<std::string> known(file.episodes.begin(), file.episodes.end());
+std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& episodes,
+                                            const thresholds::File& file) {
+    const auto sorted = [](std::vector<std::uint64_t> hashes) {
+        std::sort(hashes.begin(), hashes.end());
+        return hashes;
+    };
+    const std::vector<std::uint64_t> known = sorted(file.episodes);
+    const std::vector<std::uint64_t> asked = sorted(episodes);
+    using Content = data::EpisodeContent;
+
+    data::Suspects suspects(false);
+    file.recordings.for_each_of(known,
+                                [&](std::uint64_t, const Content& of) { suspects.know(of); });
+    file.recordings.for_each_of(asked, [&](std::uint64_t, const Content& of) { suspects.ask(of); });
+    const std::vector<bool> is_suspect = suspects.find();
+    auto next = is_suspect.begin();
     data::Recordings recordings;
-    for (const std::string& episode : known)
-        if (const auto found = file.recordings.find(episode); found != file.recordings.end())
-            recordings.add(found->second);
-    for (const std::string& episode : episodes) {
-        if (known.contains(episode)) return episode;
-        const auto recording = file.recordings.find(episode);
-        if (recording == file.recordings.end()) continue;
-        const auto overlap = recordings.find(recording->second);
-        if (overlap && (overlap->equal || file.allowances.empty())) return episode;
-    }
-    return std::nullopt;
+    file.recordings.for_each_of(known, [&](std::uint64_t, const Content& content) {
+        if (*next++) recordings.add(content);
+    });
+    std::vector<std::uint64_t> overlapping;  // ascending
+    file.recordings.for_each_of(asked, [&](std::uint64_t hash, const Content& content) {
+        const auto overlap = *next++ ? recordings.find(content) : std::nullopt;
+        if (overlap && (overlap->equal || file.allowances.empty())) overlapping.push_back(hash);
+    });
+    const auto found = std::find_if(episodes.begin(), episodes.end(), [&](std::uint64_t episode) {
+        return std::binary_search(known.begin(), known.end(), episode) ||
+               std::binary_search(overlapping.begin(), overlapping.end(), episode);
+    });
+    return found != episodes.end() ? std::optional(*found) : std::nullopt;
 }
 
 }  // namespace etlc::check

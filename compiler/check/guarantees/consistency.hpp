@@ -5,6 +5,7 @@
 // a number that was changed by itself is not believed.
 #pragma once
 
+#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
@@ -25,11 +26,11 @@ struct Contradiction {
 /// that it was calibrated on.
 std::optional<Contradiction> contradiction(const thresholds::Entry& entry, const std::string& place,
                                            bool upper_bound,
-                                           const std::vector<std::string>& episodes);
+                                           const std::vector<std::uint64_t>& episodes);
 
 /// One of `episodes` that is among those behind the file's predicates, or shares most of its
 /// content with one of them and was not allowed to; nothing where there is none.
-std::optional<std::string> shared_episode(const std::vector<std::string>& episodes,
-                                          const thresholds::File& file);
+std::optional<std::uint64_t> shared_episode(const std::vector<std::uint64_t>& episodes,
+                                            const thresholds::File& file);
 
 }  // namespace etlc::check

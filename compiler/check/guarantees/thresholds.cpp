@@ -14,6 +14,7 @@
 #include "check/numbers/decimal.hpp"
 #include "check/steps.hpp"
 #include "data/files/file.hpp"
+#include "data/files/hash.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::check {
@@ -191,7 +192,7 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
 /// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
           Threshold& threshold, bool upper_bound, const std::string& path,
-          const std::vector<std::string>& episodes) {
+          const std::vector<std::uint64_t>& episodes) {
     if (const auto found = contradiction(entry, place, upper_bound, episodes)) {
         auto& error =
             c.sink.report(data::in_file({Code::contradictory_thresholds, found->message}, path));
@@ -254,7 +255,7 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
                 {Code::not_disjoint,
                  fmt::format("'{}' has '{}', which is one of 'episodes', or most of one: those "
                              "that thresholds of predicates were calibrated on",
-                             place + ".episodes", *shared)},
+                             place + ".episodes", data::hash_text(*shared))},
                 file.path))
             .note(shift.span, "it is for this")
             .note(

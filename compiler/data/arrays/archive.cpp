@@ -190,25 +190,16 @@ bool Archive::has_file(const std::string& name) const {
     return zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW) >= 0;
 }
 
-diag::Result<std::string> Archive::file(const std::string& name, std::uint64_t limit) const {
+diag::Result<std::unique_ptr<ByteSource>> Archive::file(const std::string& name,
+                                                        std::uint64_t limit) const {
     const zip_int64_t index = zip_name_locate(handle_.get(), name.c_str(), ZIP_FL_ENC_RAW);
     if (index < 0)
         return Failure{Code::no_such_array, fmt::format("has no member {}", in_quotes(name))};
     auto member = open_member(static_cast<std::uint64_t>(index));
-    if (!member) return member.failure();
-    if ((*member)->size() > limit)
+    if (member && (*member)->size() > limit)
         return malformed(fmt::format("member {} takes {} bytes, at most {} are read",
                                      in_quotes(name), (*member)->size(), limit));
-    std::string bytes((*member)->size(), '\0');
-    const auto got = (*member)->read(bytes.data(), bytes.size());
-    if (!got) return got.failure();
-    char behind = 0;  // reading on to the end compares the checksum
-    const auto more = (*member)->read(&behind, 1);
-    if (!more) return more.failure();
-    if (*got < bytes.size() || *more > 0)
-        return malformed(
-            fmt::format("member {} has other than {} bytes", in_quotes(name), bytes.size()));
-    return bytes;
+    return member;
 }
 
 diag::Result<std::unique_ptr<ByteSource>> Archive::open_member(std::uint64_t index) const {

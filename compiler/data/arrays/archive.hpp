@@ -35,8 +35,10 @@ public:
     diag::Result<std::unique_ptr<ByteSource>> member(const std::string& key) const;
     /// Whether there is a member with this whole name.
     bool has_file(const std::string& name) const;
-    /// The bytes of the member with this whole name, "about.json", at most `limit`.
-    diag::Result<std::string> file(const std::string& name, std::uint64_t limit) const;
+    /// The bytes of the member with this whole name, "about.json". At most `limit`. Whoever reads
+    /// on to the end is told where they do not have their checksum.
+    diag::Result<std::unique_ptr<ByteSource>> file(const std::string& name,
+                                                   std::uint64_t limit) const;
 
 private:
     explicit Archive(std::shared_ptr<zip> handle);

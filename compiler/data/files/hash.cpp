@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <charconv>
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -57,6 +58,18 @@ void append(std::string& bytes, std::uint64_t value, int n) {
 }
 
 }  // namespace
+
+std::string hash_text(std::uint64_t hash) {
+    return fmt::format("{:016x}", hash);
+}
+
+std::optional<std::uint64_t> hash_of_text(std::string_view text) {
+    const auto is_hex = [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); };
+    std::uint64_t hash = 0;
+    if (text.size() != 16 || !std::all_of(text.begin(), text.end(), is_hex)) return std::nullopt;
+    std::from_chars(text.data(), text.data() + text.size(), hash, 16);
+    return hash;
+}
 
 std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed) {
     const std::uint64_t length = bytes.size();

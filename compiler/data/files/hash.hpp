@@ -5,6 +5,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -13,6 +14,11 @@
 namespace etlc::data {
 
 std::uint64_t xxh64(std::string_view bytes, std::uint64_t seed = 0);
+
+/// As text: 16 hex digits, lower case.
+std::string hash_text(std::uint64_t hash);
+/// Nothing where it is no such text.
+std::optional<std::uint64_t> hash_of_text(std::string_view text);
 
 /// Of a file of any size, 16 hex digits. Failures carry the code and do not repeat the path.
 diag::Result<std::string> hash_of_file(const std::string& path, diag::Code code);

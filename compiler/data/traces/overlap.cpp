@@ -144,7 +144,6 @@ void Recordings::add(const EpisodeContent& content) {
 }
 
 std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
-    constexpr std::uint32_t kFewestInCommon = kLeastUnits / 2 + 1;
     std::set<std::uint32_t> perhaps;
     for (const auto& [name, of_input] : content) {
         const auto known = by_hash_.find(name);

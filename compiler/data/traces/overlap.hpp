@@ -25,6 +25,8 @@ using Sketch = std::vector<std::uint32_t>;
 
 /// Fewer units are no evidence.
 inline constexpr std::size_t kLeastUnits = 8;
+/// More than half of kLeastUnits: what shares fewer in every input does not overlap.
+inline constexpr std::uint32_t kFewestInCommon = kLeastUnits / 2 + 1;
 
 struct InputContent {
     std::string hash;  ///< of all samples in order, 16 hex digits

@@ -8,5 +8,5 @@ monitor m = F near;
 END
 "$ETLC" t.etl -o t.hpp --thresholds no_such.json
 "$ETLC" t.etl --check --thresholds .
-truncate -s 67108865 large.json
+truncate -s 4294967297 large.json
 "$ETLC" t.etl --check --thresholds large.json
