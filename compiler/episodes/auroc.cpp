@@ -169,32 +169,33 @@ std::optional<Auroc> auroc_of(const std::vector<Group>& groups) {
 class ResampledPairs {
 public:
     explicit ResampledPairs(std::size_t resamples)
-        : ordered_twice_(resamples), positives_(resamples), negatives_(resamples) {}
+        : ordered_twice_(resamples),
+          positives_(resamples),
+          negatives_(resamples),
+          tied_positives_(resamples),
+          tied_negatives_(resamples) {}
 
     void add(const FramesByScore& frames, const Weights& weights) {
-        Sums positives(positives_.size());
-        Sums negatives(positives_.size());
-        bool any_positive = false;
-        bool any_negative = false;
-        float score = 0;
-        const auto end_tie = [&] {
-            if (any_positive && any_negative)
-                mixed(positives, negatives);
-            else if (any_positive)
-                positive(positives);
-            if (any_positive) move(positives, positives_);
-            if (any_negative) move(negatives, negatives_);
-            any_positive = any_negative = false;
+        std::optional<Scored> first;  // of a score
+        bool is_tied = false;
+        const auto end_score = [&] {
+            if (is_tied)
+                end_tie();
+            else if (first)
+                add_alone(*first, weights[first->episode]);
         };
         frames.for_each([&](const Scored& frame) {
-            if (frame.score != score) end_tie();
-            score = frame.score;
-            (frame.positive ? any_positive : any_negative) = true;
-            Sums& sums = frame.positive ? positives : negatives;
-            const Weights::Weight* const own = weights[frame.episode];
-            for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += own[r];
+            if (!first || frame.score != first->score) {
+                end_score();
+                first = frame;
+                is_tied = false;
+                return;
+            }
+            if (!is_tied) add_tied(*first, weights[first->episode]);
+            add_tied(frame, weights[frame.episode]);
+            is_tied = true;
         });
-        end_tie();
+        end_score();
     }
 
     double ordered(std::size_t resample) const { return ordered_twice_[resample] / 2; }
@@ -203,24 +204,37 @@ public:
 private:
     using Sums = std::vector<double>;
 
-    void mixed(const Sums& positives, const Sums& negatives) {
-        for (std::size_t r = 0; r < positives.size(); ++r)
-            ordered_twice_[r] += positives[r] * (2 * negatives_[r] + negatives[r]);
+    void add_alone(const Scored& frame, const Weights::Weight* weights) {
+        const std::size_t resamples = positives_.size();
+        if (!frame.positive) {
+            for (std::size_t r = 0; r < resamples; ++r) negatives_[r] += weights[r];
+            return;
+        }
+        for (std::size_t r = 0; r < resamples; ++r) {
+            const double weight = weights[r];
+            ordered_twice_[r] += 2 * weight * negatives_[r];
+            positives_[r] += weight;
+        }
     }
-    void positive(const Sums& positives) {
-        for (std::size_t r = 0; r < positives.size(); ++r)
-            ordered_twice_[r] += positives[r] * 2 * negatives_[r];
+
+    void add_tied(const Scored& frame, const Weights::Weight* weights) {
+        Sums& sums = frame.positive ? tied_positives_ : tied_negatives_;
+        for (std::size_t r = 0; r < sums.size(); ++r) sums[r] += weights[r];
     }
-    static void move(Sums& from, Sums& to) {
-        for (std::size_t r = 0; r < from.size(); ++r) {
-            to[r] += from[r];
-            from[r] = 0;
+
+    void end_tie() {
+        for (std::size_t r = 0; r < positives_.size(); ++r) {
+            ordered_twice_[r] += tied_positives_[r] * (2 * negatives_[r] + tied_negatives_[r]);
+            positives_[r] += std::exchange(tied_positives_[r], 0);
+            negatives_[r] += std::exchange(tied_negatives_[r], 0);
         }
     }
 
     Sums ordered_twice_;
     Sums positives_;
     Sums negatives_;
+    Sums tied_positives_;  ///< of the score at hand, 0 between two
+    Sums tied_negatives_;
 };
 
 }  // namespace

@@ -12,13 +12,45 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
+/// x % n of one n, without a division each.
+class Remainder {
+public:
+    explicit Remainder(std::uint64_t n) : n_(n), inverse_(UINT64_MAX / n) {}
+
+    std::uint64_t of(std::uint64_t x) const {
+        __extension__ using Wide = unsigned __int128;
+        const auto quotient = static_cast<std::uint64_t>(Wide{x} * inverse_ >> 64U);  // or less
+        std::uint64_t rest = x - quotient * n_;
+        while (rest >= n_) rest -= n_;
+        return rest;
+    }
+
+private:
+    std::uint64_t n_;
+    std::uint64_t inverse_;
+};
+
 /// How many resamples of so many episodes are made at a time. With more than one there is less to
 /// read, and more than eight are needed for sums that keep a processor busy.
 std::size_t batch_of(std::size_t episodes) {
-    constexpr std::size_t kMemory = std::size_t{8} << 20U;
+    constexpr std::size_t kMemory = std::size_t{4} << 20U;
     constexpr std::size_t kLeast = 8;
     return std::clamp<std::size_t>(kMemory / (episodes * sizeof(Weights::Weight)), kLeast,
                                    kResamples);
+}
+
+/// The next draws. One resample after the other, for the draws are all over its episodes.
+Weights draw(episodes::Random& random, std::size_t episodes, std::size_t resamples) {
+    const Remainder remainder(episodes);
+    std::vector<Weights::Weight> by_resample(episodes * resamples);
+    for (std::size_t r = 0; r < resamples; ++r) {
+        Weights::Weight* const drawn = by_resample.data() + r * episodes;
+        for (std::size_t i = 0; i < episodes; ++i) ++drawn[remainder.of(random.next())];
+    }
+    Weights weights(episodes, resamples, 0);
+    for (std::size_t e = 0; e < episodes; ++e)
+        for (std::size_t r = 0; r < resamples; ++r) weights[e][r] = by_resample[r * episodes + e];
+    return weights;
 }
 
 }  // namespace
@@ -31,10 +63,7 @@ void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit)
     episodes::Random random(kSeed);
     const std::size_t batch = batch_of(episodes);
     for (std::size_t begin = 0; begin < kResamples; begin += batch) {
-        Weights weights(episodes, std::min(batch, kResamples - begin), 0);
-        for (std::size_t r = 0; r < weights.resamples(); ++r)
-            for (std::size_t i = 0; i < episodes; ++i) ++weights[random.below(episodes)][r];
-        visit(weights);
+        visit(draw(random, episodes, std::min(batch, kResamples - begin)));
     }
 }
 
