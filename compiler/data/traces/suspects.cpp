@@ -1,13 +1,16 @@
 // Two episodes are compared where one of them is asked about and the other known, or both are asked
 // about and those are looked for among each other. `Recordings` finds one by the other only where
 // they have an input of the same hash, or an input with kFewestInCommon units in common: it looks
-// at no others. In the first case each is in the other's group of that hash; in the second each of
-// these units is one that the other has too. So the conditions here, that an episode shares a hash,
-// or that many units of one input, with *any* others, hold for both. That Recordings then finds the
-// same among the suspects as among all follows: it finds the first by order, and they keep theirs.
+// at no others. In the first case each is in the other's group of that hash. In the second let
+// `few` be how many of these units only few episodes have: they are counted for each pair. The
+// others, which both have, are no more than either has of such units. So few + the lesser of these
+// counts is kFewestInCommon at least, or few is 0 and both counts are: both episodes are suspects.
+// That Recordings finds the same among the suspects as among all follows: what it finds is decided
+// by order, and they keep theirs.
 #include "data/traces/suspects.hpp"
 
 #include <algorithm>
+#include <optional>
 
 #include "data/files/hash.hpp"
 
@@ -30,6 +33,44 @@ void for_each_group(Sorted<Value>& all, const Same& is_same, const Visit& visit)
     });
     if (!episodes.empty()) visit(first, episodes);
 }
+
+constexpr std::size_t kFew = 8;  ///< episodes, 28 pairs of them
+
+/// Units of one input that episodes have in common.
+class InCommon {
+public:
+    explicit InCommon(std::size_t episodes) : widely_(episodes) {}
+
+    /// Two have one that few have.
+    void add_pair(std::uint32_t a, std::uint32_t b) { pairs_.add({a, b}); }
+    /// One has one that many have.
+    void add_wide(std::uint32_t episode) {
+        if (widely_[episode] < kFewestInCommon) ++widely_[episode];
+    }
+
+    void find(std::vector<bool>& suspects) {
+        for (std::size_t e = 0; e < widely_.size(); ++e)
+            if (widely_[e] == kFewestInCommon) suspects[e] = true;
+        Pair last{};
+        std::uint32_t few = 0;
+        pairs_.for_each([&](const Pair& pair) {
+            few = pair.a == last.a && pair.b == last.b ? few + 1 : 1;
+            last = pair;
+            if (few + std::min(widely_[pair.a], widely_[pair.b]) < kFewestInCommon) return;
+            suspects[pair.a] = true;
+            suspects[pair.b] = true;
+        });
+    }
+
+private:
+    struct Pair {
+        std::uint32_t a;
+        std::uint32_t b;
+        bool operator<(const Pair& other) const { return a != other.a ? a < other.a : b < other.b; }
+    };
+    std::vector<std::uint8_t> widely_;  ///< units that many have, up to enough
+    Sorted<Pair> pairs_;
+};
 
 }  // namespace
 
@@ -62,18 +103,26 @@ std::vector<bool> Suspects::find() {
         [&](const Key&, const std::vector<std::uint32_t>& same) {
             for_each_shared(same, [&](std::uint32_t episode) { found[episode] = true; });
         });
-    std::vector<std::uint8_t> in_common(found.size());  // units of this input, up to enough
+    std::optional<InCommon> in_common;
     std::uint32_t input = 0;
+    const auto conclude = [&] {
+        if (in_common) in_common->find(found);
+    };
     for_each_group(
         units_, [](const Unit& a, const Unit& b) { return a.input == b.input && a.unit == b.unit; },
         [&](const Unit& unit, const std::vector<std::uint32_t>& same) {
-            if (unit.input != input) std::fill(in_common.begin(), in_common.end(), 0);
-            input = unit.input;
-            for_each_shared(same, [&](std::uint32_t episode) {
-                if (in_common[episode] == kFewestInCommon) return;
-                if (++in_common[episode] == kFewestInCommon) found[episode] = true;
-            });
+            if (!in_common || unit.input != input) {
+                conclude();
+                in_common.emplace(found.size());
+                input = unit.input;
+            }
+            if (same.size() > kFew)
+                return for_each_shared(same, [&](std::uint32_t e) { in_common->add_wide(e); });
+            for (std::size_t i = 0; i < same.size(); ++i)
+                for (std::size_t k = 0; k < i; ++k)
+                    if (are_compared(same[k], same[i])) in_common->add_pair(same[k], same[i]);
         });
+    conclude();
     return found;
 }
 

@@ -49,6 +49,9 @@ private:
     };
 
     void add(const EpisodeContent& content, bool is_known);
+    bool are_compared(std::uint32_t a, std::uint32_t b) const {
+        return is_known_[a] != is_known_[b] || (each_other_ && !is_known_[a]);
+    }
     /// Calls `visit(episode)` for those of `same`, which have a key in common with another that
     /// they are compared with.
     template <class Visit>
