@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "data/spill/file.hpp"
 #include "lsp/answers/diagnostics.hpp"
 
 namespace etlc::lsp {
@@ -98,6 +99,8 @@ void Session::answer(const Json& id, const std::string& method, const Json& para
         respond_error(id, refusal.code, refusal.message);
     } catch (const std::bad_alloc&) {
         respond_error(id, ErrorCode::request_failed, "there is not enough memory for this");
+    } catch (const data::SpillError& error) {
+        respond_error(id, ErrorCode::request_failed, error.what());
     }
 }
 
@@ -123,6 +126,8 @@ void Session::take_note(const std::string& method, const Json& params) {
         log(fmt::format("{}: {}", method, refusal.message));
     } catch (const std::bad_alloc&) {
         log(fmt::format("{}: there is not enough memory for this", method));
+    } catch (const data::SpillError& error) {
+        log(fmt::format("{}: {}", method, error.what()));
     }
 }
 
