@@ -30,8 +30,10 @@ std::uint32_t number_at(const char* bytes) {
 }
 
 std::vector<std::string> network_arguments(const check::Encoder& encoder,
-                                           const std::string& model_path) {
+                                           const std::string& model_path, Runtime runtime) {
     std::vector<std::string> arguments = {"encode", model_path};
+    if (runtime == Runtime::onnxruntime)
+        arguments.insert(arguments.end(), {"--runtime", "onnxruntime"});
     const auto add = [&](std::string_view option, const std::vector<float>& values) {
         if (values.empty()) return;
         arguments.emplace_back(option);
@@ -45,6 +47,11 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
 
 }  // namespace
 
+std::string kind_of(const Running& running) {
+    if (!running.command.empty()) return "command";
+    return running.runtime == Runtime::opencv ? "network" : "network by onnxruntime";
+}
+
 diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& encoder,
                                                       const std::string& model_path,
                                                       const Running& running) {
@@ -52,8 +59,9 @@ diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& enco
         .max_silence_seconds = running.max_silence_seconds, .fed = true, .heard = true};
     std::unique_ptr<data::Child> child;
     if (running.command.empty()) {
-        child = data::Child::start(data::embedder_path(), network_arguments(encoder, model_path),
-                                   options);
+        child =
+            data::Child::start(data::embedder_path(),
+                               network_arguments(encoder, model_path, running.runtime), options);
         if (!child) return data::no_embedder();
     } else {
         options.whole_environment = true;
@@ -161,6 +169,8 @@ Failure Encoder::stopped() {
     const std::string words = child_->last_words();
     if (!is_command_ && child_->exit_status() == data::frames::kRefused)
         return {Code::encoder_refused, words};
+    if (!is_command_ && child_->exit_status() == data::frames::kNotBuilt)
+        return {Code::no_embedder, words};
     return {Code::encoder_failed,
             fmt::format("'{}' {}, after {}{}", name_, ending, diag::counted(taken_, "embedding"),
                         words.empty() ? "" : "; its last words: " + words)};

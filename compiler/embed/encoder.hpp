@@ -19,10 +19,14 @@
 
 namespace etlc::embed {
 
+/// The libraries by which etlc-embed runs a model.
+enum class Runtime { opencv, onnxruntime };
+
 /// How encoders are run.
 struct Running {
     std::string command;  ///< of --encoder-cmd; empty: etlc-embed runs the model
     int max_silence_seconds = 600;
+    Runtime runtime = Runtime::opencv;
 };
 
 /// What went wrong, with the frames or with the encoder.
@@ -31,6 +35,9 @@ struct Trouble {
     bool of_encoder = true;
     std::uint64_t frame = 0;  ///< of the frames: which one
 };
+
+/// What the fingerprint of an encoder that is run like this says of it.
+std::string kind_of(const Running& running);
 
 class Encoder {
 public:

@@ -137,7 +137,7 @@ std::optional<embedded::File> describe_encoders(check::Model& model, const Reque
                 .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
             continue;
         }
-        described->kind = request.running.command.empty() ? "network" : "command";
+        described->kind = kind_of(request.running);
         described->dimension = encoder.dimension;
         encoder.fingerprint = embedded::fingerprint(*described);
         file.encoders[encoder.name] = std::move(*described);

@@ -19,7 +19,8 @@ struct Encoder {
     std::string declaration;  ///< canonical text, "load(\"dino.onnx\"), image [224, 224]"
     std::string model;        ///< hash of its bytes, 16 hex digits
     std::string settings;     ///< canonical text, those of the .json beside the model among them
-    std::string kind;         ///< "network", or "command": `--encoder-cmd`
+    /// "network", of OpenCV; "network by onnxruntime": `--runtime`; "command": `--encoder-cmd`.
+    std::string kind;
     std::uint32_t dimension = 0;
 };
 

@@ -177,6 +177,7 @@ def embed(
     *,
     output: str | os.PathLike[str] | None = None,
     settings: Mapping[str, object] | None = None,
+    runtime: str | None = None,
     encoder_command: str | None = None,
     encoder_timeout: int | None = None,
 ) -> Written:
@@ -188,6 +189,7 @@ def embed(
         data: recordings to make episodes of: videos, folders of images, patterns.
         output: the folder where the episodes go; given with `data`.
         settings: other values for constants.
+        runtime: what runs the spec's networks, "opencv" or "onnxruntime"; without it OpenCV does.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
         encoder_timeout: seconds after which an encoder that does nothing is stopped.
 
@@ -195,11 +197,13 @@ def embed(
         Its `path` is the folder of episodes, or the file of embeddings.
 
     Raises:
-        SpecError: the command failed, and says why: E1016 where etlc was installed without it.
+        SpecError: the command failed, and says why: E1016 where etlc was installed without it,
+            or without the runtime.
     """
     ran = _run(
         "embed", [spec], data, settings, None,
-        {"-o": output, "--encoder-cmd": encoder_command, "--encoder-timeout": encoder_timeout},
+        {"-o": output, "--runtime": runtime, "--encoder-cmd": encoder_command,
+         "--encoder-timeout": encoder_timeout},
     )  # fmt: skip
     path = _output(spec, output, ".embedded.npz")
     return Written(path, ran.stdout, tuple(diagnostics_of(ran.stderr)))

@@ -17,9 +17,10 @@ inline constexpr std::uint32_t kMaxDimension = 1U << 20U;
 /// Exit statuses of etlc-embed, besides 0.
 enum Exit : int {
     kWrongCall = 64,
-    kRefused = 65,     ///< the image, video or model
-    kOutOfStep = 66,   ///< frames that do not come at the rate
-    kNoSuchFrame = 67  ///< fewer frames than are wanted
+    kRefused = 65,      ///< the image, video or model
+    kOutOfStep = 66,    ///< frames that do not come at the rate
+    kNoSuchFrame = 67,  ///< fewer frames than are wanted
+    kNotBuilt = 68      ///< a library is asked for that it was built without
 };
 
 // Limits of what decodes. An honest file needs a small part of them.

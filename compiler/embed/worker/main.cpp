@@ -72,6 +72,12 @@ std::vector<double> Words::numbers(std::string_view name, std::vector<double> us
     return usual;
 }
 
+std::string Words::text(std::string_view name, std::string usual) const {
+    for (std::size_t i = 0; i + 1 < words_.size(); i += 2)
+        if (words_[i] == name) return words_[i + 1];
+    return usual;
+}
+
 namespace {
 
 /// What a damaged file may cost. `memory`: in bytes, 0 for no limit: a model is the user's own.

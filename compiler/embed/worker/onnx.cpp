@@ -14,8 +14,10 @@ constexpr std::uint64_t kInitializer = 5, kInput = 11, kOutput = 12;   // GraphP
 constexpr std::uint64_t kNode = 1;                                     // GraphProto
 constexpr std::uint64_t kNodeInput = 1, kNodeOutput = 2;               // NodeProto
 constexpr std::uint64_t kNodeName = 3, kOperator = 4, kAttribute = 5;  // NodeProto
-constexpr std::uint64_t kAttributeTensor = 5;                          // AttributeProto
+constexpr std::uint64_t kAttributeTensor = 5, kAttributeGraph = 6;     // AttributeProto
 constexpr std::uint64_t kTensorShape = 1, kTensorName = 8;             // TensorProto
+constexpr std::uint64_t kTensorFile = 13;                              // TensorProto
+constexpr std::uint64_t kKey = 1, kKeyValue = 2;                       // StringStringEntryProto
 constexpr std::uint64_t kName = 1, kType = 2;                          // ValueInfoProto
 constexpr std::uint64_t kTensorType = 1;                               // TypeProto
 constexpr std::uint64_t kElement = 1, kShape = 2;                      // TypeProto.Tensor
@@ -128,11 +130,24 @@ void add_numbers(const Message& field, std::vector<std::int64_t>& to) {
 struct Tensor {
     std::string name;
     std::vector<std::int64_t> shape;
+    std::string file;  ///< that holds its numbers; empty: it holds them itself
 };
+
+/// What one of the words on a tensor's file says.
+std::string file_in(std::string_view bytes) {
+    std::string_view key, value;
+    for (Message entry(bytes); entry.next();) {
+        if (entry.field == kKey) key = entry.bytes;
+        if (entry.field == kKeyValue) value = entry.bytes;
+    }
+    return std::string(key == "location" ? value : "");
+}
 
 Tensor tensor_of(std::string_view bytes) {
     Tensor tensor;
     for (Message message(bytes); message.next();) {
+        if (message.field == kTensorFile && tensor.file.empty())
+            tensor.file = file_in(message.bytes);
         if (message.field == kTensorName) tensor.name = message.bytes;
         if (message.field == kTensorShape) add_numbers(message, tensor.shape);
     }
@@ -180,6 +195,28 @@ Node described(const StoredNode& node, const Shapes& tensors) {
     return result;
 }
 
+/// A file that tensors of a graph lie in, or those of its branches and loops. `levels`: of these,
+/// one in the other; protocol buffers with more are none.
+std::string file_beside(std::string_view graph, unsigned levels = 30) {
+    std::string found;
+    const auto look = [&](std::uint64_t field, std::uint64_t tensor, std::string_view bytes) {
+        if (found.empty() && field == tensor) found = tensor_of(bytes).file;
+    };
+    for (Message part(graph); part.next() && found.empty();) {
+        look(part.field, kInitializer, part.bytes);
+        if (part.field != kNode) continue;
+        for (Message node(part.bytes); node.next();) {
+            if (node.field != kAttribute) continue;
+            for (Message attribute(node.bytes); attribute.next();) {
+                look(attribute.field, kAttributeTensor, attribute.bytes);
+                if (attribute.field == kAttributeGraph && levels > 0 && found.empty())
+                    found = file_beside(attribute.bytes, levels - 1);
+            }
+        }
+    }
+    return found;
+}
+
 }  // namespace
 
 std::optional<Interface> interface_of(std::string_view model) {
@@ -189,6 +226,7 @@ std::optional<Interface> interface_of(std::string_view model) {
     Message message(model);
     while (message.next()) {
         if (message.field != kGraph) continue;
+        if (result.file_beside.empty()) result.file_beside = file_beside(message.bytes);
         Message graph(message.bytes);
         while (graph.next()) {
             if (graph.field == kInitializer) {

@@ -28,6 +28,7 @@ struct Interface {
     std::vector<Value> inputs;  ///< without the weights, which older files list here too
     std::vector<Value> outputs;
     std::vector<Node> nodes;
+    std::string file_beside;  ///< one that holds weights; empty: there is none
 };
 
 std::optional<Interface> interface_of(std::string_view model);

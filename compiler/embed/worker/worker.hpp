@@ -29,6 +29,7 @@ public:
     explicit Words(std::vector<std::string> words) : words_(std::move(words)) {}
     /// Of `--NAME`; `usual` where it is absent.
     std::vector<double> numbers(std::string_view name, std::vector<double> usual = {}) const;
+    std::string text(std::string_view name, std::string usual) const;
 
 private:
     std::vector<std::string> words_;

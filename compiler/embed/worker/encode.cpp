@@ -1,0 +1,154 @@
+// Frames in, embeddings out: what is the same for all libraries that run networks.
+#include <bit>
+#include <fstream>
+#include <iterator>
+
+#include "data/frames/protocol.hpp"
+#include "embed/worker/network.hpp"
+#include "embed/worker/prepare.hpp"
+#include "embed/worker/worker.hpp"
+
+namespace etlc::embed::worker {
+
+namespace {
+
+using data::frames::kMaxExtent;
+using data::frames::kMaxPixels;
+using data::frames::kNotBuilt;
+using data::frames::kRefused;
+using data::frames::kWrongCall;
+
+std::string listed(const std::vector<Value>& values) {
+    std::string text;
+    for (const Value& value : values)
+        text += (text.empty() ? "'" : ", '") + value.name + "' (" + shape_text(value) + ")";
+    return text;
+}
+
+std::string described(const Value& value) {
+    return "'" + value.name + "' of " + (value.is_float ? "" : "not float, ") + shape_text(value);
+}
+
+/// Of one image to one embedding; else a refusal.
+void check_interface(const Interface& model) {
+    if (model.inputs.size() != 1)
+        refuse(kRefused, "takes " + std::to_string(model.inputs.size()) +
+                             " inputs, expected one image: " + listed(model.inputs));
+    if (model.outputs.size() != 1)
+        refuse(kRefused, "gives " + std::to_string(model.outputs.size()) +
+                             " outputs, expected one embedding: " + listed(model.outputs) +
+                             "; export it with one of them");
+    const Value& input = model.inputs[0];
+    const std::vector<std::int64_t>& shape = input.shape;
+    const bool is_image = input.is_float && shape.size() == 4 && shape[0] <= 1 &&
+                          (shape[1] == kChannels || shape[1] == 0);
+    if (!is_image)
+        refuse(kRefused, "takes " + described(input) +
+                             ", expected float 1 x 3 x rows x columns, an image at a time");
+    if (!model.outputs[0].is_float)
+        refuse(kRefused, "gives " + described(model.outputs[0]) + ", expected float");
+    if (!model.file_beside.empty())
+        refuse(kRefused, "keeps weights in another file, '" + model.file_beside +
+                             "', of which its fingerprint would know nothing: export it as one "
+                             "file, as torch.onnx.export(..., external_data=False) does");
+}
+
+Settings settings_of(const Words& options, const Value& input) {
+    Settings settings;
+    const std::vector<double> image = options.numbers("--image");
+    const std::vector<double> mean = options.numbers("--mean", {0, 0, 0});
+    const std::vector<double> deviation = options.numbers("--deviation", {1, 1, 1});
+    if (mean.size() != kChannels || deviation.size() != kChannels ||
+        (!image.empty() && image.size() != 2))
+        refuse(kWrongCall, "--image takes two numbers, --mean and --deviation three");
+    const std::int64_t own[] = {input.shape[2], input.shape[3]};
+    if (image.empty() && (own[0] == 0 || own[1] == 0))
+        refuse(kRefused, "takes images of any size (" + shape_text(input) +
+                             "): say which in the spec, as image [224, 224]");
+    settings.height = image.empty() ? static_cast<int>(own[0]) : static_cast<int>(image[0]);
+    settings.width = image.empty() ? static_cast<int>(own[1]) : static_cast<int>(image[1]);
+    if ((own[0] != 0 && own[0] != settings.height) || (own[1] != 0 && own[1] != settings.width))
+        refuse(kRefused, "takes images of " + std::to_string(own[0]) + " x " +
+                             std::to_string(own[1]) + ", the spec says image [" +
+                             std::to_string(settings.height) + ", " +
+                             std::to_string(settings.width) + "]");
+    for (int c = 0; c < kChannels; ++c) {
+        settings.mean[c] = static_cast<float>(mean[static_cast<std::size_t>(c)]);
+        settings.deviation[c] = static_cast<float>(deviation[static_cast<std::size_t>(c)]);
+    }
+    return settings;
+}
+
+Model read_model(const std::string& path) {
+    std::ifstream file(path, std::ios::binary);
+    if (!file) refuse(kRefused, "cannot be read");
+    Model model;
+    model.bytes.assign(std::istreambuf_iterator<char>(file), {});
+    auto interface = interface_of(model.bytes);
+    if (!interface) refuse(kRefused, "is no ONNX model, or a damaged one");
+    check_interface(*interface);
+    model.interface = std::move(*interface);
+    return model;
+}
+
+std::unique_ptr<Network> start(const Model& model, const std::string& runtime) {
+    if (runtime == "opencv") return by_opencv(model);
+    if (runtime != "onnxruntime")
+        refuse(kWrongCall, "--runtime takes opencv or onnxruntime, not " + runtime);
+    if constexpr (kHasOnnxRuntime)
+        return by_onnxruntime(model);
+    else
+        refuse(kNotBuilt,
+               "is not run by ONNX Runtime: this etlc-embed was built without it; build etlc with "
+               "-DCMAKE_PREFIX_PATH=FOLDER, where FOLDER has its include/ and lib/ "
+               "(docs/recordings.md), or leave out --runtime");
+}
+
+/// False at the end.
+bool read_frame(Frame& frame) {
+    std::uint8_t head[8];
+    if (!read_in(head, sizeof head)) return false;
+    std::uint32_t extents[2] = {};
+    for (unsigned n = 0; n < 2; ++n) {
+        for (unsigned i = 0; i < 4; ++i) extents[n] |= std::uint32_t{head[4 * n + i]} << (8 * i);
+        if (extents[n] == 0 || extents[n] > kMaxExtent)
+            refuse(kWrongCall, "standard input holds no frames");
+    }
+    const std::uint64_t pixels = std::uint64_t{extents[0]} * extents[1];
+    if (pixels > kMaxPixels) refuse(kWrongCall, "standard input holds no frames");
+    frame.height = static_cast<int>(extents[0]);
+    frame.width = static_cast<int>(extents[1]);
+    frame.rgb.resize(kChannels * pixels);
+    if (!read_in(frame.rgb.data(), frame.rgb.size())) refuse(kWrongCall, "a frame ends too soon");
+    return true;
+}
+
+}  // namespace
+
+void encode(const std::string& path, const Words& options) {
+    static_assert(std::endian::native == std::endian::little);
+    Model model = read_model(path);
+    const Settings settings = settings_of(options, model.interface.inputs[0]);
+    model.height = settings.height;
+    model.width = settings.width;
+    const std::unique_ptr<Network> network = start(model, options.text("--runtime", "opencv"));
+    std::vector<float> image(settings.elements());
+    Frame frame;
+    std::size_t dimension = 0;
+    for (std::uint64_t n = 0; read_frame(frame); ++n) {
+        prepare(frame, settings, image);
+        const std::span<const float> embedding = network->run(image);
+        if (n == 0) {
+            dimension = embedding.size();
+            if (dimension == 0) refuse(kRefused, "gives no number, expected an embedding");
+            write_number(static_cast<std::uint32_t>(dimension));
+        }
+        if (embedding.size() != dimension)
+            refuse(kRefused, "gives " + std::to_string(embedding.size()) + " numbers for frame " +
+                                 std::to_string(n) + " and " + std::to_string(dimension) +
+                                 " for those before, expected an embedding of one length");
+        write_out(embedding.data(), embedding.size_bytes());
+    }
+}
+
+}  // namespace etlc::embed::worker
