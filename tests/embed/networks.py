@@ -25,14 +25,15 @@ class Graph:
         self.nodes.append(helper.make_node(kind, list(inputs), [name], name, **attributes))
         return name
 
-    def save(self, path, shape, result, dimension, inputs=("x",), element=TensorProto.FLOAT):
+    def save(self, path, shape, result, dimension, inputs=("x",), element=TensorProto.FLOAT,
+             opset=13, gives=TensorProto.FLOAT):
         graph = helper.make_graph(
             self.nodes, "net",
             [helper.make_tensor_value_info(name, element, shape) for name in inputs],
-            [helper.make_tensor_value_info(result, TensorProto.FLOAT, [1, dimension])],
+            [helper.make_tensor_value_info(result, gives, [1, dimension])],
             self.weights)
-        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", 13)])
-        model.ir_version = 7
+        model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", opset)])
+        model.ir_version = 7 if opset < 15 else 8
         onnx.save(model, path)
 
 
@@ -87,7 +88,8 @@ class Transformer:
     the tokens, which OpenCV 4.6 needs."""
 
     rows = columns = 16
-    patch, tokens, dimension, heads, blocks = 4, 16, 24, 2, 2
+    patch, patches, dimension, heads, blocks = 4, 16, 24, 2, 2
+    tokens, opset = patches, 13
 
     def __init__(self, path, random):
         self.random, self.g = random, Graph()
@@ -96,14 +98,20 @@ class Transformer:
         kernel = self.make(0, "kernel", (width, 3, self.patch, self.patch), 0.1)
         x = self.g.node("Conv", "x", kernel, self.make(0, "bias", (width,), 0.1),
                         kernel_shape=[self.patch] * 2, strides=[self.patch] * 2)
-        x = self.g.node("Transpose", self.shaped(x, 1, width, self.tokens), perm=[0, 2, 1])
-        x = self.g.node("Add", x, self.make(0, "places", (1, self.tokens, width), 0.5))
+        x = self.g.node("Transpose", self.shaped(x, 1, width, self.patches), perm=[0, 2, 1])
+        x = self.g.node("Add", self.begun(x), self.make(0, "places", (1, self.tokens, width), 0.5))
         for block in range(1, self.blocks + 1):
             x = self.g.node("Add", x, self.attention(block, self.norm(block, "first", x)))
             x = self.g.node("Add", x, self.hidden(block, self.norm(block, "second", x)))
         x = self.norm(self.blocks + 1, "last", x)
         z = self.g.node("ReduceMean", x, axes=[1], keepdims=0)
-        self.g.save(path, [1, 3, self.rows, self.columns], z, width)
+        self.g.save(path, [1, 3, self.rows, self.columns], z, width, opset=self.opset)
+
+    def begun(self, x):
+        return x
+
+    def masked(self, scores):
+        return scores
 
     def make(self, block, name, shape, size, middle=0.0):
         values = (middle + self.random.normal(0, size, shape)).astype(np.float32)
@@ -140,7 +148,7 @@ class Transformer:
             for name, order in (("query", [0, 2, 1, 3]), ("key", [0, 2, 3, 1]),
                                 ("value", [0, 2, 1, 3])))
         scores = g.node("Mul", g.node("MatMul", query, key), g.weight(each**-0.5))
-        mixed = g.node("MatMul", g.node("Softmax", scores, axis=-1), value)
+        mixed = g.node("MatMul", g.node("Softmax", self.masked(scores), axis=-1), value)
         joined = self.shaped(g.node("Transpose", mixed, perm=[0, 2, 1, 3]), 1, self.tokens, width)
         return self.linear(block, "out", joined, width, width)
 
@@ -152,18 +160,25 @@ class Transformer:
         return self.linear(block, "narrow", active, wide, self.dimension)
 
     def __call__(self, image):
-        tokens = []
-        for t in range(self.tokens):
+        tokens = self.first_tokens()
+        for t in range(self.patches):
             row, column = (self.patch * n for n in divmod(t, self.columns // self.patch))
             window = image[row : row + self.patch, column : column + self.patch].transpose(2, 0, 1)
             w = self.w[0]
             sums = [(window * w["kernel"][d]).sum() for d in range(self.dimension)]
-            tokens.append(np.array(sums) + w["bias"] + w["places"][0, t])
+            tokens.append(np.array(sums) + w["bias"])
+        tokens = [t + place for t, place in zip(tokens, self.w[0]["places"][0])]
         for w in self.w[1 : self.blocks + 1]:
             mixed = self.attend(w, [self.normed(w, "first", t) for t in tokens])
             tokens = [t + m for t, m in zip(tokens, mixed)]
             tokens = [t + self.widened(w, self.normed(w, "second", t)) for t in tokens]
         return sum(self.normed(self.w[-1], "last", t) for t in tokens) / self.tokens
+
+    def first_tokens(self):
+        return []
+
+    def sees(self, token, other):
+        return True
 
     @staticmethod
     def normed(w, name, token):
@@ -182,13 +197,51 @@ class Transformer:
         for head in range(self.heads):
             part = slice(head * each, (head + 1) * each)
             for t in range(self.tokens):
-                scores = [q[t][part] @ other[part] / math.sqrt(each) for other in k]
+                seen = [u for u in range(self.tokens) if self.sees(t, u)]
+                scores = [q[t][part] @ k[u][part] / math.sqrt(each) for u in seen]
                 weights = [math.exp(score - max(scores)) for score in scores]
-                for weight, other in zip(weights, v):
-                    mixed[t][part] += weight / sum(weights) * other[part]
+                for weight, u in zip(weights, seen):
+                    mixed[t][part] += weight / sum(weights) * v[u][part]
         return [self.mapped(w, "out", m) for m in mixed]
 
     def widened(self, w, token):
         h = self.mapped(w, "wide", token)
         active = np.array([x * (1 + math.erf(x / math.sqrt(2))) / 2 for x in h])
         return self.mapped(w, "narrow", active)
+
+
+class Exported(Transformer):
+    """The same as exporters write it: LayerNormalization is one node, weights have the shape of a
+    token; before the patches stands a learned token, for which Expand makes room twice, and Where
+    keeps attention from some tokens."""
+
+    first, opset = 2, 17
+    tokens = first + Transformer.patches
+
+    def __init__(self, path, random):
+        self.mask = random.random((self.tokens, self.tokens)) < 0.7
+        np.fill_diagonal(self.mask, True)
+        super().__init__(path, random)
+
+    def begun(self, x):
+        shape = self.g.weight((1, self.first, self.dimension), np.int64)
+        learned = self.make(0, "learned", (1, 1, self.dimension), 0.5)
+        return self.g.node("Concat", self.g.node("Expand", learned, shape), x, axis=1)
+
+    def masked(self, scores):
+        return self.g.node("Where", self.g.weight(self.mask, bool), scores, self.g.weight(-1e9))
+
+    def of_tokens(self, block, name, width, size, middle=0.0):
+        return self.make(block, name, (width,), size, middle)
+
+    def norm(self, block, name, x):
+        return self.g.node("LayerNormalization", x,
+                           self.of_tokens(block, name + " scale", self.dimension, 0.1, 1),
+                           self.of_tokens(block, name + " shift", self.dimension, 0.1),
+                           axis=-1, epsilon=1e-5)
+
+    def first_tokens(self):
+        return [self.w[0]["learned"][0, 0]] * self.first
+
+    def sees(self, token, other):
+        return self.mask[token, other]

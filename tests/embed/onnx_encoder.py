@@ -27,8 +27,15 @@ def softmax(x, axis=-1):
     return powers / powers.sum(axis, keepdims=True)
 
 
+def layer_norm(x, scale, shift, axis, epsilon):
+    centred = x - x.mean(axis, keepdims=True)
+    return centred / np.sqrt((centred**2).mean(axis, keepdims=True) + epsilon) * scale + shift
+
+
 OPERATORS = {
     "Add": np.add, "Sub": np.subtract, "Mul": np.multiply, "Div": np.divide, "MatMul": np.matmul,
+    "Where": np.where, "Expand": lambda x, shape: x * np.ones(shape, np.float32),
+    "Concat": lambda *xs, axis: np.concatenate(xs, axis), "LayerNormalization": layer_norm,
     "Sqrt": np.sqrt, "Relu": lambda x: np.maximum(x, 0), "Softmax": softmax, "Conv": conv,
     "Erf": np.vectorize(math.erf, otypes=[np.float32]),
     "Transpose": lambda x, perm: x.transpose(perm),

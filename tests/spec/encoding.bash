@@ -1,14 +1,19 @@
 # What cases of `etlc embed` share, without OpenCV, FFmpeg or Python: images and videos of one pixel
 # a file, and encoders that always give the same. Sourced in an empty folder.
 
+dimension='\002\000\000\000'
+row='\000\000\200\077\000\000\000\100' # 1, 2
+
 # decodes [STATUS WORDS]: makes a program in the place of etlc-embed, which gives a pixel for each
-# file, then ends like this.
+# file, and such a row for each frame, then ends like this.
 decodes() {
     cat > embedder << END
 #!/bin/sh
 case \$1 in
 images) shift; for file; do printf '\\001\\000\\000\\000\\001\\000\\000\\000abc'; done ;;
 video) printf '\\001\\000\\000\\000\\001\\000\\000\\000abc' ;;
+encode) n=\$((\$(wc -c) / 11)); printf '$dimension'
+    while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done ;;
 esac
 echo "${2:-}" >&2
 exit ${1:-0}
@@ -30,9 +35,6 @@ input z : f32[2] by net;
 target bay = images("bay/*.png") by net;
 monitor m = F min l2(z, bay) <= 1;
 END
-
-dimension='\002\000\000\000'
-row='\000\000\200\077\000\000\000\100' # 1, 2
 
 # embeds_each ARGUMENT...: `etlc embed` with an encoder that gives such a row for every frame.
 embeds_each() {
