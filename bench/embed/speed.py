@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""speed.py ETLC BENCH_NETWORK [FRAMES] [ROUNDS]: what etlc-embed takes beside its libraries.
+"""speed.py ETLC BENCH_NETWORK [FRAMES] [ROUNDS] [RUNTIME]: what etlc-embed takes beside its
+libraries, and what another of these than OpenCV takes: onnxruntime.
 
 In turns: ffmpeg decodes a video of 640 x 480 to rawvideo in /dev/null; etlc-embed decodes it to
 /dev/null; a network runs alone, in a loop over one prepared image; etlc-embed encodes the frames
@@ -21,6 +22,7 @@ ETLC, NETWORK = (os.path.abspath(word) for word in sys.argv[1:3])
 EMBEDDER = os.path.join(os.path.dirname(ETLC), "etlc-embed")
 FRAMES = int(sys.argv[3]) if len(sys.argv) > 3 else 300
 ROUNDS = int(sys.argv[4]) if len(sys.argv) > 4 else 5
+RUNTIMES = ["opencv", *sys.argv[5:6]]
 SIDE, CHANNELS, DIMENSION = 112, 32, 64
 
 
@@ -51,9 +53,12 @@ def cores(*words, source=None):
     return usage.ru_utime + usage.ru_stime
 
 
-def encode(frames):
-    with open(frames, "rb") as source:
-        return cores(EMBEDDER, "encode", "net.onnx", source=source)
+def encode(runtime):
+    def of(frames):
+        with open(frames, "rb") as source:
+            return cores(EMBEDDER, "encode", "net.onnx", "--runtime", runtime, source=source)
+
+    return of("frames") - of(os.devnull)
 
 
 def decode_by_ffmpeg(*options):
@@ -78,7 +83,7 @@ def main():
         "etlc-embed video": lambda: (cores(EMBEDDER, "video", "v.mp4") -
                                      cores(EMBEDDER, "video", "v.mp4", *one)),
         "network alone": lambda: network(FRAMES) - network(0),
-        "etlc-embed encode": lambda: encode("frames") - encode(os.devnull),
+        **{f"encode, {name}": lambda name=name: encode(name) for name in RUNTIMES},
     }
     taken = {name: [] for name in parts}
     for _ in range(ROUNDS):
@@ -92,7 +97,9 @@ def main():
         return statistics.median(b / a for a, b in zip(taken[of], taken[against]))
 
     print(f"decoding, of ffmpeg's speed       {speed('etlc-embed video', 'ffmpeg'):.2f}")
-    print(f"encoding, of the network's speed  {speed('etlc-embed encode', 'network alone'):.2f}")
+    print(f"encoding, of the network's speed  {speed('encode, opencv', 'network alone'):.2f}")
+    for name in RUNTIMES[1:]:
+        print(f"{name}, of opencv's speed  {speed(f'encode, {name}', 'encode, opencv'):.2f}")
 
 
 with tempfile.TemporaryDirectory() as folder:
