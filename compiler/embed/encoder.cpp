@@ -9,6 +9,7 @@
 
 #include "data/frames/protocol.hpp"
 #include "data/quote.hpp"
+#include "embedded/embedded.hpp"
 
 namespace etlc::embed {
 
@@ -48,8 +49,9 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
 }  // namespace
 
 std::string kind_of(const Running& running) {
-    if (!running.command.empty()) return "command";
-    return running.runtime == Runtime::opencv ? "network" : "network by onnxruntime";
+    using namespace embedded;
+    if (!running.command.empty()) return std::string(kCommand);
+    return std::string(running.runtime == Runtime::opencv ? kNetwork : kNetworkByOnnxRuntime);
 }
 
 diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& encoder,

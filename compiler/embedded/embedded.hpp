@@ -15,17 +15,24 @@
 
 namespace etlc::embedded {
 
+/// What runs a model: OpenCV, ONNX Runtime (`--runtime`), a command (`--encoder-cmd`).
+inline constexpr std::string_view kNetwork = "network";
+inline constexpr std::string_view kNetworkByOnnxRuntime = "network by onnxruntime";
+inline constexpr std::string_view kCommand = "command";
+
 struct Encoder {
     std::string declaration;  ///< canonical text, "load(\"dino.onnx\"), image [224, 224]"
     std::string model;        ///< hash of its bytes, 16 hex digits
     std::string settings;     ///< canonical text, those of the .json beside the model among them
-    /// "network", of OpenCV; "network by onnxruntime": `--runtime`; "command": `--encoder-cmd`.
-    std::string kind;
+    std::string kind;         ///< one of the above
     std::uint32_t dimension = 0;
 };
 
 /// What tells encoders apart: XXH64 of model, settings and kind, 16 hex digits.
 std::string fingerprint(const Encoder& encoder);
+
+/// The fingerprints of the same model and settings, run by something else, with that kind.
+std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder);
 
 /// An image or a video.
 struct Source {

@@ -157,6 +157,16 @@ std::string fingerprint(const Encoder& encoder) {
                                                           encoder.settings, encoder.kind)));
 }
 
+std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder) {
+    std::map<std::string, std::string> found;
+    for (const std::string_view kind : {kNetwork, kNetworkByOnnxRuntime, kCommand}) {
+        Encoder other = encoder;
+        other.kind = kind;
+        if (kind != encoder.kind) found[fingerprint(other)] = kind;
+    }
+    return found;
+}
+
 std::string default_path(const std::string& spec_path) {
     return thresholds::path_beside(spec_path, ".embedded.npz");
 }

@@ -94,6 +94,7 @@ void check_embeddings(Context& c) {
             continue;
         }
         encoder.fingerprint = embedded::fingerprint(found->second);
+        encoder.otherwise = embedded::fingerprints_otherwise(found->second);
         const auto differences = changes(c, encoder, found->second);
         if (differences.empty()) continue;
         auto& error = c.report(Code::embedded_stale, encoder.span,

@@ -11,10 +11,14 @@ std::optional<diag::Failure> other_encoder(const Model& model, const Input& inpu
     const auto mark = marks.find(array);
     const bool is_known = mark != marks.end() && !encoder.fingerprint.empty();
     if (!is_known || mark->second == encoder.fingerprint) return std::nullopt;
+    const auto same_model = encoder.otherwise.find(mark->second);
+    const std::string run_by = same_model == encoder.otherwise.end()
+                                   ? ""
+                                   : fmt::format(", the same model as a {}", same_model->second);
     return diag::Failure{
         diag::Code::other_encoder,
-        fmt::format("'{}' is by the encoder {}; expected {}, which is '{}' of the spec", input.name,
-                    mark->second, encoder.fingerprint, encoder.name)};
+        fmt::format("'{}' is by the encoder {}{}; expected {}, which is '{}' of the spec",
+                    input.name, mark->second, run_by, encoder.fingerprint, encoder.name)};
 }
 
 }  // namespace etlc::check

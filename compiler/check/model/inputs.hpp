@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,6 +40,8 @@ struct Encoder {
     std::string declaration;       ///< canonical text
     std::uint32_t dimension = 0;   ///< of the inputs by it; 0: there is none
     std::string fingerprint;       ///< embedded::fingerprint; empty: `etlc embed` has not been run
+    /// Fingerprints of the same model run by something else, and by what.
+    std::map<std::string, std::string> otherwise;
     Span span;
 };
 
