@@ -118,17 +118,8 @@ void set_ordered(std::vector<RankedFrame>& frames, const Pairs& all) {
 
 struct Group {
     Pairs all;
-    std::vector<Pairs> episodes;  ///< of those that have frames in it
+    std::vector<Pairs> episodes;  ///< of those without frames in it, all 0
 };
-
-/// Of one group of what it counted: it leaves `episodes` empty for the next.
-Group group_of(const Pairs& all, std::vector<Pairs>& episodes) {
-    Group group{all, {}};
-    for (Pairs& pairs : episodes)
-        if (pairs.positives + pairs.negatives > 0)
-            group.episodes.push_back(std::exchange(pairs, {}));
-    return group;
-}
 
 /// `without_one`: the value without each of the episodes.
 Auroc with_interval(double value, const std::vector<double>& without_one) {
@@ -155,8 +146,10 @@ std::optional<Auroc> auroc_of(const std::vector<Group>& groups) {
     if (pairs == 0) return std::nullopt;
 
     std::vector<double> without_one;
+    without_one.reserve(groups[0].episodes.size());
     for (const auto& [all, episodes] : groups)
         for (const Pairs& own : episodes) {
+            if (own.positives + own.negatives == 0) continue;
             const double others = pairs - all.positives * all.negatives +
                                   (all.positives - own.positives) * (all.negatives - own.negatives);
             if (others > 0) without_one.push_back((ordered - own.ordered + own.within) / others);
@@ -241,14 +234,15 @@ private:
 
 std::optional<Auroc> auroc(std::vector<std::vector<RankedFrame>>& groups, std::size_t episodes) {
     std::vector<Group> counted;
-    std::vector<Pairs> pairs(episodes);
     for (std::vector<RankedFrame>& frames : groups) {
+        std::vector<Pairs> pairs(episodes);
         std::vector<double> lower_negatives(episodes);
         sort_by_score(frames);
         PairCounter counter(of_class(frames, true), pairs, lower_negatives);
         for (const RankedFrame& frame : frames)
             counter.add(frame.score, frame.episode, frame.positive);
-        counted.push_back(group_of(counter.finish(), pairs));
+        const Pairs all = counter.finish();
+        counted.push_back({all, std::move(pairs)});
         set_ordered(frames, counted.back().all);
     }
     return auroc_of(counted);
@@ -265,7 +259,9 @@ std::optional<Auroc> auroc(const FramesByScore& frames, std::size_t episodes, Li
         counter.add(frame.score, frame.episode, frame.positive != exchanged);
     });
     const Pairs all = counter.finish();
-    return auroc_of({group_of(all, pairs)});
+    std::vector<Group> group(1);
+    group[0] = {all, std::move(pairs)};
+    return auroc_of(group);
 }
 
 std::vector<std::optional<double>> auroc(const std::vector<FramesByScore>& groups,
