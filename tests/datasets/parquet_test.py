@@ -54,7 +54,7 @@ def read(path, names, key="", value=0):
             for _ in range(count):
                 if shape.startswith("text"):
                     size = struct.unpack_from("<I", data, at)[0]
-                    cell.append(data[at + 4:at + 4 + size].decode())
+                    cell.append(data[at + 4:at + 4 + size].decode(errors="surrogateescape"))
                     at += 4 + size
                 else:
                     cell.append(struct.unpack_from("<d", data, at)[0])
@@ -129,6 +129,75 @@ def rows_may_span_pages():
         some_rows_are_read(made)
 
 
+def image_rows(optional, needed):
+    """Rows of bytes that are no text, of any length, some alike; nulls where they may be."""
+    rows = []
+    for i in range(ROWS):
+        row = {"bytes": bytes([0xFF, i % 40]) * (i % 40), "path": f"frame {i % 5}.png", "n": i / 4}
+        for place, field in enumerate(row):
+            if field not in needed and i % (7 + place) == 0:
+                row[field] = None
+        rows.append(None if optional and i % 11 == 0 else row)
+    return rows
+
+
+def structs_are_read():
+    """A field by its path, whatever may be null; names may have dots."""
+    fields = {"bytes": parquet.TEXT, "path": parquet.TEXT, "n": parquet.DOUBLE}
+    for optional, needed, dictionary, version, codec, pages in itertools.product(
+            (False, True), ((), ("bytes",), ("bytes", "path", "n")), (False, True), (1, 2),
+            (parquet.NONE, parquet.ZSTD), ({}, {"page_rows": 20, "group_rows": 90})):
+        rows = image_rows(optional, needed)
+        kind = parquet.Struct(fields, optional, needed)
+        made = {"before": (parquet.FLOAT, [[0.5] * (i % 3) for i in range(ROWS)]),
+                "camera.top": (kind, rows), "key": (parquet.INT64, [i // 9 for i in range(ROWS)])}
+        parquet.write("t.parquet", made, dictionary=dictionary, version=version, codec=codec,
+                      **pages)
+        names = ["camera.top.n", "key", "camera.top.bytes", "camera.top.path", "camera.bytes"]
+        wanted = [[None if row is None else row["n"], i // 9,
+                   None if row is None or row["bytes"] is None else
+                   row["bytes"].decode(errors="surrogateescape"),
+                   None if row is None else row["path"]] for i, row in enumerate(rows)]
+        shapes, found = read("t.parquet", names)
+        assert shapes == ["number", "number", "text", "text", "absent"], shapes
+        assert found == wanted, (optional, needed, dictionary, version, codec, pages)
+        assert read("t.parquet", names, "key", 11)[1] == wanted[99:108], (optional, needed, pages)
+
+
+def structs_that_are_not_read_are_named():
+    fields = {"bytes": parquet.TEXT, "path": parquet.TEXT}
+    rows = [{"bytes": b"\xff", "path": "a"}]
+    words = "has lists or fields nested in it, expected a number or a text"
+    parquet.write("t.parquet", {"a.b": (parquet.Struct(fields), rows)}, nested=("a.b",))
+    assert refusal("t.parquet", "a.b.bytes") == f"column 'a.b.bytes' {words}"
+    parquet.write("t.parquet", {"a": (parquet.Struct(fields, repeated=("path",)), rows)})
+    assert refusal("t.parquet", "a.path") == f"column 'a.path' {words}"
+    assert read("t.parquet", ["a.bytes"])[1] == [["\udcff"]]
+    assert refusal("t.parquet", "a") == ("column 'a' has 2 fields nested in it, expected a number, "
+                                         "a text or a list of them")
+    parquet.write("t.parquet", {"a": (parquet.Struct(fields), rows),
+                                "a.path": (parquet.INT64, [1])})
+    assert "has two columns 'a.path'" in refusal("t.parquet", "a.path")
+
+
+def images_may_be_large():
+    """Of 16 MB at most; a record is full where the next row does not fit."""
+    small, large, huge = b"s" * 200_000, b"l" * 16_000_000, b"h" * 16_000_001
+    kind = parquet.Struct({"bytes": parquet.TEXT, "path": parquet.TEXT})
+    for dictionary in (False, True):
+        def write(*images):
+            rows = [{"bytes": image, "path": "p" * 1000} for image in images]
+            parquet.write("t.parquet", {"a": (kind, rows)}, dictionary=dictionary)
+        write(small, large, small, large, large)
+        lengths = [len(row[0]) for row in read("t.parquet", ["a.bytes", "a.path"])[1]]
+        assert lengths == [200_000, 16_000_000, 200_000, 16_000_000, 16_000_000], lengths
+        write(small, huge)
+        assert refusal("t.parquet", "a.bytes") == (
+            "column 'a.bytes' has a value of 16000001 bytes, at most 16000000 are read")
+    parquet.write("t.parquet", {"t": (parquet.TEXT, [["x" * 9_000_000] * 2])})
+    assert refusal("t.parquet", "t") == "has a row of more bytes than are read"
+
+
 def signs_are_kept():
     column = {"a": (parquet.INT32, [-1, 5]), "b": (parquet.INT32, [-1, 5]),
               "c": (parquet.INT64, [-1, 5])}
@@ -186,6 +255,9 @@ with tempfile.TemporaryDirectory() as box:
     random.seed(3)
     forms_are_read()
     rows_may_span_pages()
+    structs_are_read()
+    structs_that_are_not_read_are_named()
+    images_may_be_large()
     signs_are_kept()
     others_are_named()
     damage_is_named()

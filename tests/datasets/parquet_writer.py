@@ -1,6 +1,6 @@
 """Writes Parquet files for tests, from the format's own page (apache/parquet-format) and sharing
 nothing with the reader. `write(path, columns, **how)`: each column is (type, values); values of a
-list column are lists, None is a null."""
+list column are lists, None is a null. A type may be a Struct; its values are dicts."""
 import struct
 import zlib
 
@@ -23,6 +23,32 @@ def varint(n):
 
 def zigzag(n):
     return varint(n << 1 if n >= 0 else (-n << 1) - 1)
+
+
+class Struct:
+    """Of fields, each a type. `optional`: it may be null; `needed`: fields that may not be;
+    `repeated`: fields that are lists, which is only declared."""
+
+    def __init__(self, fields, optional=True, needed=(), repeated=()):
+        self.fields, self.optional = fields, optional
+        self.needed, self.repeated = needed, repeated
+
+
+class Leaf:
+    """Where values lie in the schema. `most`: the definition of one that is there; `field`: of the
+    struct, else None."""
+
+    def __init__(self, path, kind, most, is_list=False, field=None):
+        self.path, self.kind, self.most = path, kind, most
+        self.is_list, self.field = is_list, field
+
+
+def leaves_of(name, kind, is_list):
+    if isinstance(kind, Struct):
+        return [Leaf([name, field], of, int(kind.optional) + (field not in kind.needed),
+                     field=field) for field, of in kind.fields.items()]
+    path = [name, "list", "element"] if is_list else [name]
+    return [Leaf(path, kind, 3 if is_list else 1, is_list)]
 
 
 class I32(int):
@@ -86,7 +112,8 @@ def plain(kind, values):
         bits = sum(int(value) << i for i, value in enumerate(values))
         return bits.to_bytes((len(values) + 7) // 8, "little")
     if kind == TEXT:
-        return b"".join(struct.pack("<I", len(v.encode())) + v.encode() for v in values)
+        raw = [v if isinstance(v, bytes) else v.encode() for v in values]
+        return b"".join(struct.pack("<I", len(v)) + v for v in raw)
     return b"".join(struct.pack(FORMATS[kind], value) for value in values)
 
 
@@ -96,18 +123,25 @@ def packed(codec, raw):
     return zstandard.ZstdCompressor().compress(raw) if codec == ZSTD else raw
 
 
-def levels(rows, is_list):
+def levels(rows, leaf):
     """Of rows the repetitions, the definitions, and the values that are there."""
     repetitions, definitions, there = [], [], []
     for row in rows:
-        items = row if is_list else [row]
+        if leaf.field is not None:
+            value = None if row is None else row[leaf.field]
+            repetitions.append(0)
+            definitions.append(leaf.most if value is not None else
+                               0 if row is None else leaf.most - 1)
+            there += [] if value is None else [value]
+            continue
+        items = row if leaf.is_list else [row]
         if row is None or not items:
             repetitions.append(0)
             definitions.append(0 if row is None else 1)
             continue
         for i, item in enumerate(items):
             repetitions.append(min(i, 1))
-            definitions.append((3 if is_list else 1) - (item is None))
+            definitions.append(leaf.most - (item is None))
             if item is not None:
                 there.append(item)
     return repetitions, definitions, there
@@ -130,32 +164,31 @@ class Writer:
             head[4] = I32(crc - (1 << 32) if crc >= 1 << 31 else crc)
         self.out += thrift(head)[1] + body
 
-    def pages(self, rows, is_list):
+    def pages(self, rows, leaf):
         """The levels and values of each page: of whole rows, or cut anywhere, as writers of old."""
         if not self.cut_anywhere:
             for first in range(0, len(rows), self.page_rows):
-                yield levels(rows[first:first + self.page_rows], is_list)
+                yield levels(rows[first:first + self.page_rows], leaf)
             return
-        repetitions, definitions, there = levels(rows, is_list)
+        repetitions, definitions, there = levels(rows, leaf)
         for first in range(0, len(repetitions), self.page_rows):
             part = slice(first, first + self.page_rows)
-            count = sum(level == (3 if is_list else 1) for level in definitions[part])
+            count = sum(level == leaf.most for level in definitions[part])
             yield repetitions[part], definitions[part], there[:count]
             there = there[count:]
 
-    def chunk(self, name, kind, rows, is_list):
-        begin, dictionary, dictionary_at = len(self.out), None, None
+    def chunk(self, leaf, rows):
+        kind, begin, dictionary, dictionary_at = leaf.kind, len(self.out), None, None
         if self.dictionary and kind != BOOL:
-            dictionary = sorted(set(levels(rows, is_list)[2]))
+            dictionary = sorted(set(levels(rows, leaf)[2]))
             raw = plain(kind, dictionary)
             dictionary_at = begin
             self.page({1: I32(2), 7: {1: I32(len(dictionary)), 2: I32(PLAIN)}}, raw,
                       packed(self.codec, raw))
         data_at, count = len(self.out), 0
-        for repetitions, definitions, there in self.pages(rows, is_list):
-            bits = 2 if is_list else 1
-            parts = [hybrid(repetitions, 1)] if is_list else [b""]
-            parts.append(hybrid(definitions, bits))
+        for repetitions, definitions, there in self.pages(rows, leaf):
+            parts = [hybrid(repetitions, 1) if leaf.is_list else b"",
+                     hybrid(definitions, leaf.most.bit_length()) if leaf.most else b""]
             encoding, values = PLAIN, b""
             if dictionary is not None:
                 encoding, width = RLE_DICTIONARY, max(1, (len(dictionary) - 1).bit_length())
@@ -182,24 +215,41 @@ class Writer:
                                           3: I32(self.page_rows), 4: said, 5: I32(len(parts[1])),
                                           6: I32(len(parts[0])), 7: self.codec != NONE}},
                           raw + values, raw + packed(self.codec, values))
-        path = [name, "list", "element"] if is_list else [name]
         codec = self.codec if self.codec_said is None else self.codec_said
-        about = {1: I32(kind), 2: [I32(PLAIN)], 3: path, 4: I32(codec), 5: count,
+        about = {1: I32(kind), 2: [I32(PLAIN)], 3: leaf.path, 4: I32(codec), 5: count,
                  6: len(self.out) - begin, 7: len(self.out) - begin, 9: data_at}
         if dictionary_at is not None:
             about[11] = dictionary_at
         return {2: begin, 3: about}
 
+    @staticmethod
+    def struct_schema(name, kind, values, nested):
+        """The schema of one. `nested`: its fields are in a struct more, which is only declared."""
+        schema = [{3: I32(int(kind.optional)), 4: name, 5: I32(len(kind.fields))}]
+        if nested:
+            schema = [{**schema[0], 5: I32(1)},
+                      {3: I32(0), 4: next(iter(kind.fields)), 5: I32(len(kind.fields))}]
+        for field, of in kind.fields.items():
+            repetition = 2 if field in kind.repeated else int(field not in kind.needed)
+            leaf = {1: I32(of), 3: I32(repetition), 4: field}
+            if of == TEXT and any(row and isinstance(row[field], str) for row in values):
+                leaf[6] = I32(0)
+            schema.append(leaf)
+        return schema
+
     def write(self, columns, nested=(), unsigned=()):
-        """`nested`: columns of lists in lists, which are only declared; `unsigned`: of numbers
-        without a sign, by their logical type."""
+        """`nested`: columns of lists in lists, or structs in structs, which are only declared;
+        `unsigned`: of numbers without a sign, by their logical type."""
         schema = [{4: "schema", 5: I32(len(columns))}]
-        shapes = {}
+        leaves = []
         for name, (kind, values) in columns.items():
             is_list = any(isinstance(value, list) for value in values)
-            shapes[name] = is_list
+            leaves += [(leaf, values) for leaf in leaves_of(name, kind, is_list)]
+            if isinstance(kind, Struct):
+                schema += self.struct_schema(name, kind, values, name in nested)
+                continue
             leaf = {1: I32(kind), 3: I32(1), 4: "element" if is_list else name}
-            if kind == TEXT:
+            if kind == TEXT and not any(isinstance(value, bytes) for value in values):
                 leaf[6] = I32(0)
             if name in unsigned:
                 leaf[10] = {10: {2: False}}
@@ -214,8 +264,7 @@ class Writer:
         groups = []
         for first in range(0, total, self.group_rows):
             rows = min(self.group_rows, total - first)
-            chunks = [self.chunk(name, kind, values[first:first + rows], shapes[name])
-                      for name, (kind, values) in columns.items()]
+            chunks = [self.chunk(leaf, values[first:first + rows]) for leaf, values in leaves]
             groups.append({1: chunks, 2: 0, 3: rows})
         footer = thrift({1: I32(2), 2: schema, 3: total, 4: groups, 6: "tests"})[1]
         return self.out + footer + struct.pack("<I", len(footer)) + b"PAR1"

@@ -204,3 +204,8 @@ for name, how in {
     seed("fuzz_parquet", f"{name}.parquet", parquet.Writer(**how).write(COLUMNS))
 seed("fuzz_parquet", "nested.parquet",
      parquet.Writer(codec=parquet.NONE).write(COLUMNS, nested=("q",)))
+IMAGES = parquet.Struct({"bytes": parquet.TEXT, "path": parquet.TEXT, "n": parquet.DOUBLE})
+seed("fuzz_parquet", "struct.parquet", parquet.Writer(codec=parquet.NONE, page_rows=8).write({
+    "k": COLUMNS["k"],
+    "c.a": (IMAGES, [None if i == 3 else {"bytes": None if i == 5 else b"\xff" * i,
+                                          "path": f"p{i}", "n": i / 2} for i in range(20)])}))

@@ -59,7 +59,6 @@ struct ChunkReader::PageHead {
 
 ChunkReader::ChunkReader(std::string_view file, const Column& column, const Chunk& chunk)
     : column_(column), codec_(chunk.codec), left_(chunk.values) {
-    if (!column.why_not.empty()) throw Refused(records::Cause::elements, column.why_not);
     if (!chunk.why_not.empty()) refuse(chunk.why_not);
     check_codec(chunk.codec);
     bytes_ = file.substr(chunk.begin, chunk.bytes);
@@ -159,6 +158,7 @@ void ChunkReader::load_dictionary(const PageHead& head, std::string_view packed)
 
 void ChunkReader::load_data(const PageHead& head, std::string_view packed) {
     if (head.level_encoding != kRle) refuse_encoding(head.level_encoding);
+    page_ = std::string();  // two pages of images are much
     const unsigned repetition_bits = column_.is_list ? 1 : 0;
     const unsigned definition_bits = bits_of(column_.most_defined);
     const auto size = static_cast<std::uint64_t>(head.unpacked);
@@ -341,7 +341,7 @@ void ChunkReader::plain(Cursor& from, double& number, std::string& text) {
     if (column_.physical == Physical::binary) {
         const auto size = from.number<std::uint32_t>("the values of a page");
         if (size > kMaxTextBytes)
-            refuse("has a text of " + std::to_string(size) + " bytes, at most " +
+            refuse("has a value of " + std::to_string(size) + " bytes, at most " +
                    std::to_string(kMaxTextBytes) + " are read");
         text = from.take(size, "the values of a page");
     } else if (column_.physical == Physical::boolean) {

@@ -25,12 +25,12 @@ struct Cell {
     }
 };
 
-inline constexpr std::size_t kMaxElements = 1U << 20U;  ///< of a cell
-inline constexpr std::size_t kMaxTextBytes = 1U << 20U;
+inline constexpr std::size_t kMaxElements = 1U << 20U;    ///< of a cell
+inline constexpr std::size_t kMaxTextBytes = 16'000'000;  ///< or an image; fits into a record
 
 class ChunkReader {
 public:
-    /// Throws Refused, here and below; the words do not name the column.
+    /// Of a column that is read. Throws Refused, here and below; the words do not name the column.
     ChunkReader(std::string_view file, const Column& column, const Chunk& chunk);
 
     /// The next row; false behind the last.

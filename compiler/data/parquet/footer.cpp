@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <optional>
+#include <utility>
 
 #include "data/parquet/thrift.hpp"
 
@@ -79,6 +80,15 @@ const char* foreign(const Element& element) {
     }
 }
 
+/// Whether a group is a list or a map: the names in it are those of the format.
+bool is_collection(const Element& element) {
+    constexpr std::int64_t kMap = 1, kList = 3;                // of the converted types
+    constexpr std::int64_t kLogicalMap = 2, kLogicalList = 3;  // of the logical ones
+    const std::int64_t converted = element.converted.value_or(0);
+    return (converted >= kMap && converted <= kList) || element.logical == kLogicalMap ||
+           element.logical == kLogicalList;
+}
+
 /// Puts the fields of the table together from the tree, which is written root first.
 class Fields {
 public:
@@ -88,7 +98,7 @@ public:
         if (elements_.empty() || elements_[0].physical) refuse("has no table of columns");
         at_ = 1;
         std::vector<Column> columns;
-        for (std::int64_t i = 0; i < elements_[0].children; ++i) columns.push_back(field());
+        for (std::int64_t i = 0; i < elements_[0].children; ++i) add_field(columns);
         if (at_ != elements_.size()) refuse("lists more fields than its table has");
         leaves = leaves_;
         return columns;
@@ -100,9 +110,10 @@ private:
         return elements_[at_++];
     }
 
-    Column field() {
+    void add_field(std::vector<Column>& columns) {
         Column column;
         column.leaf = leaves_;
+        const std::size_t begin = at_;
         column.name = elements_[std::min(at_, elements_.size() - 1)].name;
         std::size_t repeated = 0;
         walk(column, repeated, 0);
@@ -113,7 +124,28 @@ private:
             column.why_not =
                 "has lists nested in lists, expected a number, a text or a list of "
                 "them";
-        return column;
+        columns.push_back(column);
+        if (!elements_[begin].physical && !is_collection(elements_[begin]))
+            add_fields_of(begin, column, columns);
+    }
+
+    /// Of the struct at `place` every field has a column of its own, too.
+    void add_fields_of(std::size_t place, const Column& whole, std::vector<Column>& columns) {
+        const Element& parent = elements_[place];
+        const std::size_t end = std::exchange(at_, place + 1);
+        leaves_ = whole.leaf;
+        while (at_ < end) {
+            const Element& element = elements_[at_];
+            Column column;
+            column.leaf = leaves_;
+            column.name = whole.name + "." + element.name;
+            column.most_defined = parent.repetition == kRequired ? 0 : 1;
+            std::size_t repeated = parent.repetition == kRepeated ? 1 : 0;
+            walk(column, repeated, 1);
+            if (!element.physical || repeated > 0)
+                column.why_not = "has lists or fields nested in it, expected a number or a text";
+            columns.push_back(std::move(column));
+        }
     }
 
     /// The field at hand and all below it.

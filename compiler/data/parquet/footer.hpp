@@ -22,13 +22,13 @@ enum class Physical : std::uint8_t {
     fixed = 7
 };
 
-/// A field of the table: a value a row, or a list of values a row.
+/// A field of the table, or one of a struct in it: a value a row, or a list of values a row.
 struct Column {
-    std::string name;
+    std::string name;  ///< of a field of a struct "STRUCT.FIELD"; each part may have dots itself
     Physical physical = Physical::float32;
     bool is_unsigned = false;
     bool is_list = false;
-    std::uint8_t most_defined = 0;     ///< the level of a value that is there
+    std::uint8_t most_defined = 0;     ///< the level of a value that is there; below it is null
     std::uint8_t element_level = 0;    ///< from this level on there is an element, of a list
     std::uint8_t null_list_level = 0;  ///< below this level the list itself is null
     std::string why_not;               ///< it is not read; empty: it is

@@ -53,32 +53,37 @@ void append_cell(std::string& bytes, const parquet::Cell& cell, const parquet::C
     }
 }
 
+/// Of one that is not read nothing is said; its first row says why.
+std::string shape_of(const parquet::Column* column) {
+    if (column == nullptr) return "absent\n";
+    if (!column->why_not.empty()) return "number\n";
+    const bool is_bool = column->physical == parquet::Physical::boolean;
+    const std::string kind = column->is_text() ? "text" : is_bool ? "bool" : "number";
+    return kind + (column->is_list ? " list\n" : "\n");
+}
+
 void read(std::string_view file, const std::string& key, double value,
           const std::vector<std::string>& names) {
     parquet::Rows rows(file, names);
     if (!key.empty()) rows.keep(key, value);
     std::string shapes;
-    for (const parquet::Column* column : rows.columns()) {
-        if (column == nullptr) {
-            shapes += "absent\n";
-            continue;
-        }
-        const bool is_bool = column->physical == parquet::Physical::boolean;
-        shapes += column->is_text() ? "text" : is_bool ? "bool" : "number";
-        shapes += column->is_list ? " list\n" : "\n";
-    }
+    for (const parquet::Column* column : rows.columns()) shapes += shape_of(column);
     records::send(Tag::shapes, shapes);
     std::string block;
+    std::string row;
     std::vector<parquet::Cell> cells;
     while (rows.next(cells)) {
         std::size_t i = 0;
+        row.clear();
         for (const parquet::Column* column : rows.columns())
-            if (column != nullptr) append_cell(block, cells[i++], *column);
-        if (block.size() > records::kMaxRecordBytes)
+            if (column != nullptr) append_cell(row, cells[i++], *column);
+        if (row.size() > records::kMaxRecordBytes)
             records::fail(Cause::file, "has a row of more bytes than are read");
-        if (block.size() < records::kBlockBytes) continue;
-        records::send(Tag::rows, block);
-        block.clear();
+        if (!block.empty() && block.size() + row.size() > records::kBlockBytes) {
+            records::send(Tag::rows, block);
+            block.clear();
+        }
+        block += row;
     }
     if (!block.empty()) records::send(Tag::rows, block);
 }

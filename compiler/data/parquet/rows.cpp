@@ -29,6 +29,12 @@ auto of_column(const Column& column, Read read) {
     }
 }
 
+/// Where a column lies, if it is read.
+const Chunk& chunk_of(const RowGroup& group, const Column& column) {
+    if (!column.why_not.empty()) throw Refused(records::Cause::elements, column.why_not);
+    return group.chunks[column.leaf];
+}
+
 }  // namespace
 
 Rows::Rows(std::string_view file, const std::vector<std::string>& names)
@@ -59,7 +65,7 @@ void Rows::keep(const std::string& key, double value) {
 Rows::Span Rows::kept_in(const RowGroup& group) const {
     if (key_ == nullptr) return {0, group.rows};
     return of_column(*key_, [&] {
-        ChunkReader keys(file_, *key_, group.chunks[key_->leaf]);
+        ChunkReader keys(file_, *key_, chunk_of(group, *key_));
         Span span;
         std::uint64_t rows = 0;
         for (Cell cell; keys.next(cell); ++rows) {
@@ -87,12 +93,12 @@ bool Rows::begin_group() {
         for (const Column* column : columns_)
             if (column != nullptr)
                 of_column(*column, [&] {
-                    chunks_.emplace_back(file_, *column, group.chunks[column->leaf]);
+                    chunks_.emplace_back(file_, *column, chunk_of(group, *column));
                     chunks_.back().skip(row_);
                 });
         if (key_ != nullptr)
             of_column(*key_, [&] {
-                keys_.emplace(file_, *key_, group.chunks[key_->leaf]);
+                keys_.emplace(file_, *key_, chunk_of(group, *key_));
                 keys_->skip(row_);
             });
         ++group_;
