@@ -15,20 +15,10 @@ namespace etlc::embed {
 
 namespace {
 
+using data::frames::append;
+using data::frames::number_at;
 using diag::Code;
 using diag::Failure;
-
-void append(std::string& bytes, std::uint32_t value) {
-    for (unsigned shift = 0; shift < 32; shift += 8)
-        bytes += static_cast<char>((value >> shift) & 0xffU);
-}
-
-std::uint32_t number_at(const char* bytes) {
-    std::uint32_t result = 0;
-    for (unsigned i = 0; i < 4; ++i)
-        result |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-    return result;
-}
 
 std::vector<std::string> network_arguments(const check::Encoder& encoder,
                                            const std::string& model_path, Runtime runtime) {

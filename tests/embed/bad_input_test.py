@@ -16,8 +16,8 @@ EMBEDDER = os.path.join(os.path.dirname(ETLC), "etlc-embed")
 random = np.random.default_rng(5)
 
 
-def call(*words, status=0):
-    done = subprocess.run(words, capture_output=True)
+def call(*words, status=0, given=None):
+    done = subprocess.run(words, capture_output=True, input=given)
     assert done.returncode == status, (words, done.returncode, done.stderr)
     return done.stdout, done.stderr.decode()
 
@@ -32,8 +32,16 @@ def frames_of(data):
     return frames
 
 
+def sized(*paths):
+    """What etlc-embed reads where images are not files."""
+    parts = [pathlib.Path(path).read_bytes() for path in paths]
+    return b"".join(struct.pack("<I", len(part)) + part for part in parts)
+
+
 def images(*paths):
-    return frames_of(call(EMBEDDER, "images", *paths)[0])
+    found = call(EMBEDDER, "images", *paths)[0]
+    assert call(EMBEDDER, "given", given=sized(*paths))[0] == found, paths
+    return frames_of(found)
 
 
 def video(path, *options):
@@ -110,6 +118,16 @@ def images_are_refused():
                         ("folder.png", "cannot be read"), ("none.png", "cannot be read")):
         given = refused(["images", "colour.png", name], fault)
         assert len(given) == 1, "the image before is whole"
+        if os.path.isfile(name):
+            out, said = call(EMBEDDER, "given", status=65, given=sized("colour.png", name))
+            assert fault in said.splitlines()[-1] and len(frames_of(out)) == 1, (name, said)
+    for rest, status, words in ((b"\xff" * 4, 65, "has 4294967295 bytes, at most 67108864 are"),
+                                (struct.pack("<I", 9), 64, "ends in an image"),
+                                (struct.pack("<I", 9) + b"image", 64, "standard input ends in"),
+                                (b"\x09\0", 64, "standard input ends in")):
+        out, said = call(EMBEDDER, "given", status=status, given=sized("colour.png") + rest)
+        assert words in said and len(frames_of(out)) == 1, (rest, said)
+    assert call(EMBEDDER, "given", given=b"")[0] == b""
 
 
 def make_video(path, *options, frames=24, size="32x32"):

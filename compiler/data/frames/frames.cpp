@@ -23,11 +23,33 @@ using diag::Failure;
 
 constexpr std::string_view kEmbedder = "etlc-embed";
 
-std::uint32_t number_at(const char* bytes) {
-    std::uint32_t result = 0;
-    for (unsigned i = 0; i < 4; ++i)
-        result |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
-    return result;
+Failure stopped(Child& child, Code code) {
+    return {code, fmt::format("is damaged or too much to read: the process that read it {}",
+                              child.ending())};
+}
+
+diag::Result<bool> end_of(Child& child, Code code) {
+    switch (child.exit_status()) {
+        case 0: return false;
+        case frames::kRefused: return Failure{code, child.last_words()};
+        case frames::kOutOfStep: return Failure{Code::video_out_of_step, child.last_words()};
+        case frames::kNoSuchFrame: return Failure{Code::no_such_frame, child.last_words()};
+        default: return stopped(child, code);
+    }
+}
+
+/// The next frame that it writes; false at the end. `code`: of what it refuses.
+diag::Result<bool> read_frame(Child& child, Code code, Frame& frame) {
+    std::array<char, 8> head{};
+    if (child.at_end()) return end_of(child, code);
+    if (!child.read(head.data(), head.size())) return stopped(child, code);
+    frame.height = frames::number_at(head.data());
+    frame.width = frames::number_at(head.data() + 4);
+    const std::uint64_t pixels = std::uint64_t{frame.height} * frame.width;
+    if (pixels == 0 || pixels > frames::kMaxPixels) return stopped(child, code);
+    frame.rgb.resize(3 * pixels);
+    if (!child.read(frame.rgb.data(), frame.rgb.size())) return stopped(child, code);
+    return true;
 }
 
 class DecodedFrames final : public FrameSource {
@@ -35,35 +57,9 @@ public:
     DecodedFrames(std::unique_ptr<Child> child, Code code)
         : child_(std::move(child)), code_(code) {}
 
-    diag::Result<bool> next(Frame& frame) override {
-        std::array<char, 8> head{};
-        if (child_->at_end()) return end();
-        if (!child_->read(head.data(), head.size())) return stopped();
-        frame.height = number_at(head.data());
-        frame.width = number_at(head.data() + 4);
-        const std::uint64_t pixels = std::uint64_t{frame.height} * frame.width;
-        if (pixels == 0 || pixels > frames::kMaxPixels) return stopped();
-        frame.rgb.resize(3 * pixels);
-        if (!child_->read(frame.rgb.data(), frame.rgb.size())) return stopped();
-        return true;
-    }
+    diag::Result<bool> next(Frame& frame) override { return read_frame(*child_, code_, frame); }
 
 private:
-    diag::Result<bool> end() {
-        switch (child_->exit_status()) {
-            case 0: return false;
-            case frames::kRefused: return Failure{code_, child_->last_words()};
-            case frames::kOutOfStep: return Failure{Code::video_out_of_step, child_->last_words()};
-            case frames::kNoSuchFrame: return Failure{Code::no_such_frame, child_->last_words()};
-            default: return stopped();
-        }
-    }
-
-    Failure stopped() {
-        return {code_, fmt::format("is damaged or too much to read: the process that read it {}",
-                                   child_->ending())};
-    }
-
     std::unique_ptr<Child> child_;
     Code code_;
 };
@@ -122,6 +118,31 @@ diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::st
     std::vector<std::string> arguments = {"images"};
     arguments.insert(arguments.end(), paths.begin(), paths.end());
     return start(arguments, Code::unreadable_image);
+}
+
+ImageDecoder::ImageDecoder(std::unique_ptr<Child> child) : child_(std::move(child)) {}
+ImageDecoder::~ImageDecoder() = default;
+
+diag::Result<std::unique_ptr<ImageDecoder>> ImageDecoder::start() {
+    auto child = Child::start(
+        embedder_path(), {"given"},
+        {.max_silence_seconds = frames::kMaxSilenceSeconds, .fed = true, .heard = true});
+    if (!child) return no_embedder();
+    return std::unique_ptr<ImageDecoder>(new ImageDecoder(std::move(child)));
+}
+
+std::optional<Failure> ImageDecoder::decode(std::string_view bytes, Frame& frame) {
+    constexpr Code kCode = Code::unreadable_image;
+    if (bytes.size() > frames::kMaxImageBytes)
+        return Failure{kCode, fmt::format("has {} bytes, at most {} are read", bytes.size(),
+                                          frames::kMaxImageBytes)};
+    std::string head;
+    frames::append(head, static_cast<std::uint32_t>(bytes.size()));
+    if (child_->give(head)) static_cast<void>(child_->give(bytes));  // what it refuses, it says
+    const auto given = read_frame(*child_, kCode, frame);
+    if (!given) return given.failure();
+    if (!*given) return stopped(*child_, kCode);
+    return std::nullopt;
 }
 
 }  // namespace etlc::data

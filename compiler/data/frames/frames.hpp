@@ -6,12 +6,16 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "diag/diag.hpp"
 
 namespace etlc::data {
+
+class Child;
 
 struct Frame {
     std::uint32_t height = 0;
@@ -45,6 +49,21 @@ diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
 
 /// Opens images, a frame each. Failures are about the first image that has not been given.
 diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::string>& paths);
+
+/// Decodes images whose bytes are at hand, with the rules of image files.
+class ImageDecoder {
+public:
+    static diag::Result<std::unique_ptr<ImageDecoder>> start();
+    ~ImageDecoder();
+
+    /// `bytes`: as a file of the image has them. After a failure, E1009, there is nothing more.
+    std::optional<diag::Failure> decode(std::string_view bytes, Frame& frame);
+
+private:
+    explicit ImageDecoder(std::unique_ptr<Child> child);
+
+    std::unique_ptr<Child> child_;
+};
 
 /// The program that decodes and runs networks.
 std::string embedder_path();

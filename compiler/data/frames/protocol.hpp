@@ -1,17 +1,20 @@
 // What etlc-embed and encoder commands read and write.
-// Frames, on the standard output of `etlc-embed video FILE ...` and `etlc-embed images FILE...` and
-// the standard input of encoders: of each frame its height and its width, 32 bits each, then height
-// x width x 3 bytes. Embeddings, on the standard output of encoders: once their dimension, 32 bits,
-// then for every frame as many float32. All numbers are little-endian. What went wrong is the last
-// line on standard error.
+// Frames, on the standard output of `etlc-embed video FILE ...`, `etlc-embed images FILE...` and
+// `etlc-embed given`, and the standard input of encoders: of each frame its height and its width,
+// 32 bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
+// of each how many bytes its file would have, 32 bits, then these. Embeddings, on the standard
+// output of encoders: once their dimension, 32 bits, then for every frame as many float32. All
+// numbers are little-endian. What went wrong is the last line on standard error.
 #pragma once
 
 #include <cstdint>
+#include <string>
 
 namespace etlc::data::frames {
 
-inline constexpr std::uint32_t kMaxExtent = 1U << 14U;    ///< rows or columns
-inline constexpr std::uint64_t kMaxPixels = 1ULL << 26U;  ///< of a frame
+inline constexpr std::uint32_t kMaxExtent = 1U << 14U;       ///< rows or columns
+inline constexpr std::uint64_t kMaxPixels = 1ULL << 26U;     ///< of a frame
+inline constexpr std::uint32_t kMaxImageBytes = 64U << 20U;  ///< of an image that is given
 inline constexpr std::uint32_t kMaxDimension = 1U << 20U;
 
 /// Exit statuses of etlc-embed, besides 0.
@@ -26,5 +29,17 @@ enum Exit : int {
 // Limits of what decodes. An honest file needs a small part of them.
 inline constexpr std::uint64_t kMaxMemoryBytes = 4ULL << 30U;  ///< address space
 inline constexpr int kMaxSilenceSeconds = 120;                 ///< of the clock, between two frames
+
+/// A number of 32 bits, as it is written and read.
+inline void append(std::string& bytes, std::uint32_t value) {
+    for (unsigned shift = 0; shift < 32; shift += 8)
+        bytes += static_cast<char>((value >> shift) & 0xffU);
+}
+inline std::uint32_t number_at(const char* bytes) {
+    std::uint32_t result = 0;
+    for (unsigned i = 0; i < 4; ++i)
+        result |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[i])) << (8 * i);
+    return result;
+}
 
 }  // namespace etlc::data::frames

@@ -14,8 +14,10 @@ namespace etlc::embed::worker {
 namespace {
 
 using data::frames::kMaxExtent;
+using data::frames::kMaxImageBytes;
 using data::frames::kMaxPixels;
 using data::frames::kRefused;
+using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes_of(const std::string& path) {
@@ -56,8 +58,7 @@ void check_pixels(const cv::Mat& image) {
     if (least < 255) refuse(kRefused, "has transparent pixels, expected none: save it without");
 }
 
-void send_image(const std::string& path) {
-    const Bytes bytes = bytes_of(path);
+void send_image(const Bytes& bytes) {
     if (bytes.empty()) refuse(kRefused, "is empty");
     if (is_cut_jpeg(bytes)) refuse(kRefused, "is cut: its end is missing");
     const cv::Mat stored = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
@@ -74,7 +75,22 @@ void send_image(const std::string& path) {
 }  // namespace
 
 void send_images(const std::vector<std::string>& paths) {
-    for (const std::string& path : paths) send_image(path);
+    for (const std::string& path : paths) send_image(bytes_of(path));
+}
+
+void send_given_images() {
+    Bytes bytes;
+    char head[4];
+    while (read_in(head, sizeof head)) {
+        const std::uint32_t size = data::frames::number_at(head);
+        if (size > kMaxImageBytes)
+            refuse(kRefused, "has " + std::to_string(size) + " bytes, at most " +
+                                 std::to_string(kMaxImageBytes) + " are read");
+        bytes.resize(size);
+        if (size > 0 && !read_in(bytes.data(), size))
+            refuse(kWrongCall, "standard input ends in an image");
+        send_image(bytes);
+    }
 }
 
 }  // namespace etlc::embed::worker

@@ -98,6 +98,9 @@ int run(const std::vector<std::string>& words) {
     if (command == "images") {
         limit_resources(kMaxMemoryBytes);
         send_images(rest(1));
+    } else if (command == "given") {
+        limit_resources(kMaxMemoryBytes);
+        send_given_images();
     } else if (command == "video" && words.size() >= 2) {
         limit_resources(kMaxMemoryBytes);
         send_video(words[1], Words(rest(2)));
@@ -106,8 +109,8 @@ int run(const std::vector<std::string>& words) {
         encode(words[1], Words(rest(2)));
     } else {
         refuse(kWrongCall,
-               "etlc-embed belongs to etlc: etlc-embed images FILE..., etlc-embed video FILE, "
-               "etlc-embed encode MODEL.onnx");
+               "etlc-embed belongs to etlc: etlc-embed images FILE..., etlc-embed given, "
+               "etlc-embed video FILE, etlc-embed encode MODEL.onnx");
     }
     return EXIT_SUCCESS;
 }

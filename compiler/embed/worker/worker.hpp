@@ -36,6 +36,8 @@ private:
 };
 
 void send_images(const std::vector<std::string>& paths);
+/// Those whose bytes come on standard input.
+void send_given_images();
 void send_video(const std::string& path, const Words& options);
 void encode(const std::string& model, const Words& options);
 
