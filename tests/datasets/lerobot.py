@@ -1,4 +1,6 @@
-"""Data sets as LeRobot writes them, made for tests: `write(folder, release, lengths)`."""
+"""Data sets as LeRobot writes them, made for tests: `write(folder, release, lengths)`. Cameras are
+videos; `stored` has the images of those that are kept in the rows: by camera, a file's bytes each.
+"""
 import json
 import os
 import subprocess
@@ -37,7 +39,7 @@ def raw_frames(path):
     return np.frombuffer(raw, np.uint8).reshape(-1, *SIDES, 3)
 
 
-def rows_of(lengths):
+def rows_of(lengths, stored=None):
     """The columns of all episodes, and the states, actions and labels as arrays by episode."""
     random = np.random.default_rng(5)
     columns = {"observation.state": (parquet.FLOAT, []), "action": (parquet.FLOAT, []),
@@ -60,10 +62,14 @@ def rows_of(lengths):
                    "task_index": episode % len(TASKS)}
             for name, value in row.items():
                 columns[name][1].append(value)
+    kind = parquet.Struct({"bytes": parquet.TEXT, "path": parquet.TEXT})
+    for camera, images in (stored or {}).items():
+        columns[camera] = (kind, [{"bytes": image, "path": f"frame-{i:06}"}
+                                  for i, image in enumerate(images)])
     return columns, truth
 
 
-def info_of(version, lengths):
+def info_of(version, lengths, stored=()):
     features = {"observation.state": {"dtype": "float32", "shape": [STATE]},
                 "action": {"dtype": "float32", "shape": [ACTION]},
                 "next.success": {"dtype": "bool", "shape": [1]},
@@ -72,8 +78,11 @@ def info_of(version, lengths):
     for name in ("frame_index", "episode_index", "index", "task_index"):
         features[name] = {"dtype": "int64", "shape": [1]}
     for camera in CAMERAS:
-        features[camera] = {"dtype": "video", "shape": [*SIDES, 3]}
+        features[camera] = {"dtype": "image" if camera in stored else "video",
+                            "shape": [*SIDES, 3]}
     rows, videos = PATHS[version]
+    if len(stored) == len(CAMERAS):
+        videos = None
     return {"codebase_version": version, "robot_type": "test", "total_episodes": len(lengths),
             "total_frames": sum(lengths), "total_tasks": len(TASKS), "chunks_size": 1000,
             "fps": FPS, "splits": {"train": f"0:{len(lengths)}"}, "data_path": rows,
@@ -101,11 +110,12 @@ def write_21(folder, lengths, columns, how):
         parquet.write(f"{folder}/data/chunk-000/episode_{episode:06}.parquet", own, **how)
         first += length
         for number, camera in enumerate(CAMERAS):
-            video(f"{folder}/videos/chunk-000/{camera}/episode_{episode:06}.mp4", length,
-                  2 * episode + number)
+            if camera not in columns:
+                video(f"{folder}/videos/chunk-000/{camera}/episode_{episode:06}.mp4", length,
+                      2 * episode + number)
 
 
-def episode_table(lengths):
+def episode_table(lengths, stored=()):
     """Two files of rows, of which the second has the last episode; one video for all."""
     begins = [sum(lengths[:i]) for i in range(len(lengths))]
     files = [int(i == len(lengths) - 1) for i in range(len(lengths))]
@@ -116,6 +126,8 @@ def episode_table(lengths):
              "data/file_index": (parquet.INT64, files),
              "stats/action/mean": (parquet.DOUBLE, [[0.5]] * len(lengths))}
     for camera in CAMERAS:
+        if camera in stored:
+            continue
         ends = [begin + length for begin, length in zip(begins, lengths)]
         table[f"videos/{camera}/chunk_index"] = (parquet.INT64, zeros)
         table[f"videos/{camera}/file_index"] = (parquet.INT64, zeros)
@@ -127,8 +139,8 @@ def episode_table(lengths):
 def write_30(folder, lengths, columns, how):
     os.makedirs(f"{folder}/meta/episodes/chunk-000")
     os.makedirs(f"{folder}/data/chunk-000")
-    parquet.write(f"{folder}/meta/episodes/chunk-000/file-000.parquet", episode_table(lengths),
-                  nested=("stats/action/mean",), **how)
+    parquet.write(f"{folder}/meta/episodes/chunk-000/file-000.parquet",
+                  episode_table(lengths, columns), nested=("stats/action/mean",), **how)
     parquet.write(f"{folder}/meta/tasks.parquet",
                   {"task_index": (parquet.INT64, [0, 1]),
                    "__index_level_0__": (parquet.TEXT, list(TASKS))}, **how)
@@ -138,14 +150,15 @@ def write_30(folder, lengths, columns, how):
         parquet.write(f"{folder}/data/chunk-000/file-{file:03}.parquet", own, group_rows=lengths[0],
                       **how)
     for number, camera in enumerate(CAMERAS):
-        video(f"{folder}/videos/{camera}/chunk-000/file-000.mp4", sum(lengths), number)
+        if camera not in columns:
+            video(f"{folder}/videos/{camera}/chunk-000/file-000.mp4", sum(lengths), number)
 
 
-def write(folder, release, lengths, **how):
+def write(folder, release, lengths, stored=None, **how):
     """Gives the states, actions and labels of each episode."""
     os.makedirs(f"{folder}/meta")
-    columns, truth = rows_of(lengths)
-    write_json(f"{folder}/meta/info.json", info_of(release, lengths))
+    columns, truth = rows_of(lengths, stored)
+    write_json(f"{folder}/meta/info.json", info_of(release, lengths, stored or ()))
     (write_21 if release == "v2.1" else write_30)(folder, lengths, columns, how)
     return truth
 

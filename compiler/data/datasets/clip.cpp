@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "data/datasets/stored_images.hpp"
 #include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/files/lfs.hpp"
@@ -56,12 +57,6 @@ diag::Result<std::string> camera_of(const Dataset& set, const std::string& asked
             Code::no_such_camera,
             fmt::format("has the cameras {}; name one: --camera {}", listed(cameras), cameras[0])};
     if (std::find(cameras.begin(), cameras.end(), asked) != cameras.end()) return asked;
-    for (const Feature& feature : set.features())
-        if (feature.type == "image" && (asked.empty() || feature.name == asked))
-            return Failure{Code::no_such_camera,
-                           fmt::format("keeps the images of {} in Parquet, which are not read: "
-                                       "expected a video of them",
-                                       in_quotes(feature.name))};
     if (cameras.empty()) return Failure{Code::no_such_camera, "has no camera"};
     return Failure{Code::no_such_camera,
                    fmt::format("has no camera {}, but {}", in_quotes(asked), listed(cameras))};
@@ -69,7 +64,9 @@ diag::Result<std::string> camera_of(const Dataset& set, const std::string& asked
 
 std::string camera_lack(const Dataset& set, const DatasetEpisode& episode,
                         const std::string& camera) {
-    const Clip& clip = episode.clips.at(camera);
+    const auto found = episode.clips.find(camera);
+    if (found == episode.clips.end()) return "";  // its images are in the rows
+    const Clip& clip = found->second;
     if (auto why = why_unreadable(set.path_of(clip.path)))
         return fmt::format("{}: {}", clip.path, *why);
     if (is_lfs_pointer(set.path_of(clip.path)))
@@ -90,7 +87,9 @@ diag::Result<std::unique_ptr<FrameSource>> open_clip(const Dataset& set,
                                                      const DatasetEpisode& episode,
                                                      const std::string& camera,
                                                      std::uint64_t stride) {
-    const Clip& clip = episode.clips.at(camera);
+    const auto found = episode.clips.find(camera);
+    if (found == episode.clips.end()) return open_stored_images(set, episode, camera, stride);
+    const Clip& clip = found->second;
     FrameChoice choice{.rate = set.fps() / static_cast<double>(stride)};
     if (!clip.is_whole) {
         choice.first = static_cast<std::uint64_t>(std::llround(clip.begin * set.fps()));

@@ -1,4 +1,5 @@
-// A data set of robot learning, as LeRobot writes it: rows in Parquet, a video per camera.
+// A data set of robot learning, as LeRobot writes it: rows in Parquet; of each camera a video, or
+// images in the rows.
 // Takes: its folder, which holds meta/info.json of version 2.0, 2.1 or 3.0. Gives: its episodes,
 // where the rows and the frames of each lie, and what it lacks. Keeps true: what its metadata say
 // and its files do not is named; an episode that lacks something is known as one; nothing outside
@@ -30,12 +31,12 @@ struct DatasetEpisode {
     std::uint64_t length = 0;  ///< rows
     std::vector<std::string> tasks;
     std::string rows;                   ///< the file in the folder
-    std::map<std::string, Clip> clips;  ///< by camera
+    std::map<std::string, Clip> clips;  ///< by camera; without those whose images are in the rows
 };
 
 struct Feature {
     std::string name;
-    std::string type;  ///< "float32", "video"
+    std::string type;  ///< "float32", "video", "image"
 };
 
 class Dataset {
@@ -49,6 +50,8 @@ public:
     double fps() const { return fps_; }
     const std::vector<Feature>& features() const { return features_; }
     std::vector<std::string> cameras() const;
+    /// Those of which there are videos.
+    std::vector<std::string> videos() const;
     const std::vector<DatasetEpisode>& episodes() const { return episodes_; }
     const DatasetEpisode* episode(std::uint64_t index) const;
     std::string path_of(const std::string& file) const { return folder_ + "/" + file; }

@@ -139,7 +139,7 @@ private:
         const auto rows = path("data_path", names);
         if (!rows) return rows.failure();
         episode.rows = *rows;
-        for (const std::string& camera : set_->cameras()) {
+        for (const std::string& camera : set_->videos()) {
             names.words["video_key"] = camera;
             const auto video = path("video_path", names);
             if (!video) return video.failure();
@@ -171,7 +171,7 @@ private:
     }
 
     std::optional<Failure> read_table(const std::string& file) {
-        const std::vector<std::string> cameras = set_->cameras();
+        const std::vector<std::string> cameras = set_->videos();
         std::vector<std::string> names = {"episode_index", "length", "data/chunk_index",
                                           "data/file_index", "tasks"};
         for (const std::string& camera : cameras)
@@ -302,6 +302,13 @@ diag::Result<std::shared_ptr<Dataset>> Dataset::known(const std::string& folder)
 }
 
 std::vector<std::string> Dataset::cameras() const {
+    std::vector<std::string> names;
+    for (const Feature& feature : features_)
+        if (feature.type == "video" || feature.type == "image") names.push_back(feature.name);
+    return names;
+}
+
+std::vector<std::string> Dataset::videos() const {
     std::vector<std::string> names;
     for (const Feature& feature : features_)
         if (feature.type == "video") names.push_back(feature.name);
