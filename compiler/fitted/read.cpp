@@ -135,7 +135,7 @@ diag::Result<File> read_all(const data::ArchivePlace& place, const std::string& 
     const auto archive = data::Archive::open(place);
     if (!archive) return archive.failure();
     thresholds::Items items(kDescription.invalid);
-    const auto root = thresholds::read_description(*archive, kDescription, items.taker());
+    const auto root = thresholds::read_description(*archive, kDescription, items.takers());
     if (const auto twice = items.twice()) return *twice;
     if (!root) return root.failure();
     return Reader(*archive, items).read(*root, path);

@@ -15,7 +15,7 @@ using diag::Code;
 using diag::Failure;
 
 diag::Result<Json> read_description(const data::Archive& archive, const Description& of,
-                                    const ItemTaker& taker) {
+                                    const ItemTakers& takers) {
     const auto bytes = archive.file(of.member, kMaxFileBytes);
     if (!bytes && bytes.failure().code == Code::no_such_array)
         return Failure{of.malformed, fmt::format("has no member '{}', expected a file that '{}' "
@@ -23,7 +23,7 @@ diag::Result<Json> read_description(const data::Archive& archive, const Descript
                                                  of.member, of.command)};
     if (!bytes) return bytes.failure();
     Text text(**bytes, kMaxDescriptionBytes, of.malformed);
-    auto root = parse_json(text, kMaxDescriptionValues, of.malformed, of.invalid, taker);
+    auto root = parse_json(text, kMaxDescriptionValues, of.malformed, of.invalid, takers);
     if (text.failure()) return *text.failure();
     // A damaged archive is that first of all: reading on to the end compares the checksum.
     const std::uint64_t size = text.finish();

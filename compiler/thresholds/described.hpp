@@ -33,7 +33,7 @@ struct Description {
 
 /// The description as a tree, but for the items that are taken.
 diag::Result<Json> read_description(const data::Archive& archive, const Description& of,
-                                    const ItemTaker& taker = {});
+                                    const ItemTakers& takers = {});
 
 /// Reads the fields of a description, and the arrays that it names.
 class DescribedArrays : protected Fields {

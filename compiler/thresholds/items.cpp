@@ -22,38 +22,45 @@ Failure stands_twice(diag::Code code, const std::string& key) {
 
 }  // namespace
 
-ItemTaker Items::taker() {
-    return [this](const std::vector<std::string>& path, Json::Kind kind) -> TakeItem {
+ItemTakers Items::takers() {
+    return [this](const std::vector<std::string>& path, Json::Kind kind) -> ItemTaker {
         const bool is_array = kind == Json::Kind::array;
         if (path.size() == 1 && path[0] == "recordings" && !is_array)
-            return [this](std::size_t, const std::string& key, const Json& item) {
-                return take_recording(key, item);
-            };
+            return {[this](const std::string& key) { return note_key(key); },
+                    [this](std::size_t, const std::string& key, const Json& item) {
+                        return take_recording(key, item);
+                    }};
         const bool of_entry =
             path.size() == 3 && (path[0] == "monitors" || path[0] == "predicates");
-        if (!is_array || (path.size() != 1 && !of_entry)) return nullptr;
+        if (!is_array || (path.size() != 1 && !of_entry)) return {};
         const std::string place = joined(path);
-        const auto take_into = [&](auto& all, auto read) -> TakeItem {
-            return [this, &found = all[place], place, read](std::size_t index, const std::string&,
-                                                            const Json& item) {
-                if (found.failure) return Taken{true, {}};
-                found.values.push_back((this->*read)(item, fmt::format("{}[{}]", place, index)));
-                found.failure = std::exchange(failure_, std::nullopt);
-                return Taken{true, {}};
-            };
+        const auto take_into = [&](auto& all, auto read) -> ItemTaker {
+            return {{},
+                    [this, &found = all[place], place, read](std::size_t index, const std::string&,
+                                                             const Json& item) {
+                        if (found.failure) return Taken{true, {}};
+                        found.values.push_back(
+                            (this->*read)(item, fmt::format("{}[{}]", place, index)));
+                        found.failure = std::exchange(failure_, std::nullopt);
+                        return Taken{true, {}};
+                    }};
         };
         if (path.back() == "episodes") return take_into(episodes_, &Items::hash);
         if (path.back() == "scores" && of_entry) return take_into(scores_, &Items::score);
-        return nullptr;
+        return {};
     };
+}
+
+std::optional<Failure> Items::note_key(const std::string& key) {
+    if (const auto hash = data::hash_of_text(key))
+        keys_.add({*hash, keys_.size()});
+    else if (!other_keys_.insert(key).second)
+        return twice().value_or(stands_twice(code_, key));  // the first of all
+    return std::nullopt;
 }
 
 Taken Items::take_recording(const std::string& key, const Json& item) {
     const auto hash = data::hash_of_text(key);
-    if (hash)
-        keys_.add({*hash, keys_.size()});
-    else if (!other_keys_.insert(key).second)
-        return {true, twice().value_or(stands_twice(code_, key))};
     const bool keeps = !hash;
     if (recordings_.failure) return {keeps, {}};
     const std::string place = "recordings." + key;

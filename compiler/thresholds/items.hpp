@@ -27,7 +27,7 @@ public:
     Items& operator=(const Items&) = delete;
 
     /// For parse_json(); these items outlive it.
-    ItemTaker taker();
+    ItemTakers takers();
     /// A key that stands twice in "recordings", the first of them.
     std::optional<diag::Failure> twice() const;
 
@@ -46,6 +46,7 @@ public:
     Found<data::KnownEpisodes> recordings() { return std::move(recordings_); }
 
 private:
+    std::optional<diag::Failure> note_key(const std::string& key);
     Taken take_recording(const std::string& key, const Json& item);
 
     /// A key that is a hash, and its place among the keys.

@@ -46,12 +46,12 @@ private:
 class Builder {
 public:
     Builder(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
-            const ItemTaker& taker)
+            const ItemTakers& takers)
         : text_(text),
           max_values_(max_values),
           malformed_(malformed),
           invalid_(invalid),
-          taker_(taker) {}
+          takers_(takers) {}
 
     bool null() { return add({}) != nullptr && complete(); }
     bool boolean(bool value) { return leaf(Json::Kind::boolean, value ? "true" : "false"); }
@@ -74,14 +74,16 @@ public:
 
     bool key(std::string& name) {
         Open& object = open_.back();
-        if (!object.take && !object.seen.insert(name).second) {
+        if (object.taker.item) {
+            failure_ = object.taker.key(name);
+        } else if (object.seen.insert(name).second) {
+            object.json->keys.push_back(name);
+        } else {
             failure_ = Failure{
                 invalid_, fmt::format("key {} stands twice in one object", data::in_quotes(name))};
-            return false;
         }
-        if (!object.take) object.json->keys.push_back(name);
         path_.back() = std::move(name);
-        return true;
+        return !failure_;
     }
 
     bool parse_error(std::size_t position, const std::string&,
@@ -106,7 +108,7 @@ private:
     /// An array or object that has begun.
     struct Open {
         Json* json;
-        TakeItem take;                         ///< its items; nothing: the tree does
+        ItemTaker taker;
         std::uint64_t values;                  ///< up to it, itself included
         std::size_t taken = 0;                 ///< items
         std::unordered_set<std::string> seen;  ///< keys
@@ -129,9 +131,9 @@ private:
         json.kind = kind;
         Json* added = add(std::move(json));
         if (added == nullptr) return false;
-        TakeItem take = taker_ ? taker_(path_, kind) : nullptr;
-        if (take) text_.pass(true);
-        open_.push_back({added, std::move(take), values_, 0, {}});
+        ItemTaker taker = takers_ ? takers_(path_, kind) : ItemTaker{};
+        if (taker.item) text_.pass(true);
+        open_.push_back({added, std::move(taker), values_, 0, {}});
         path_.emplace_back();
         return true;
     }
@@ -144,12 +146,12 @@ private:
 
     /// A value that was added last.
     bool complete() {
-        if (open_.empty() || !open_.back().take) return true;
+        if (open_.empty() || !open_.back().taker.item) return true;
         Open& in = open_.back();
         const Json item = std::move(in.json->items.back());
         in.json->items.pop_back();
         values_ = in.values;
-        Taken taken = in.take(in.taken++, path_.back(), item);
+        Taken taken = in.taker.item(in.taken++, path_.back(), item);
         text_.pass(taken.keeps);
         failure_ = std::move(taken.failure);
         return !failure_;
@@ -177,7 +179,7 @@ private:
     std::uint64_t max_values_;
     Code malformed_;
     Code invalid_;
-    const ItemTaker& taker_;
+    const ItemTakers& takers_;
     std::uint64_t values_ = 0;
     Json root_;
     std::vector<Open> open_;
@@ -193,8 +195,8 @@ const Json* Json::find(const std::string& key) const {
 }
 
 diag::Result<Json> parse_json(Text& text, std::uint64_t max_values, Code malformed, Code invalid,
-                              const ItemTaker& taker) {
-    Builder builder(text, max_values, malformed, invalid, taker);
+                              const ItemTakers& takers) {
+    Builder builder(text, max_values, malformed, invalid, takers);
     nlohmann::json::sax_parse(Bytes(&text), Bytes(), &builder);
     if (text.failure()) return *text.failure();
     if (auto failure = builder.failure()) return *failure;
@@ -202,10 +204,10 @@ diag::Result<Json> parse_json(Text& text, std::uint64_t max_values, Code malform
 }
 
 diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values, Code malformed,
-                              Code invalid, const ItemTaker& taker) {
+                              Code invalid, const ItemTakers& takers) {
     const auto bytes = data::from_memory(text);
     Text all(*bytes, text.size(), malformed);
-    return parse_json(all, max_values, malformed, invalid, taker);
+    return parse_json(all, max_values, malformed, invalid, takers);
 }
 
 std::string describe(const Json& json) {

@@ -34,21 +34,26 @@ struct Taken {
     std::optional<diag::Failure> failure;  ///< ends the reading
 };
 
-/// Takes an item: of an array the value at `index`, of an object that of `key`. Keys that stand
-/// twice are its own affair.
-using TakeItem = std::function<Taken(std::size_t index, const std::string& key, const Json& item)>;
+/// Takes the items of an array or object.
+struct ItemTaker {
+    /// Of an object: a key has come. Whether it stands twice is not looked at elsewhere; a failure
+    /// ends the reading.
+    std::function<std::optional<diag::Failure>(const std::string& key)> key;
+    /// Of an array the value at `index`, of an object that of `key`. Nothing: they are no items,
+    /// and belong to the tree.
+    std::function<Taken(std::size_t index, const std::string& key, const Json& item)> item;
+};
 
-/// Asked of every array and object where it begins, with the keys above it ("" in an array): what
-/// takes its items, so that it is empty in the tree; nothing where they belong to the tree.
-using ItemTaker = std::function<TakeItem(const std::vector<std::string>& path, Json::Kind kind)>;
+/// Asked of every array and object where it begins, with the keys above it ("" in an array).
+using ItemTakers = std::function<ItemTaker(const std::vector<std::string>& path, Json::Kind kind)>;
 
 /// Failures: `malformed` with line and column; `invalid` where a key stands twice. `max_values`: of
 /// the tree.
 diag::Result<Json> parse_json(Text& text, std::uint64_t max_values, diag::Code malformed,
-                              diag::Code invalid, const ItemTaker& taker = {});
+                              diag::Code invalid, const ItemTakers& takers = {});
 diag::Result<Json> parse_json(const std::string& text, std::uint64_t max_values,
                               diag::Code malformed, diag::Code invalid,
-                              const ItemTaker& taker = {});
+                              const ItemTakers& takers = {});
 
 /// "a string", "a number", ...: what a message calls it.
 std::string describe(const Json& json);

@@ -155,7 +155,7 @@ diag::Result<File> read_all(data::ByteSource& source, const std::string& path) {
     Text text(source, kMaxKeptBytes, Code::unreadable_thresholds);
     Items items(Code::invalid_thresholds);
     const auto root = parse_json(text, kMaxValues, Code::malformed_thresholds,
-                                 Code::invalid_thresholds, items.taker());
+                                 Code::invalid_thresholds, items.takers());
     if (const auto twice = items.twice()) return *twice;
     if (!root) return root.failure();
     return Reader(items).read(*root, path);

@@ -56,6 +56,7 @@ TEST(ThresholdsOfEpisodes, ARecordingStandsOnce) {
     EXPECT_EQ(said(R"("x": 1, )" + a + R"(, "x": 2)"), twice("x"));
     EXPECT_EQ(said(a + "," + a + R"(, "x": 1, "x": 2)"), twice("000000000000000a"));
     EXPECT_EQ(said(a + "," + a + ", ?"), twice("000000000000000a"));  // which comes before
+    EXPECT_EQ(said(a + R"(, "000000000000000a" ?)"), twice("000000000000000a"));
     EXPECT_EQ(said(R"("000000000000000a": {"z": 1, "z": 2})"), twice("z"));
 }
 
