@@ -10,7 +10,7 @@
 #include "check/guarantees/conformal.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 
 namespace etlc::calibrate {

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "check/guarantees/adaptation.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 
 namespace etlc::calibrate {

@@ -12,7 +12,7 @@
 #include "check/guarantees/guarantees.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "pipeline/compile.hpp"

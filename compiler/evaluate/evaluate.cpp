@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 
 namespace etlc::evaluate {
 

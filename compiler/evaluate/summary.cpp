@@ -2,8 +2,8 @@
 #include <algorithm>
 #include <functional>
 
+#include "episodes/admission/overlaps.hpp"
 #include "episodes/auroc.hpp"
-#include "episodes/overlaps.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {

@@ -6,7 +6,7 @@
 
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 
 namespace etlc::fit {
 

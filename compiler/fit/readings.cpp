@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 

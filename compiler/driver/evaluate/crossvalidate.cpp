@@ -6,7 +6,7 @@
 #include <set>
 
 #include "calibrate/shift.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
 #include "fit/fit.hpp"

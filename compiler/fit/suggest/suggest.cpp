@@ -7,7 +7,7 @@
 
 #include "data/quote.hpp"
 #include "diag/diag.hpp"
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 #include "fit/separation.hpp"
 #include "fit/suggest/candidates.hpp"
 #include "plan/program/budget.hpp"

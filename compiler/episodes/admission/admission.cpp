@@ -1,4 +1,4 @@
-#include "episodes/admission.hpp"
+#include "episodes/admission/admission.hpp"
 
 #include <fmt/format.h>
 
@@ -6,7 +6,7 @@
 
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
-#include "episodes/overlaps.hpp"
+#include "episodes/admission/overlaps.hpp"
 
 namespace etlc::episodes {
 

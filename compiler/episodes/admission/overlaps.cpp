@@ -1,4 +1,4 @@
-#include "episodes/overlaps.hpp"
+#include "episodes/admission/overlaps.hpp"
 
 #include <algorithm>
 
