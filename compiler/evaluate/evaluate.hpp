@@ -90,6 +90,7 @@ struct Judgement {
     template <class T, class Get>
     auto each(const data::Spool<T>& of, const Get& get) const {
         std::vector<std::decay_t<decltype(get(std::declval<const T&>()))>> all;
+        all.reserve(place.size());
         for_each(of, [&](std::size_t, const T& item) { all.push_back(get(item)); });
         return all;
     }

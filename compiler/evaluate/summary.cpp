@@ -115,6 +115,7 @@ Detection detection(const Bootstrap& bootstrap, const std::vector<std::optional<
 /// promises with P >= 1 - alpha.
 Figure coverage(const Bootstrap& bootstrap, const std::vector<Counts>& each) {
     std::vector<Part> covered;
+    covered.reserve(each.size());
     for (const Counts& counts : each)
         covered.push_back({counts.true_positives == counts.positives() ? 1 : 0,
                            counts.positives() > 0 ? std::uint64_t{1} : 0});
@@ -128,6 +129,7 @@ PredicateScore predicate_score(const Bootstrap& bootstrap, const Judgement& judg
     result.name = predicate.name;
     result.adaptive = predicate.adaptive;
     std::vector<Counts> counts;
+    counts.reserve(judgement.place.size());
     judgement.for_each(predicate.episodes, [&](std::size_t, const PredicateEpisode& episode) {
         counts.push_back(episode.frames);
         result.unmeasured += episode.unmeasured;
