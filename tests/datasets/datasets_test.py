@@ -106,6 +106,31 @@ def check_version(release, **how):
     assert np.array_equal(made["truth.near"], truth[2][2])
 
 
+def check_ends_at_last_frames():
+    """Version 3.0 with a video for each episode, whose end is said to be its last frame's time."""
+    truth = lerobot.write("last", "v3.0", LENGTHS)
+    table = lerobot.episode_table(LENGTHS)
+    for camera in lerobot.CAMERAS:
+        for episode, length in enumerate(LENGTHS):
+            lerobot.video(f"last/videos/{camera}/chunk-000/file-{episode:03}.mp4", length, episode)
+        of_camera = f"videos/{camera}/"
+        table[of_camera + "file_index"] = (parquet.INT64, list(range(len(LENGTHS))))
+        table[of_camera + "from_timestamp"] = (parquet.DOUBLE, [0.0] * len(LENGTHS))
+        table[of_camera + "to_timestamp"] = (
+            parquet.DOUBLE, [(length - 1) / lerobot.FPS for length in LENGTHS])
+    parquet.write("last/meta/episodes/chunk-000/file-000.parquet", table,
+                  nested=("stats/action/mean",))
+    embed("see.etl", "--data", "last", "--camera", TOP, "-o", "last.out")
+    check_columns("last.out", truth, "last")
+    for episode in range(len(LENGTHS)):
+        video = f"last/videos/{TOP}/chunk-000/file-{episode:03}.mp4"
+        made = np.load(f"last.out/last-{episode:06}.npz")
+        assert np.array_equal(made["z"], checksums(lerobot.raw_frames(video))), episode
+    lerobot.video(f"last/videos/{TOP}/chunk-000/file-001.mp4", LENGTHS[1] - 1, 1)
+    refused = embed("see.etl", "--data", "last", "--camera", TOP, "-o", "last.short", status=1)
+    assert f"has only {LENGTHS[1] - 1} steps" in refused, refused
+
+
 def check_in_place(version):
     """Without an encoder: the same verdicts on the rows as on the episodes made of them."""
     name = f"set{version[1]}"
@@ -135,6 +160,7 @@ def main():
             file.write(text)
     check_version("v2.1", codec=parquet.SNAPPY, page_rows=7)
     check_version("v3.0", codec=parquet.ZSTD, dictionary=True, version=2, checksums=True)
+    check_ends_at_last_frames()
     for version in ("v2.1", "v3.0"):
         check_in_place(version)
 

@@ -72,6 +72,7 @@ public:
             if (episodes[i].index == episodes[i - 1].index)
                 return wrong(place_, fmt::format("has episode {} twice", episodes[i].index));
         if (episodes.empty()) return wrong(place_, "has no episode");
+        find_whole_videos();
         compare();
         return std::move(set_);
     }
@@ -224,6 +225,20 @@ private:
                                          cells[first + 3].numbers[0], false};
         }
         return episode;
+    }
+
+    /// Some writers give the time of the last frame as the end of a video that has one episode:
+    /// then all of it is meant, and its frames are counted as they are decoded.
+    void find_whole_videos() {
+        std::map<std::string, std::size_t> episodes;
+        for (const DatasetEpisode& episode : set_->episodes_)
+            for (const auto& [camera, clip] : episode.clips) ++episodes[clip.path];
+        for (DatasetEpisode& episode : set_->episodes_)
+            for (auto& [camera, clip] : episode.clips) {
+                const double frames = std::round((clip.end - clip.begin) * set_->fps_);
+                const bool is_short = frames + 1 == static_cast<double>(episode.length);
+                if (is_short && clip.begin == 0 && episodes[clip.path] == 1) clip.is_whole = true;
+            }
     }
 
     /// What the metadata say in two places.

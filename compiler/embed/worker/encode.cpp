@@ -106,18 +106,15 @@ std::unique_ptr<Network> start(const Model& model, const std::string& runtime) {
 
 /// False at the end.
 bool read_frame(Frame& frame) {
-    std::uint8_t head[8];
+    char head[8];
     if (!read_in(head, sizeof head)) return false;
-    std::uint32_t extents[2] = {};
-    for (unsigned n = 0; n < 2; ++n) {
-        for (unsigned i = 0; i < 4; ++i) extents[n] |= std::uint32_t{head[4 * n + i]} << (8 * i);
-        if (extents[n] == 0 || extents[n] > kMaxExtent)
-            refuse(kWrongCall, "standard input holds no frames");
-    }
-    const std::uint64_t pixels = std::uint64_t{extents[0]} * extents[1];
-    if (pixels > kMaxPixels) refuse(kWrongCall, "standard input holds no frames");
-    frame.height = static_cast<int>(extents[0]);
-    frame.width = static_cast<int>(extents[1]);
+    const std::uint32_t height = data::frames::number_at(head);
+    const std::uint32_t width = data::frames::number_at(head + 4);
+    const std::uint64_t pixels = std::uint64_t{height} * width;
+    if (pixels == 0 || height > kMaxExtent || width > kMaxExtent || pixels > kMaxPixels)
+        refuse(kWrongCall, "standard input holds no frames");
+    frame.height = static_cast<int>(height);
+    frame.width = static_cast<int>(width);
     frame.rgb.resize(kChannels * pixels);
     if (!read_in(frame.rgb.data(), frame.rgb.size())) refuse(kWrongCall, "a frame ends too soon");
     return true;
