@@ -12,7 +12,7 @@ constexpr std::uint64_t kSeed = 2026;
 constexpr double kLow = 0.025;
 constexpr double kHigh = 0.975;
 
-/// x % n of one n, without a division each.
+/// x % n of one n, as Random::below has it, without a division each: draws are many.
 class Remainder {
 public:
     explicit Remainder(std::uint64_t n) : n_(n), inverse_(UINT64_MAX / n) {}
@@ -30,8 +30,8 @@ private:
     std::uint64_t inverse_;
 };
 
-/// How many resamples of so many episodes are made at a time. With more than one there is less to
-/// read, and more than eight are needed for sums that keep a processor busy.
+/// How many resamples of so many episodes are made at a time. The more, the
+/// less often frames are read; at least eight, so that sums keep a processor busy.
 std::size_t batch_of(std::size_t episodes) {
     constexpr std::size_t kMemory = std::size_t{4} << 20U;
     constexpr std::size_t kLeast = 8;
@@ -62,9 +62,8 @@ void Bootstrap::for_each_batch(const std::function<void(const Weights&)>& visit)
     if (episodes == 0) return;
     episodes::Random random(kSeed);
     const std::size_t batch = batch_of(episodes);
-    for (std::size_t begin = 0; begin < kResamples; begin += batch) {
+    for (std::size_t begin = 0; begin < kResamples; begin += batch)
         visit(draw(random, episodes, std::min(batch, kResamples - begin)));
-    }
 }
 
 Figure Bootstrap::figure(

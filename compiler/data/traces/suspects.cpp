@@ -81,7 +81,7 @@ void Suspects::add(const EpisodeContent& content, bool is_known) {
         const auto next = static_cast<std::uint32_t>(inputs_.size());
         const std::uint32_t input = inputs_.try_emplace(name, next).first->second;
         hashes_.add({xxh64(of_input.hash), input, episode});
-        for (const std::uint32_t unit : of_input.sketch) units_.add({input, unit, episode});
+        for (const std::uint32_t unit : of_input.sketch) units_.add({unit, input, episode});
     }
 }
 
@@ -98,30 +98,29 @@ void Suspects::for_each_shared(const std::vector<std::uint32_t>& same, const Vis
 
 std::vector<bool> Suspects::find() {
     std::vector<bool> found(is_known_.size());
-    for_each_group(
-        hashes_, [](const Key& a, const Key& b) { return a.input == b.input && a.key == b.key; },
-        [&](const Key&, const std::vector<std::uint32_t>& same) {
-            for_each_shared(same, [&](std::uint32_t episode) { found[episode] = true; });
-        });
+    const auto is_same = [](const Key& a, const Key& b) {
+        return a.input == b.input && a.key == b.key;
+    };
+    for_each_group(hashes_, is_same, [&](const Key&, const std::vector<std::uint32_t>& same) {
+        for_each_shared(same, [&](std::uint32_t episode) { found[episode] = true; });
+    });
     std::optional<InCommon> in_common;
     std::uint32_t input = 0;
     const auto conclude = [&] {
         if (in_common) in_common->find(found);
     };
-    for_each_group(
-        units_, [](const Unit& a, const Unit& b) { return a.input == b.input && a.unit == b.unit; },
-        [&](const Unit& unit, const std::vector<std::uint32_t>& same) {
-            if (!in_common || unit.input != input) {
-                conclude();
-                in_common.emplace(found.size());
-                input = unit.input;
-            }
-            if (same.size() > kFew)
-                return for_each_shared(same, [&](std::uint32_t e) { in_common->add_wide(e); });
-            for (std::size_t i = 0; i < same.size(); ++i)
-                for (std::size_t k = 0; k < i; ++k)
-                    if (are_compared(same[k], same[i])) in_common->add_pair(same[k], same[i]);
-        });
+    for_each_group(units_, is_same, [&](const Key& unit, const std::vector<std::uint32_t>& same) {
+        if (!in_common || unit.input != input) {
+            conclude();
+            in_common.emplace(found.size());
+            input = unit.input;
+        }
+        if (same.size() > kFew)
+            return for_each_shared(same, [&](std::uint32_t e) { in_common->add_wide(e); });
+        for (std::size_t i = 0; i < same.size(); ++i)
+            for (std::size_t k = 0; k < i; ++k)
+                if (are_compared(same[k], same[i])) in_common->add_pair(same[k], same[i]);
+    });
     conclude();
     return found;
 }

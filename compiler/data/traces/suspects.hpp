@@ -38,16 +38,6 @@ private:
             return key != other.key ? key < other.key : episode < other.episode;
         }
     };
-    struct Unit {
-        std::uint32_t input;
-        std::uint32_t unit;
-        std::uint32_t episode;
-        bool operator<(const Unit& other) const {
-            if (input != other.input) return input < other.input;
-            return unit != other.unit ? unit < other.unit : episode < other.episode;
-        }
-    };
-
     void add(const EpisodeContent& content, bool is_known);
     bool are_compared(std::uint32_t a, std::uint32_t b) const {
         return is_known_[a] != is_known_[b] || (each_other_ && !is_known_[a]);
@@ -61,7 +51,7 @@ private:
     std::vector<bool> is_known_;
     std::map<std::string, std::uint32_t> inputs_;  ///< by name, their numbers
     Sorted<Key> hashes_;
-    Sorted<Unit> units_;
+    Sorted<Key> units_;
 };
 
 }  // namespace etlc::data
