@@ -36,7 +36,7 @@ install(FILES "${PROJECT_BINARY_DIR}/etlcConfig.cmake"
   "${CMAKE_CURRENT_LIST_DIR}/EtlAddMonitor.cmake" DESTINATION "${package_dir}")
 
 # What `etlc --man` and `etlc --completion` print, where man and the shells look.
-set(manual "${PROJECT_BINARY_DIR}/compiler/driver/manual")
+set(manual "${PROJECT_BINARY_DIR}/workbench/driver/manual")
 install(FILES "${manual}/etlc.1" DESTINATION "${CMAKE_INSTALL_MANDIR}/man1")
 install(FILES "${manual}/etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/bash-completion/completions")
 install(FILES "${manual}/_etlc" DESTINATION "${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions")

@@ -1,19 +1,27 @@
 // Data flows one way through the compiler, and so do its includes and its CMake targets.
 #include <gtest/gtest.h>
 
+#include <cstddef>
+#include <filesystem>
+#include <iterator>
 #include <map>
 #include <regex>
 #include <set>
 #include <string>
+#include <vector>
 
 #include "tree.hpp"
 
 namespace etlc::house {
 namespace {
 
+namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-/// The arrows of docs/contributing/architecture.md: what a folder of compiler/ builds on. They are
+/// From the ground up: each building stands on those before it.
+const std::vector<std::string> kBuildings = {"base", "compiler", "workbench"};
+
+/// The arrows of docs/contributing/architecture.md: what a folder of a building builds on. They are
 /// transitive; everyone also sees source and diag.
 const std::map<std::string, Names> kArrows = {
     {"source", {}},
@@ -105,15 +113,39 @@ std::string first_word(const std::string& include) {
     return include.substr(0, include.find_first_of("/.-_"));
 }
 
-std::string folder_of(const std::filesystem::path& file) {
+std::string folder_of(const fs::path& file) {
     return *std::next(file.begin());
+}
+
+/// The C++ sources of all buildings.
+std::vector<fs::path> sources() {
+    std::vector<fs::path> found;
+    for (const std::string& building : kBuildings) {
+        for (const auto& file : cpp_files(building)) found.push_back(file);
+    }
+    return found;
+}
+
+/// folder -> the place of its building in kBuildings.
+const std::map<std::string, std::size_t>& storeys() {
+    static const std::map<std::string, std::size_t> found = [] {
+        std::map<std::string, std::size_t> result;
+        for (std::size_t i = 0; i < kBuildings.size(); ++i) {
+            for (const auto& file : files(kBuildings[i])) {
+                if (std::distance(file.begin(), file.end()) >= 3) result[folder_of(file)] = i;
+            }
+        }
+        return result;
+    }();
+    return found;
 }
 
 /// stage -> the stages that its CMakeLists.txt links, with all that those link.
 Names linked(const std::string& folder) {
     static const std::regex kDepends(R"(\bDEPENDS\b([^)]*))");
     static const std::regex kWord(R"([A-Za-z0-9_:]+)");
-    const std::string text = content(std::filesystem::path("compiler") / folder / "CMakeLists.txt");
+    const std::string text =
+        content(fs::path(kBuildings[storeys().at(folder)]) / folder / "CMakeLists.txt");
     Names found = {folder};
     for (std::sregex_iterator call(text.begin(), text.end(), kDepends);
          call != std::sregex_iterator(); ++call) {
@@ -127,15 +159,21 @@ Names linked(const std::string& folder) {
     return found;
 }
 
-TEST(Arrows, EveryFolderOfTheCompilerIsInTheTable) {
-    for (const auto& file : files("compiler")) {
-        if (std::distance(file.begin(), file.end()) < 3) continue;
-        EXPECT_TRUE(kArrows.contains(folder_of(file))) << file;
+TEST(Arrows, EveryFolderIsInTheTable) {
+    for (const auto& [folder, storey] : storeys())
+        EXPECT_TRUE(kArrows.contains(folder)) << kBuildings[storey] << "/" << folder;
+}
+
+TEST(Arrows, BuildingsStandOnThoseBelow) {
+    for (const auto& [folder, arrows] : kArrows) {
+        for (const std::string& to : arrows) {
+            EXPECT_LE(storeys().at(to), storeys().at(folder)) << folder << " builds on " << to;
+        }
     }
 }
 
 TEST(Arrows, StagesIncludeOnlyWhatTheyBuildOn) {
-    for (const auto& file : cpp_files("compiler")) {
+    for (const auto& file : sources()) {
         const std::string folder = folder_of(file);
         const Names stages = allowed(folder);
         for (const std::string& include : includes(file)) {
@@ -156,14 +194,14 @@ TEST(Arrows, StagesIncludeOnlyWhatTheyBuildOn) {
 }
 
 TEST(Arrows, TargetsLinkWhatTheirFilesInclude) {
-    for (const auto& file : cpp_files("compiler")) {
+    for (const auto& file : sources()) {
         const std::string folder = folder_of(file);
         const Names stages = linked(folder);
         for (const std::string& include : includes(file)) {
             const std::string to = first_word(include);
             if (include.find('/') == std::string::npos || !kArrows.contains(to)) continue;
             EXPECT_TRUE(stages.contains(to))
-                << file << " includes " << include << ", which the DEPENDS of compiler/" << folder
+                << file << " includes " << include << ", which the DEPENDS of " << folder
                 << " do not give";
         }
     }
@@ -173,7 +211,7 @@ TEST(Arrows, TargetsLinkOnlyWhatTheyBuildOn) {
     for (const auto& [folder, arrows] : kArrows) {
         const Names stages = reachable(folder);
         for (const std::string& to : linked(folder)) {
-            EXPECT_TRUE(stages.contains(to)) << "compiler/" << folder << " links " << to;
+            EXPECT_TRUE(stages.contains(to)) << folder << " links " << to;
         }
     }
 }

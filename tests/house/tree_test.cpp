@@ -25,7 +25,8 @@ bool names_path(const std::string& text, const std::string& path) {
 }
 
 TEST(Tree, SourcesAreShort) {
-    for (const char* folder : {"compiler", "runtime", "tests", "examples", "bench"}) {
+    for (const char* folder :
+         {"base", "compiler", "workbench", "runtime", "tests", "examples", "bench"}) {
         for (const auto& file : cpp_files(folder)) {
             const std::string text = content(file);
             EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 400)
@@ -36,7 +37,7 @@ TEST(Tree, SourcesAreShort) {
 
 TEST(Tree, FoldersAreSmall) {
     std::map<std::string, int> sizes;
-    for (const char* folder : {"compiler", "runtime"}) {
+    for (const char* folder : {"base", "compiler", "workbench", "runtime"}) {
         for (const auto& file : files(folder)) ++sizes[file.parent_path()];
     }
     for (const auto& [folder, size] : sizes) {
@@ -50,15 +51,15 @@ TEST(Tree, DistancesAreNamedInOneFile) {
                                                   "grammar/EtlLexer.g4"};
     static const std::set<std::string> kDefinitions = {
         "compiler/reference/distance.cpp",
-        "compiler/episodes/exact_distance.cpp",
-        "compiler/calibrate/bounds.cpp",
+        "workbench/episodes/exact_distance.cpp",
+        "workbench/calibrate/bounds.cpp",
         "compiler/plan/narrow_targets.cpp",
-        "compiler/lsp/answers/words.def",
-        "compiler/fit/suggest/candidates.cpp",
+        "workbench/lsp/answers/words.def",
+        "workbench/fit/suggest/candidates.cpp",
         "runtime/include/etlmon/hosted/error_bounds.hpp"};
     static const std::regex kWord(R"(\b(l2sq|linf)\b)");
     static const std::regex kComment(R"(//[^\n]*)");
-    for (const char* folder : {"compiler", "runtime", "grammar"}) {
+    for (const char* folder : {"base", "compiler", "workbench", "runtime", "grammar"}) {
         for (const auto& file : files(folder)) {
             const std::string text = std::regex_replace(content(file), kComment, "");
             const bool named = std::regex_search(text, kWord);
@@ -85,7 +86,7 @@ TEST(Tree, NothingNamesTheMachineItWasWrittenOn) {
 }
 
 TEST(Tree, HeadersAreIncludedOnceAndSayWhatTheyAre) {
-    for (const char* folder : {"compiler", "runtime"}) {
+    for (const char* folder : {"base", "compiler", "workbench", "runtime"}) {
         for (const auto& file : cpp_files(folder)) {
             if (file.extension() != ".hpp") continue;
             const std::string text = content(file);

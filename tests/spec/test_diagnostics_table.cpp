@@ -36,7 +36,7 @@ std::string table() {
     std::string text = R"(# Diagnostics
 
 Every error and warning of `etlc` has a code.
-This table is made from compiler/diag/codes.def; a test keeps the two equal, and `ETLC_UPDATE=1`
+This table is made from base/diag/codes.def; a test keeps the two equal, and `ETLC_UPDATE=1`
 rewrites it.
 `etlc --explain E0204` says what a code means, with an example of its message.
 

@@ -1,6 +1,6 @@
 // The list of episodes, which sorts and filters; worst first.
 
-// A row of the data as compiler/report/document.cpp writes it, with names.
+// A row of the data as workbench/report/document.cpp writes it, with names.
 const episodes = data.rows.map(
   ([path, frames, outcomes, missing, judged, parts, buckets, series, pictures], place) => {
     const finite = outcomes.map((of) => of[1]).filter((value) => value !== null);

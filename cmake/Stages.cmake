@@ -1,0 +1,74 @@
+# How the folders of base/, compiler/ and workbench/ are built.
+
+# Headers that most files include are compiled once a build. Every file still includes what it
+# uses, which tests/house checks.
+option(ETLC_PRECOMPILE "Read the headers that most files include once a build" ON)
+mark_as_advanced(ETLC_PRECOMPILE)
+
+# One static library a folder, `etlc_<folder>`; DEPENDS lists the arrows of
+# docs/contributing/architecture.md. A stage finds headers from its building on: base/source is
+# included as source/.
+add_library(etlc_options INTERFACE)
+target_compile_options(etlc_options INTERFACE
+  -Wall -Wextra -Wno-missing-field-initializers -Wshadow -Wpedantic -Wconversion
+  -Wno-sign-conversion
+  # GCC 12 sees overlaps in `"text" + string` that are not there.
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
+  # These let ccache see precompiled headers.
+  $<$<CXX_COMPILER_ID:GNU>:-fpch-preprocess>
+  "$<$<CXX_COMPILER_ID:Clang>:SHELL:-Xclang -fno-pch-timestamp>"
+  -ffp-contract=off)  # constants are computed alike on every machine
+# etlc compiles a spec in milliseconds, so more than -O1 only makes it slower to build. Code that
+# goes through recordings frame by frame is the exception: see etlc_loops.
+target_compile_options(etlc_options INTERFACE $<$<CONFIG:Release>:-O1>)
+if(ETLC_PRECOMPILE AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 forgets which precompiled headers are the system's, and gives false warnings about
+  # std::string.
+  target_compile_options(etlc_options INTERFACE
+    -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+endif()
+if(CMAKE_CXX_FLAGS MATCHES "fsanitize")
+  # One version of the kernels instead of one per instruction set: tests/runtime covers them all.
+  target_compile_definitions(etlc_options INTERFACE ETLMON_NO_DISPATCH)
+endif()
+if(ETLC_WERROR)
+  target_compile_options(etlc_options INTERFACE -Werror)
+endif()
+
+# All of it may go into libetlc.so, which shows nothing but its own functions.
+set(ETLC_LIKE_LIBETLC POSITION_INDEPENDENT_CODE ON CXX_VISIBILITY_PRESET hidden
+  VISIBILITY_INLINES_HIDDEN ON)
+
+set(ETLC_NO_CODE ${PROJECT_BINARY_DIR}/no_code.cpp CACHE INTERNAL "A library has a source")
+file(CONFIGURE OUTPUT ${ETLC_NO_CODE} CONTENT "// For the sake of precompiled headers.\n")
+add_library(etlc_precompiled OBJECT ${ETLC_NO_CODE})
+target_link_libraries(etlc_precompiled PUBLIC etlc_options fmt::fmt)
+set_target_properties(etlc_precompiled PROPERTIES ${ETLC_LIKE_LIBETLC})
+if(ETLC_PRECOMPILE)
+  target_precompile_headers(etlc_precompiled PRIVATE
+    <algorithm> <array> <cmath> <cstdint> <functional> <map> <memory> <optional> <set> <string>
+    <string_view> <unordered_map> <variant> <vector> <fmt/format.h>)
+endif()
+
+# etlc_stage(NAME SOURCES file... [DEPENDS stage...] [LIBRARIES target...]). OWN_HEADERS: the stage
+# has other options than the rest, so it cannot share precompiled headers.
+function(etlc_stage name)
+  cmake_parse_arguments(PARSE_ARGV 1 STAGE "OWN_HEADERS" "" "SOURCES;DEPENDS;LIBRARIES")
+  add_library(etlc_${name} STATIC ${STAGE_SOURCES})
+  target_link_libraries(etlc_${name} PUBLIC etlc_options fmt::fmt ${STAGE_LIBRARIES})
+  target_include_directories(etlc_${name} PUBLIC ${CMAKE_CURRENT_SOURCE_DIR}/..)
+  set_target_properties(etlc_${name} PROPERTIES ${ETLC_LIKE_LIBETLC})
+  if(ETLC_PRECOMPILE AND NOT STAGE_OWN_HEADERS)
+    target_precompile_headers(etlc_${name} REUSE_FROM etlc_precompiled)
+  endif()
+  foreach(stage IN LISTS STAGE_DEPENDS)
+    target_link_libraries(etlc_${name} PUBLIC etlc_${stage})
+  endforeach()
+endfunction()
+
+# etlc_loops(file...): sources in which a recording spends its time, optimised. Their options
+# differ from the rest, so they cannot share precompiled headers.
+function(etlc_loops)
+  set_source_files_properties(${ARGN} PROPERTIES
+    COMPILE_OPTIONS $<$<CONFIG:Release>:-O3> SKIP_PRECOMPILE_HEADERS ON)
+endfunction()
