@@ -4,7 +4,7 @@
 #include "check/model/fingerprint.hpp"
 #include "emit/context.hpp"
 #include "plan/program/predicate_values.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

@@ -10,14 +10,14 @@
 #include "emit/names.hpp"
 #include "emit/spelling.hpp"
 #include "emit/text/layout.hpp"
+#include "plan/budget/budget.hpp"
+#include "plan/budget/demand.hpp"
 #include "plan/parameters.hpp"
 #include "plan/plan.hpp"
-#include "plan/program/budget.hpp"
-#include "plan/program/demand.hpp"
 #include "plan/program/dependents.hpp"
+#include "plan/program/samples.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/recorder.hpp"
-#include "plan/samples.hpp"
 
 namespace etlc::emit {
 

@@ -6,9 +6,9 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
-#include "plan/narrow_targets.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

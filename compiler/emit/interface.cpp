@@ -3,9 +3,9 @@
 
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

@@ -5,12 +5,12 @@
 #include <algorithm>
 
 #include "emit/text/identifiers.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
+#include "plan/program/samples.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/samples.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

@@ -2,7 +2,7 @@
 // that give it others.
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
 
 namespace etlc::emit {
 

@@ -7,9 +7,9 @@
 #include "diag/diag.hpp"
 #include "emit/context.hpp"
 #include "emit/text/table.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

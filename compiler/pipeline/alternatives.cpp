@@ -6,7 +6,7 @@
 
 #include "check/formulas/horizons.hpp"
 #include "opt/opt.hpp"
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 namespace etlc::pipeline {
 

@@ -10,8 +10,8 @@
 
 #include "check/model/fingerprint.hpp"
 #include "data/files/hash.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 

@@ -5,14 +5,14 @@
 #include <algorithm>
 #include <set>
 
+#include "plan/budget/budget.hpp"
 #include "plan/decide/readings.hpp"
 #include "plan/decide/refusal.hpp"
 #include "plan/decide/share_windows.hpp"
 #include "plan/decide/streams.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/program/budget.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::plan {
 

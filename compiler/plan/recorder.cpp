@@ -7,7 +7,7 @@
 
 #include "data/files/hash.hpp"
 #include "etlmon/temporal/recorder.hpp"
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 namespace etlc::plan {
 

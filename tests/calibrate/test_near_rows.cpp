@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "plan/evaluate/near_rows.hpp"
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

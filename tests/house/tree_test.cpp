@@ -53,7 +53,7 @@ TEST(Tree, DistancesAreNamedInOneFile) {
         "compiler/reference/distance.cpp",
         "workbench/episodes/exact_distance.cpp",
         "workbench/calibrate/bounds.cpp",
-        "compiler/plan/narrow_targets.cpp",
+        "compiler/plan/targets/narrow_targets.cpp",
         "workbench/lsp/answers/words.def",
         "workbench/fit/suggest/candidates.cpp",
         "runtime/include/etlmon/hosted/error_bounds.hpp"};

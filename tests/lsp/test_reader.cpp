@@ -1,8 +1,8 @@
 // Frames, in pieces of any size.
 #include <gtest/gtest.h>
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/protocol/reader.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 namespace {

@@ -11,7 +11,7 @@
 #include "episodes/exact_distance.hpp"
 #include "etlmon/hosted/error_bounds.hpp"
 #include "etlmon/temporal/expression.hpp"
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
 
 namespace etlc::calibrate {
 

@@ -8,7 +8,7 @@
 #include "library/open.hpp"
 #include "library/version.hpp"
 #include "parse/parse.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/stored.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::driver {

@@ -5,7 +5,7 @@
 #include "data/files/file.hpp"
 #include "driver/depfile.hpp"
 #include "driver/output_file.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::driver {
 

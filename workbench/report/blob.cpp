@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "report/pack.hpp"
+#include "report/packing/pack.hpp"
 #include "source/escape.hpp"
 
 namespace etlc::report {

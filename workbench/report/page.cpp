@@ -5,7 +5,7 @@
 #include <map>
 #include <string_view>
 
-#include "report/pack.hpp"
+#include "report/packing/pack.hpp"
 #include "report/page_files.hpp"
 
 namespace etlc::report {

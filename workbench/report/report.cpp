@@ -14,7 +14,7 @@
 #include "report/document.hpp"
 #include "report/page.hpp"
 #include "report/picture_of_trace.hpp"
-#include "report/pictures/target_pictures.hpp"
+#include "report/target_pictures.hpp"
 
 namespace etlc::report {
 

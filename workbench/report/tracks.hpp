@@ -15,8 +15,8 @@
 #include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "ir/lower.hpp"
-#include "report/pictures/target_pictures.hpp"
 #include "report/plane.hpp"
+#include "report/target_pictures.hpp"
 
 namespace etlc::report {
 

@@ -1,9 +1,9 @@
 // The kernels' calls in measure().
 #include "emit/measure/measurements.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::emit {
 

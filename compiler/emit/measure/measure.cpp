@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "emit/measure/measurements.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/narrow_targets.hpp"
 #include "plan/program/predicate_values.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::emit {
 

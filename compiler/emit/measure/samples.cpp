@@ -1,7 +1,7 @@
 // The samples of a step in measure(): what of an input counts as there, and what stands for it.
 #include "emit/measure/measurements.hpp"
-#include "plan/decide/point_checks.hpp"
 #include "plan/program/predicate_values.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::emit {
 

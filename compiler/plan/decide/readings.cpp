@@ -4,8 +4,8 @@
 
 #include <algorithm>
 
+#include "plan/budget/budget.hpp"
 #include "plan/decide/straight.hpp"
-#include "plan/program/budget.hpp"
 
 namespace etlc::plan {
 

@@ -7,8 +7,9 @@
 #include <map>
 #include <vector>
 
+#include "plan/budget/limits.hpp"
 #include "plan/decide/machine.hpp"
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <set>
 
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 namespace etlc::plan {
 

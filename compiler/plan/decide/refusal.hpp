@@ -3,8 +3,9 @@
 // at the operators that need them. Keeps true: a plan within the limits passes without a word.
 #pragma once
 
+#include "plan/budget/limits.hpp"
 #include "plan/decide/readings.hpp"
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

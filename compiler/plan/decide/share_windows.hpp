@@ -5,7 +5,7 @@
 // plan puts them in order.
 #pragma once
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "plan/program/demand.hpp"
+#include "plan/budget/demand.hpp"
 #include "plan/program/stream.hpp"
 
 namespace etlc::plan {
@@ -32,7 +32,7 @@ public:
 
     /// What a stream is at one end, or both.
     Term term(Slot slot, End end = End::both) const;
-    /// The stream is found out when it is asked for (plan/program/demand.hpp).
+    /// The stream is found out when it is asked for (plan/budget/demand.hpp).
     bool on_demand(Slot slot) const { return on_demand_[slot]; }
 
     Slot constant(Value value);

@@ -17,7 +17,7 @@
 #include "plan/evaluate/inputs.hpp"
 #include "plan/evaluate/near_rows.hpp"
 #include "plan/evaluate/pending_evaluator.hpp"
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "plan/narrow_targets.hpp"
+#include "plan/targets/narrow_targets.hpp"
 
 namespace etlc::plan {
 

@@ -9,8 +9,8 @@
 #include "etlmon/hosted/dynamic_enclosed.hpp"
 #include "etlmon/temporal/expression.hpp"
 #include "plan/evaluate/evaluator.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
 
 namespace etlc::plan {
 

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "etlmon/temporal/pending.hpp"
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

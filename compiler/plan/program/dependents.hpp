@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -1,7 +1,7 @@
 // The plan as text, for --emit plan.
 #include <fmt/format.h>
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -10,7 +10,7 @@
 #include "episodes/admission/admission.hpp"
 #include "fit/separation.hpp"
 #include "fit/suggest/candidates.hpp"
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 namespace etlc::fit {
 

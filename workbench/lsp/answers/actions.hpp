@@ -3,8 +3,8 @@
 // a name that is changed where it is declared is changed everywhere.
 #pragma once
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/spec/analysis.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 

@@ -4,8 +4,8 @@
 // its notes; one about another file stands where the spec names that file.
 #pragma once
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/spec/analysis.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 

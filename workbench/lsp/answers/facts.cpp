@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "check/guarantees/guarantees.hpp"
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 namespace etlc::lsp {
 

@@ -6,8 +6,8 @@
 
 #include <cstdint>
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/spec/document.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 

@@ -6,8 +6,8 @@
 #include <cstdint>
 #include <string>
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/spec/analysis.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 

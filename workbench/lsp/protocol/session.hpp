@@ -10,9 +10,9 @@
 #include <optional>
 #include <string>
 
-#include "lsp/protocol/json.hpp"
 #include "lsp/protocol/reader.hpp"
 #include "lsp/spec/document.hpp"
+#include "lsp/text/json.hpp"
 
 namespace etlc::lsp {
 

@@ -1,4 +1,4 @@
-// The series of an episode: base64 of deflated bytes, as workbench/report/pack.hpp writes them.
+// The series of an episode: base64 of deflated bytes, as workbench/report/packing/pack.hpp writes them.
 
 async function inflated(text) {
   const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));

@@ -13,7 +13,7 @@
 #include "data/frames/frames.hpp"
 #include "data/quote.hpp"
 #include "data/traces/trace.hpp"
-#include "report/pack.hpp"
+#include "report/packing/pack.hpp"
 #include "report/pictures/png.hpp"
 
 namespace etlc::report {

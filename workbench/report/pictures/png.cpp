@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "report/pack.hpp"
+#include "report/packing/pack.hpp"
 
 namespace etlc::report {
 

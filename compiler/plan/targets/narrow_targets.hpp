@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -6,7 +6,7 @@
 
 #include <set>
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

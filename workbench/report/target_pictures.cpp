@@ -1,4 +1,4 @@
-#include "report/pictures/target_pictures.hpp"
+#include "report/target_pictures.hpp"
 
 #include <fmt/format.h>
 

@@ -1,13 +1,13 @@
-#include "plan/program/target_bytes.hpp"
+#include "plan/budget/target_bytes.hpp"
 
 #include <set>
 #include <tuple>
 
 #include "etlmon/distance/layout.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/point_checks.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::plan {
 

@@ -1,4 +1,4 @@
-#include "plan/samples.hpp"
+#include "plan/program/samples.hpp"
 
 #include <algorithm>
 

@@ -5,7 +5,8 @@
 // Value has two keys); code_bytes is an estimate.
 #pragma once
 
-#include "plan/plan.hpp"
+#include "plan/budget/limits.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

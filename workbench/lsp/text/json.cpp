@@ -1,4 +1,4 @@
-#include "lsp/protocol/json.hpp"
+#include "lsp/text/json.hpp"
 
 #include <fmt/format.h>
 

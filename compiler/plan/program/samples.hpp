@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -1,9 +1,9 @@
-#include "plan/program/demand.hpp"
+#include "plan/budget/demand.hpp"
 
 #include <algorithm>
 
-#include "plan/plan.hpp"
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
+#include "plan/program/program.hpp"
 #include "plan/program/value_type.hpp"
 
 namespace etlc::plan {

@@ -1,4 +1,4 @@
-#include "report/pack.hpp"
+#include "report/packing/pack.hpp"
 
 #include <fmt/format.h>
 #include <zlib.h>

@@ -4,7 +4,7 @@
 // computes anyway.
 #pragma once
 
-#include "plan/plan.hpp"
+#include "plan/program/program.hpp"
 
 namespace etlc::plan {
 

@@ -1,4 +1,4 @@
-#include "plan/narrow_targets.hpp"
+#include "plan/targets/narrow_targets.hpp"
 
 #include <fmt/format.h>
 
@@ -9,8 +9,8 @@
 
 #include "check/numbers/rounding.hpp"
 #include "etlmon/distance/widen.hpp"
-#include "plan/kernels.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::plan {
 

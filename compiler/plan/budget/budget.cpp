@@ -1,4 +1,4 @@
-#include "plan/program/budget.hpp"
+#include "plan/budget/budget.hpp"
 
 #include <fmt/format.h>
 
@@ -6,11 +6,11 @@
 #include <set>
 
 #include "etlmon/hosted/footprint.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/program/target_bytes.hpp"
+#include "plan/budget/target_bytes.hpp"
+#include "plan/program/samples.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/samples.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/point_checks.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::plan {
 

@@ -1,4 +1,4 @@
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
 
 #include "etlmon/hosted/dynamic.hpp"
 

@@ -1,4 +1,4 @@
-#include "plan/stored.hpp"
+#include "plan/targets/stored.hpp"
 
 #include <algorithm>
 #include <bit>
@@ -6,8 +6,8 @@
 #include "etlmon/checksum.hpp"
 #include "etlmon/distance/layout.hpp"
 #include "etlmon/distance/search.hpp"
-#include "plan/decide/point_checks.hpp"
-#include "plan/kernels.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/point_checks.hpp"
 
 namespace etlc::plan {
 

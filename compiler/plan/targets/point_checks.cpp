@@ -1,12 +1,12 @@
-#include "plan/decide/point_checks.hpp"
+#include "plan/targets/point_checks.hpp"
 
 #include <algorithm>
 #include <set>
 
-#include "plan/kernels.hpp"
-#include "plan/narrow_targets.hpp"
 #include "plan/program/value_type.hpp"
-#include "plan/stored.hpp"
+#include "plan/targets/kernels.hpp"
+#include "plan/targets/narrow_targets.hpp"
+#include "plan/targets/stored.hpp"
 
 namespace etlc::plan {
 
