@@ -6,7 +6,7 @@ option(ETLC_PRECOMPILE "Read the headers that most files include once a build" O
 mark_as_advanced(ETLC_PRECOMPILE)
 
 # One static library a folder, `etlc_<folder>`; DEPENDS lists the arrows of
-# docs/contributing/architecture.md. A stage finds headers from its building on: base/source is
+# docs/contributing/compiler.md. A stage finds headers from its building on: base/source is
 # included as source/.
 add_library(etlc_options INTERFACE)
 target_compile_options(etlc_options INTERFACE

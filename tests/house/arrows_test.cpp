@@ -21,7 +21,7 @@ using Names = std::set<std::string>;
 /// From the ground up: each building stands on those before it.
 const std::vector<std::string> kBuildings = {"base", "compiler", "workbench"};
 
-/// The arrows of docs/contributing/architecture.md: what a folder of a building builds on. They are
+/// The arrows of docs/contributing/compiler.md and workbench.md: what a folder builds on. They are
 /// transitive; everyone also sees source and diag.
 const std::map<std::string, Names> kArrows = {
     {"source", {}},
