@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-#include "driver/calibrate.hpp"
+#include "driver/learn/calibrate.hpp"
 
 namespace etlc::tests {
 

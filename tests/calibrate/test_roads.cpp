@@ -5,7 +5,7 @@
 
 #include <cmath>
 
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 #include "random.hpp"
 #include "roads.hpp"
 

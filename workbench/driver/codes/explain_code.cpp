@@ -5,8 +5,8 @@
 #include <algorithm>
 
 #include "data/quote.hpp"
-#include "driver/output_file.hpp"
-#include "driver/process.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 
 namespace etlc::driver {
 

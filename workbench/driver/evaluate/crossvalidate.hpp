@@ -11,7 +11,7 @@
 
 #include "calibrate/calibrate.hpp"
 #include "diag/diag.hpp"
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 #include "fitted/fitted.hpp"
 #include "thresholds/thresholds.hpp"
 

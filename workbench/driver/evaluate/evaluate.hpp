@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 #include "driver/fleet/fleet.hpp"
 #include "evaluate/evaluate.hpp"
 #include "thresholds/thresholds.hpp"

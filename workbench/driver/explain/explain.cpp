@@ -8,8 +8,8 @@
 
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
-#include "driver/options/names.hpp"
-#include "driver/output_file.hpp"
+#include "driver/compile/names.hpp"
+#include "driver/process/output_file.hpp"
 #include "episodes/replay.hpp"
 #include "explain/history.hpp"
 #include "explain/report.hpp"

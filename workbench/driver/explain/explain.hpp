@@ -10,7 +10,7 @@
 
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 
 namespace etlc::driver {
 

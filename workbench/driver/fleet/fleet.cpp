@@ -14,8 +14,8 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/traces/episodes.hpp"
-#include "driver/output_file.hpp"
-#include "driver/process.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "library/version.hpp"
 
 namespace etlc::driver {

@@ -7,7 +7,7 @@
 #include "check/model/fingerprint.hpp"
 #include "data/files/file.hpp"
 #include "driver/incident/formats.hpp"
-#include "driver/output_file.hpp"
+#include "driver/process/output_file.hpp"
 #include "etlmon/temporal/recorder.hpp"
 #include "plan/recorder.hpp"
 

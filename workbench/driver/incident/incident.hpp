@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <string>
 
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 
 namespace etlc::driver {
 

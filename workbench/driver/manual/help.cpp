@@ -1,68 +1,48 @@
 #include "driver/manual/help.hpp"
 
 #include <algorithm>
-#include <cassert>
+
+#include "driver/options/option.hpp"
 
 namespace etlc::driver {
 
 namespace {
 
-/// Known by its place, so that no argument of a user is it.
-char asked[] = "--help";
-
-std::vector<std::string> split(const std::string& text, char at) {
-    std::vector<std::string> words;
-    std::size_t begin = 0;
-    while (begin <= text.size()) {
-        const std::size_t end = std::min(text.find(at, begin), text.size());
-        words.push_back(text.substr(begin, end - begin));
+/// "-o" and "--output" of "-o,--output"; "--standalone" of "--standalone{portable}"; none of a
+/// positional.
+std::vector<std::string> names_of(const Option& option) {
+    std::vector<std::string> names;
+    if (option.names[0] != '-') return names;
+    const std::string all = option.names.substr(0, option.names.find('{'));
+    for (std::size_t begin = 0; begin <= all.size();) {
+        const std::size_t end = std::min(all.find(',', begin), all.size());
+        names.push_back(all.substr(begin, end - begin));
         begin = end + 1;
     }
-    return words;
+    return names;
 }
 
-/// CLI11 says "FILE", or ":f32|f16" of one of some words.
-void take_type(const std::string& type, OptionHelp& option) {
-    const std::size_t colon = type.find(':');
-    if (colon == std::string::npos)
-        option.value = type;
-    else
-        option.words = split(type.substr(colon + 1), '|');
-}
-
-OptionHelp help_of(const CLI::Option& option) {
+OptionHelp help_of(const Option& option) {
+    const Takes& takes = option.takes;
     OptionHelp help;
-    for (const std::string& name : option.get_snames()) help.names.push_back("-" + name);
-    for (const std::string& name : option.get_lnames()) help.names.push_back("--" + name);
-    help.is_flag = !option.get_positional() && option.get_expected_min() == 0;
-    if (!help.is_flag || option.get_type_name().find(':') != std::string::npos)
-        take_type(option.get_type_name(), help);
-    help.usual = option.get_default_str();
-    help.text = option.get_description();
-    help.repeats = option.get_items_expected_max() > 1;
-    help.is_required = option.get_required();
+    help.names = names_of(option);
+    help.value = takes.value;
+    help.words = takes.choices;
+    help.usual = takes.usual;
+    help.text = option.help;
+    help.is_flag = takes.is_flag || !takes.set;  // --help and --version set nothing
+    help.repeats = takes.repeats;
+    help.is_required = option.need == Option::Need::required;
     return help;
 }
 
 }  // namespace
 
-CommandHelp help_of(CommandFunction command) {
-    char name[] = "etlc";
-    char* arguments[] = {name, asked, nullptr};
-    try {
-        command(2, arguments);
-    } catch (CommandHelp& help) {
-        return std::move(help);
-    }
-    assert(false && "the command has not called parse_arguments()");
-    return {};
-}
-
-void tell_help(const CLI::App& app, int argc, char** argv) {
-    if (argc != 2 || argv[1] != asked) return;
-    CommandHelp help{app.get_name(), app.get_description(), app.get_footer(), {}};
-    for (const CLI::Option* option : app.get_options()) help.options.push_back(help_of(*option));
-    throw help;
+CommandHelp help_of(Command command, const CommandText& text) {
+    CommandHelp help{text.name, text.summary, text.footer, {}};
+    for (const Option& option : options())
+        if (option.commands.has(command)) help.options.push_back(help_of(option));
+    return help;
 }
 
 }  // namespace etlc::driver

@@ -1,11 +1,11 @@
-// What a command says of itself: the apps of CLI11, from which --help is printed too.
-// Takes: the function of a command. Gives: its options, for completion and for the manual page.
-// Keeps true: there is no other list of options.
+// What a command says of itself, for completion and for the manual page.
+// Takes: the table of options. Gives: those of a command. Keeps true: there is no other list.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <string>
 #include <vector>
+
+#include "driver/options/parse.hpp"
 
 namespace etlc::driver {
 
@@ -28,13 +28,7 @@ struct CommandHelp {
     std::vector<OptionHelp> options;
 };
 
-/// A command's function, as main() calls it.
-using CommandFunction = int (*)(int argc, char** argv);
-
-/// Its app. The function is called, and comes as far as parse_arguments().
-CommandHelp help_of(CommandFunction command);
-
-/// For parse_arguments(): throws what the app says where help_of() has called.
-void tell_help(const CLI::App& app, int argc, char** argv);
+/// What the table of options says of a command.
+CommandHelp help_of(Command command, const CommandText& text);
 
 }  // namespace etlc::driver

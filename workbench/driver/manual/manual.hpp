@@ -33,7 +33,7 @@ std::string word_of(const CommandHelp& command);
 /// Up to its first sentence's end, on one line.
 std::string first_sentence(const std::string& text);
 
-/// Beside the options that CLI11 knows, etlc takes these words alone.
+/// Besides its options, etlc takes these words alone.
 inline constexpr const char* kOwnWords[] = {"--completion", "--man"};
 inline constexpr const char* kShells[] = {"bash", "zsh", "fish"};
 

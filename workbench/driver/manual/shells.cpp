@@ -4,9 +4,9 @@
 #include <algorithm>
 
 #include "driver/manual/manual.hpp"
-#include "driver/options/options.hpp"
-#include "driver/output_file.hpp"
-#include "driver/process.hpp"
+#include "driver/options/mistakes.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/process.hpp"
 #include "library/version.hpp"
 
 namespace etlc::driver {

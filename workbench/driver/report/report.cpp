@@ -4,10 +4,10 @@
 #include <utility>
 
 #include "data/traces/episodes.hpp"
+#include "driver/compile/names.hpp"
 #include "driver/evaluate/evaluate.hpp"
-#include "driver/options/names.hpp"
-#include "driver/output_file.hpp"
-#include "driver/progress.hpp"
+#include "driver/process/output_file.hpp"
+#include "driver/process/progress.hpp"
 
 namespace etlc::driver {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
-#include "driver/compile.hpp"
+#include "driver/compile/compile.hpp"
 #include "report/report.hpp"
 
 namespace etlc::driver {

@@ -1,0 +1,185 @@
+#include "driver/options/mistakes.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <charconv>
+#include <cmath>
+#include <limits>
+
+#include "check/names/reserved.hpp"
+#include "data/quote.hpp"
+#include "data/traces/trace.hpp"
+#include "diag/diag.hpp"
+#include "driver/options/call.hpp"
+#include "driver/process/output_file.hpp"
+#include "library/recorder.hpp"
+
+namespace etlc::driver {
+
+std::string mistake_in_word(const std::string& found, const std::vector<std::string>& expected) {
+    if (std::find(expected.begin(), expected.end(), found) != expected.end()) return "";
+    const auto meant = diag::nearest_name(found, expected);
+    return fmt::format("found {}, expected {}{}", data::in_quotes(found),
+                       diag::alternatives(expected),
+                       meant ? fmt::format("; did you mean '{}'?", *meant) : "");
+}
+
+std::string mistake_in_number(const std::string& found, std::uint64_t least, std::uint64_t most) {
+    std::uint64_t number = 0;
+    const char* end = found.data() + found.size();
+    const auto [stop, error] = std::from_chars(found.data(), end, number);
+    if (error == std::errc() && stop == end && least <= number && number <= most) return "";
+    const bool bounded = most < std::numeric_limits<std::uint64_t>::max();
+    return fmt::format("found {}, expected a whole number from {}{}", data::in_quotes(found), least,
+                       bounded ? fmt::format(" to {}", most) : "");
+}
+
+std::string mistake_in_reason(const std::string& found) {
+    constexpr std::size_t kLongest = 200;
+    const bool has_words = std::any_of(found.begin(), found.end(),
+                                       [](unsigned char c) { return std::isalnum(c) != 0; });
+    const bool one_line = found.find_first_of("\n\r") == std::string::npos;
+    if (has_words && one_line && found.size() <= kLongest) return "";
+    return fmt::format("found {}, expected a reason in words, on one line of at most {} bytes",
+                       data::in_quotes(found), kLongest);
+}
+
+std::string mistake_in_recorder(const std::string& found) {
+    std::string why;
+    library::parse_recorder(found, why);
+    return why;
+}
+
+std::string mistake_in_namespace(const std::string& name) {
+    bool is_outermost = true;
+    for (std::size_t begin = 0; begin != std::string::npos; is_outermost = false) {
+        const std::size_t end = name.find("::", begin);
+        const std::string part = name.substr(begin, end - begin);
+        begin = end == std::string::npos ? end : end + 2;
+        const auto in_names = [](unsigned char c) { return std::isalnum(c) != 0 || c == '_'; };
+        const bool is_name = !part.empty() &&
+                             std::isdigit(static_cast<unsigned char>(part[0])) == 0 &&
+                             std::all_of(part.begin(), part.end(), in_names);
+        if (!is_name) return fmt::format("'{}' is not the name of a namespace", name);
+        if (const auto why = check::why_forbidden(part, is_outermost))
+            return fmt::format("'{}' {}; another name would do, for example '{}'", part, *why,
+                               check::allowed_name(part, "monitors", is_outermost));
+    }
+    return "";
+}
+
+std::string mistake_in_seconds(const std::string& found) {
+    double number = 0;
+    const char* end = found.data() + found.size();
+    const auto [stop, error] = std::from_chars(found.data(), end, number);
+    if (error == std::errc() && stop == end && std::isfinite(number) && number >= 0) return "";
+    return fmt::format("found {}, expected a number of seconds from 0", data::in_quotes(found));
+}
+
+namespace {
+
+std::string mistake_in_retargetable(const Call& call) {
+    const Request& request = call.request;
+    if (!request.check.retargetable && request.emit != "params") return "";
+    const auto without = [&](const char* option, const char* why) {
+        return fmt::format("{} goes without {}: {}",
+                           request.emit == "params" ? "--emit params" : "--retargetable", option,
+                           why);
+    };
+    if (request.values == check::Values::boolean)
+        return without("--values boolean", "its class is made of robustness");
+    if (request.explain)
+        return without("--explain",
+                       "samples of before would be told with the thresholds and rows of now");
+    if (request.recorder)
+        return without("--recorder",
+                       "etlc incident would read an incident with the numbers of one spec");
+    if (request.targets_as != plan::Storage::f32)
+        return without("--targets-as",
+                       "how far narrowing moves a row is known of the rows of one spec");
+    for (const char* option : {"--inline-targets", "--targets-file"})
+        if (call.has(option))
+            return without(option, "all of its target sets lie in its parameters");
+    return "";
+}
+
+std::string mistake_in_compiling(const Call& call) {
+    const OutputPaths& output = call.output;
+    const bool prints_stage = call.has("--emit");
+    if (call.check_only && (prints_stage || !output.result.empty()))
+        return "--check goes neither with --emit nor with -o";
+    if (!call.check_only && !prints_stage && output.result.empty())
+        return "say where to write the header with -o, or --check";
+    if (!output.depfile.empty() && (output.result.empty() || output.result == "-"))
+        return "--depfile needs -o FILE";
+    if (call.has("--targets-file") &&
+        (output.targets.empty() || output.targets == "-" || output.targets == output.result ||
+         output.targets == output.depfile))
+        return "--targets-file needs a file of its own";
+    if (call.request.explain && call.request.values == check::Values::boolean)
+        return "--explain follows robustness to the sample that it is that of, and --values "
+               "boolean has none: leave one of the two out";
+    if (std::string mistake = mistake_in_retargetable(call); !mistake.empty()) return mistake;
+    if (call.has("--targets-file") && prints_stage && call.request.emit != "hpp")
+        return "--targets-file goes with the header, not with other stages";
+    return "";
+}
+
+std::string mistake_in_running(const Call& call) {
+    if (call.run.trace == data::kStandardInput && !(call.run.html.empty() && call.run.svg.empty()))
+        return "--html and --svg read the trace once more, so it cannot be standard input";
+    return mistake_in_retargetable(call);
+}
+
+std::string mistake_in_embedding(const EmbedRequest& request) {
+    if (request.data.empty() != request.output.empty())
+        return request.data.empty() ? "-o takes the episodes of --data, which is missing"
+                                    : "--data needs -o FOLDER, where the episodes go";
+    if (request.shard.shards > 0 && request.data.empty())
+        return "--shard takes a part of the recordings of --data, which is missing";
+    return "";
+}
+
+std::string mistake_in_shard(const ShardRequest& request) {
+    if (request.part == kStandardOutput) return "--part names a file, not standard output";
+    if ((request.shards == 0) == request.part.empty()) return "";
+    return request.part.empty() ? "--shard needs --part, the file to write"
+                                : "--part goes with --shard";
+}
+
+std::string mistake_in_evaluating(const Call& call) {
+    const auto& specs = call.specs;
+    for (auto spec = specs.begin(); spec != specs.end(); ++spec)
+        if (std::find(specs.begin(), spec, *spec) != spec)
+            return fmt::format("the spec {} is given twice", *spec);
+    if (call.evaluate.shard.shards > 0 && (specs.size() > 1 || call.evaluate.folds > 0))
+        return "--shard goes with one spec, and not with folds";
+    for (const char* option : {"--thresholds", "--fitted"}) {
+        if (!call.has(option)) continue;
+        if (call.evaluate.folds > 0)
+            return fmt::format("{} does not go with folds, which learn theirs from the episodes",
+                               option);
+        if (specs.size() > 1)
+            return fmt::format("{} goes with one spec; the files of several lie beside them",
+                               option);
+    }
+    return mistake_in_shard(call.evaluate.shard);
+}
+
+}  // namespace
+
+std::string mistake_in(const Call& call) {
+    switch (call.command) {
+        case Command::compile: return mistake_in_compiling(call);
+        case Command::run: return mistake_in_running(call);
+        case Command::embed: return mistake_in_embedding(call.embed);
+        case Command::calibrate: return mistake_in_shard(call.calibrate.shard);
+        case Command::evaluate:
+        case Command::crossvalidate: return mistake_in_evaluating(call);
+        default: return "";
+    }
+}
+
+}  // namespace etlc::driver

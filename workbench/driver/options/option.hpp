@@ -1,0 +1,161 @@
+// A row of the table of options: what an option is called, what it takes, and what it sets.
+// Takes: places in a call. Gives: rows, which the parser, --help, the manual page, the completions
+// and docs/command_line.md read. Keeps true: a value is taken as it is written or refused, never
+// rounded or wrapped; a refusal says what was found and what was expected.
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "driver/options/call.hpp"
+#include "driver/options/mistakes.hpp"
+
+namespace etlc::driver {
+
+/// A set of commands.
+class Commands {
+public:
+    constexpr Commands(Command command) : bits_(1U << static_cast<unsigned>(command)) {}
+    constexpr bool has(Command command) const { return (bits_ & Commands(command).bits_) != 0; }
+    friend constexpr Commands operator|(Commands a, Commands b) {
+        a.bits_ |= b.bits_;
+        return a;
+    }
+
+private:
+    unsigned bits_;
+};
+
+/// What an option takes, and what it does with that.
+struct Takes {
+    using Words = std::vector<std::string>;
+
+    std::string value;          ///< "FILE"; empty: nothing, or one of `choices`
+    Words choices;              ///< the words that it takes
+    std::string usual;          ///< what counts where it is absent, for --help
+    bool is_flag = false;       ///< its value, if any, stands behind a '='
+    bool repeats = false;       ///< several values behind one name
+    bool once_a_name = false;   ///< may stand again, each time with one value
+    bool may_be_empty = false;  ///< no value behind the name is a value too
+    std::function<std::string(const std::string&)> check;  ///< "" or what is wrong with one value
+    /// Sets it; "" or what is wrong with the values together.
+    std::function<std::string(Call&, const Words&)> set;
+};
+
+struct Option {
+    Commands commands;
+    std::string names;  ///< "-o,--output"; "spec": a positional; "--x{word}": what --x alone means
+    Takes takes;
+    std::string help;
+    enum class Need : std::uint8_t { none, required } need = Need::none;
+    std::string excludes{};  ///< the name of another option
+    std::string needs{};
+};
+
+/// All options of all commands, each command's in the order in which it shows them.
+const std::vector<Option>& options();
+
+/// Where an option goes: in(&Call::run, &RunRequest::html).
+template <class... Members>
+auto in(Members... members) {
+    return [=](Call & call) -> auto& {
+        return (call.*....*members);
+    };
+}
+
+template <class At>
+Takes flag(At at) {
+    Takes takes;
+    takes.is_flag = true;
+    takes.set = [at](Call& call, const Takes::Words&) {
+        at(call) = true;
+        return std::string();
+    };
+    return takes;
+}
+
+/// One text. `usual`: what stands there before.
+template <class At>
+Takes text(std::string value, At at, std::string usual = "") {
+    Takes takes;
+    takes.value = std::move(value);
+    takes.usual = std::move(usual);
+    takes.set = [at](Call& call, const Takes::Words& words) {
+        at(call) = words.front();
+        return std::string();
+    };
+    return takes;
+}
+
+template <class At>
+Takes file(At at, std::string usual = "") {
+    return text("FILE", at, std::move(usual));
+}
+
+template <class At>
+Takes texts(std::string value, At at) {
+    Takes takes;
+    takes.value = std::move(value);
+    takes.repeats = true;
+    takes.set = [at](Call& call, const Takes::Words& words) {
+        at(call) = words;
+        return std::string();
+    };
+    return takes;
+}
+
+/// One of these words, kept as it is.
+template <class At>
+Takes one_of(Takes::Words choices, At at, std::string usual = "") {
+    Takes takes = text("", at, std::move(usual));
+    takes.check = [choices](const std::string& found) { return mistake_in_word(found, choices); };
+    takes.choices = std::move(choices);
+    return takes;
+}
+
+/// One of these words, which mean values; the first where the option is absent.
+template <class Value, class At>
+Takes choice(std::vector<std::pair<std::string, Value>> meanings, At at) {
+    Takes takes;
+    for (const auto& [word, value] : meanings) takes.choices.push_back(word);
+    takes.usual = takes.choices.front();
+    takes.check = [choices = takes.choices](const std::string& found) {
+        return mistake_in_word(found, choices);
+    };
+    takes.set = [at, meanings = std::move(meanings)](Call& call, const Takes::Words& words) {
+        for (const auto& [word, value] : meanings)
+            if (word == words.front()) at(call) = value;
+        return std::string();
+    };
+    return takes;
+}
+
+/// A whole number in [least, most].
+template <class Number, class At>
+Takes number(At at, std::uint64_t least = 0,
+             std::uint64_t most = std::numeric_limits<Number>::max(), std::string usual = "",
+             std::string value = "N") {
+    Takes takes;
+    takes.value = std::move(value);
+    takes.usual = std::move(usual);
+    takes.check = [=](const std::string& found) { return mistake_in_number(found, least, most); };
+    takes.set = [at](Call& call, const Takes::Words& words) {
+        at(call) = static_cast<Number>(std::stoull(words.front()));
+        return std::string();
+    };
+    return takes;
+}
+
+/// A form of its own, which `set` reads.
+inline Takes form(std::string value, decltype(Takes::set) set) {
+    Takes takes;
+    takes.value = std::move(value);
+    takes.set = std::move(set);
+    return takes;
+}
+
+}  // namespace etlc::driver

@@ -1,0 +1,67 @@
+#include "driver/process/process.hpp"
+
+#include <fcntl.h>
+#include <signal.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <exception>
+#include <new>
+
+#include "data/files/descriptor.hpp"
+#include "data/spill/file.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+constexpr std::string_view kNoMemory = "etlc: there is not enough memory\n";
+
+}  // namespace
+
+int say_what_failed() noexcept {
+    try {
+        throw;
+    } catch (const std::bad_alloc&) {
+        print_error(kNoMemory);
+        return kFailed;
+    } catch (const data::SpillError& error) {
+        for (const std::string_view part : {"etlc: ", error.what(), "\n"}) print_error(part);
+        return kFailed;
+    } catch (const std::exception& error) {
+        for (const std::string_view part : {"etlc: internal error: ", error.what(), "\n"})
+            print_error(part);
+    } catch (...) {
+        print_error("etlc: internal error\n");
+    }
+    return kOwnFault;
+}
+
+namespace {
+
+/// Libraries have functions that may not throw and need memory all the same: destructors of
+/// nlohmann::json, iterators of std::filesystem. An exception that such a function is left by is no
+/// current one, and can only be that.
+[[noreturn]] void end() noexcept {
+    if (std::current_exception()) ::_exit(say_what_failed());
+    if (std::uncaught_exceptions() == 0) ::abort();
+    print_error(kNoMemory);
+    ::_exit(kFailed);
+}
+
+}  // namespace
+
+void prepare_process() {
+    std::set_terminate(end);
+    ::signal(SIGXFSZ, SIG_IGN);
+    // The lowest number that is free is the one that open() gives.
+    for (const int standard : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO})
+        if (::fcntl(standard, F_GETFD) < 0)
+            static_cast<void>(::open("/dev/null", standard == STDERR_FILENO ? O_WRONLY : O_RDONLY));
+}
+
+bool print_error(std::string_view text) {
+    return data::write_all(STDERR_FILENO, text);
+}
+
+}  // namespace etlc::driver
