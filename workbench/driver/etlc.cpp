@@ -11,6 +11,7 @@
 #include "data/files/file.hpp"
 #include "driver/codes/explain_code.hpp"
 #include "driver/manual/manual.hpp"
+#include "driver/options/commands.hpp"
 #include "driver/options/parse.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
@@ -107,7 +108,6 @@ int fit(Call& call, episodes::Sharing*) {
     });
 }
 
-/// `merged`: all parts of this call; null: the episodes are read.
 int calibrate(Call& call, episodes::Sharing* merged) {
     auto sharing = driver::sharing_of(call.calibrate.shard, call.words);
     call.calibrate.calibration.sharing = sharing ? &*sharing : merged;
@@ -156,76 +156,16 @@ int report(Call& call, episodes::Sharing*) {
         });
 }
 
-struct Row {
-    Command command;
-    std::string_view name;   ///< empty: etlc without a command
-    std::string_view takes;  ///< at least; may be empty
-    std::string_view summary;
-    int (*execute)(Call& call, episodes::Sharing* merged);
-};
-constexpr Row kCommands[] = {
-    {Command::compile, "", "", "", compile},
-    {Command::run, "run", "SPEC.etl --trace FILE",
-     "Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory.",
-     run},
-    {Command::embed, "embed", "SPEC.etl --data FILE... -o FOLDER",
-     "Encodes the images and videos that a spec names, into SPEC.embedded.npz beside it, and "
-     "recordings into\nepisodes that the other commands take.",
-     embed},
-    {Command::fit, "fit", "SPEC.etl --data FILE...",
-     "Finds the projections, targets and metrics that a spec declares fitted(...) from labelled "
-     "demonstrations,\none episode a file, and says how well its predicates then separate.",
-     fit},
-    {Command::calibrate, "calibrate", "SPEC.etl --data FILE...",
-     "Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file.",
-     calibrate},
-    {Command::evaluate, "evaluate", "SPEC.etl... --data FILE...",
-     "Compares predicates and monitors of specs with ground truth on recorded episodes.", evaluate},
-    {Command::crossvalidate, "crossvalidate", "SPEC.etl... --data FILE...",
-     "Calibrates and evaluates specs on the same recorded episodes, in folds: each episode is "
-     "judged\nby monitors that have not seen it.",
-     evaluate},
-    {Command::lsp, "lsp", "",
-     "The language server, for editors: it speaks the Language Server Protocol on standard input "
-     "and output.\ndocs/editors.md says how editors start it.",
-     serve_editors},
-    {Command::merge, "merge", "PART...",
-     "Makes of the parts that all shards of a call wrote what the call itself gives.", merge},
-    {Command::explain, "explain", "SPEC.etl --trace FILE",
-     "Says why a monitor's verdict on a recorded trace is what it is: the samples that it takes, "
-     "the one\nwhose robustness it has, and the smallest change that would turn it.",
-     explain},
-    {Command::incident, "incident", "FILE --spec SPEC.etl",
-     "Prints what the flight recorder of a monitor wrote: the steps around an alarm.", incident},
-    {Command::report, "report", "SPEC.etl --data FILE... -o PAGE.html",
-     "Makes a page to look at: what a spec's monitors say of recorded episodes, why, and where "
-     "they are wrong.",
-     report}};
-static_assert(std::size(kCommands) == driver::kCommandCount);
+/// In the order of Command. `merged`: all parts of this call; null: the episodes are read.
+constexpr int (*kFunctions[])(Call& call, episodes::Sharing* merged) = {
+    compile,  run,           embed, fit,     calibrate, evaluate,
+    evaluate, serve_editors, merge, explain, incident,  report};
+static_assert(std::size(kFunctions) == driver::kCommandCount);
 
-driver::CommandText text_of(const Row& row) {
-    if (!row.name.empty()) return {fmt::format("etlc {}", row.name), std::string(row.summary), ""};
-    std::string summary =
-        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class "
-        "out.\nOther commands:\n";
-    for (const Row& other : kCommands)
-        if (!other.name.empty())
-            summary += fmt::format("  etlc {}{}{}\n", other.name, other.takes.empty() ? "" : " ",
-                                   other.takes);
-    summary += "  etlc --explain CODE\n  etlc --completion bash|zsh|fish\n  etlc --man";
-    return {"etlc", summary,
-            "Exit status: 0, all that was asked for is there; 1, it is not, and a message says "
-            "why; 2, the call is wrong; 3, a\nfault of etlc itself."};
-}
-
-int execute(const Row& row, int argc, char** argv, episodes::Sharing* merged = nullptr) {
-    Call call(row.command);
-    if (const auto status = driver::parse(text_of(row), argc, argv, call)) return *status;
-    return row.execute(call, merged);
-}
-
-const Row& row_of(Command command) {
-    return kCommands[static_cast<std::size_t>(command)];
+int execute(Command command, int argc, char** argv, episodes::Sharing* merged = nullptr) {
+    Call call(command);
+    if (const auto status = driver::parse(argc, argv, call)) return *status;
+    return kFunctions[static_cast<std::size_t>(command)](call, merged);
 }
 
 int merge(Call& call, episodes::Sharing*) {
@@ -236,26 +176,19 @@ int merge(Call& call, episodes::Sharing*) {
     std::vector<char*> arguments;
     for (std::string& word : words) arguments.push_back(word.data());
     const Command command = words[0] == "evaluate" ? Command::evaluate : Command::calibrate;
-    return execute(row_of(command), static_cast<int>(arguments.size()), arguments.data(),
-                   &*sharing);
-}
-
-std::vector<driver::CommandHelp> all_help() {
-    std::vector<driver::CommandHelp> all;
-    for (const Row& row : kCommands) all.push_back(driver::help_of(row.command, text_of(row)));
-    return all;
+    return execute(command, static_cast<int>(arguments.size()), arguments.data(), &*sharing);
 }
 
 int execute(int argc, char** argv) {
     const std::string_view word = argc > 1 ? argv[1] : "";
-    for (const Row& row : kCommands)
-        if (!row.name.empty() && row.name == word) return execute(row, argc - 1, argv + 1);
+    if (const auto command = driver::command_named(word))
+        return execute(*command, argc - 1, argv + 1);
     // With a spec it is an option of the class that is made.
     if (word == "--explain" && argc == 3 && driver::is_code(argv[2]))
         return driver::explain_code_command(argv[2]);
-    if (word == "--completion" && argc == 3) return driver::completion_command(argv[2], all_help());
-    if (word == "--man" && argc == 2) return driver::manual_command(all_help());
-    return execute(row_of(Command::compile), argc, argv);
+    if (word == "--completion" && argc == 3) return driver::completion_command(argv[2]);
+    if (word == "--man" && argc == 2) return driver::manual_command();
+    return execute(Command::compile, argc, argv);
 }
 
 }  // namespace

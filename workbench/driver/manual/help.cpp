@@ -1,7 +1,9 @@
 #include "driver/manual/help.hpp"
 
 #include <algorithm>
+#include <utility>
 
+#include "driver/options/commands.hpp"
 #include "driver/options/option.hpp"
 
 namespace etlc::driver {
@@ -38,11 +40,16 @@ OptionHelp help_of(const Option& option) {
 
 }  // namespace
 
-CommandHelp help_of(Command command, const CommandText& text) {
-    CommandHelp help{text.name, text.summary, text.footer, {}};
-    for (const Option& option : options())
-        if (option.commands.has(command)) help.options.push_back(help_of(option));
-    return help;
+std::vector<CommandHelp> all_help() {
+    std::vector<CommandHelp> all;
+    for (std::size_t i = 0; i < kCommandCount; ++i) {
+        const auto command = static_cast<Command>(i);
+        CommandText text = text_of(command);
+        all.push_back({std::move(text.name), std::move(text.summary), std::move(text.footer), {}});
+        for (const Option& option : options())
+            if (option.commands.has(command)) all.back().options.push_back(help_of(option));
+    }
+    return all;
 }
 
 }  // namespace etlc::driver

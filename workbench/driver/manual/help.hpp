@@ -5,8 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "driver/options/parse.hpp"
-
 namespace etlc::driver {
 
 /// Of an option, a flag or a positional.
@@ -28,7 +26,7 @@ struct CommandHelp {
     std::vector<OptionHelp> options;
 };
 
-/// What the table of options says of a command.
-CommandHelp help_of(Command command, const CommandText& text);
+/// All commands, etlc itself first.
+std::vector<CommandHelp> all_help();
 
 }  // namespace etlc::driver

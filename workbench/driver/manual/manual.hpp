@@ -19,9 +19,12 @@ std::string completion_of_fish(const std::vector<CommandHelp>& commands);
 /// The page, for man and groff. `version`: of etlc.
 std::string manual_page(const std::vector<CommandHelp>& commands, const std::string& version);
 
+/// docs/command_line.md
+std::string command_line_page();
+
 /// The exit status of `etlc --completion SHELL`, and of `etlc --man`.
-int completion_command(const std::string& shell, const std::vector<CommandHelp>& commands);
-int manual_command(const std::vector<CommandHelp>& commands);
+int completion_command(const std::string& shell);
+int manual_command();
 
 /// What an option takes: "FILE", and all others that are paths.
 enum class Paths : std::uint8_t { none, files, specs, folders };

@@ -44,19 +44,20 @@ int print_text(const std::string& text) {
 
 }  // namespace
 
-int completion_command(const std::string& shell, const std::vector<CommandHelp>& commands) {
+int completion_command(const std::string& shell) {
     const std::string mistake = mistake_in_word(shell, {std::begin(kShells), std::end(kShells)});
     if (!mistake.empty()) {
         print_error(fmt::format("etlc: --completion: {}\n", mistake));
         return kWrongCall;
     }
+    const std::vector<CommandHelp> commands = all_help();
     return print_text(shell == "bash"  ? completion_of_bash(commands)
                       : shell == "zsh" ? completion_of_zsh(commands)
                                        : completion_of_fish(commands));
 }
 
-int manual_command(const std::vector<CommandHelp>& commands) {
-    return print_text(manual_page(commands, library::kVersion));
+int manual_command() {
+    return print_text(manual_page(all_help(), library::kVersion));
 }
 
 }  // namespace etlc::driver

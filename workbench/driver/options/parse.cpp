@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "diag/diag.hpp"
+#include "driver/options/commands.hpp"
 #include "driver/options/option.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
@@ -64,7 +65,8 @@ int fulfil(const CLI::App& app, const CLI::Success& wish) {
 
 }  // namespace
 
-std::optional<int> parse(const CommandText& text, int argc, char** argv, Call& call) {
+std::optional<int> parse(int argc, char** argv, Call& call) {
+    const CommandText text = text_of(call.command);
     call.words.assign(argv, argv + argc);
     CLI::App app(text.summary, text.name);
     app.footer(text.footer);

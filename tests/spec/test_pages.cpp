@@ -1,4 +1,5 @@
-// docs/diagnostics.md lists every code of codes.def.
+// Pages made from tables: docs/diagnostics.md from codes.def, docs/command_line.md from the
+// options.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -8,6 +9,7 @@
 
 #include "diag/diag.hpp"
 #include "driver/codes/explain_code.hpp"
+#include "driver/manual/manual.hpp"
 #include "golden.hpp"
 
 namespace etlc::testing {
@@ -76,6 +78,11 @@ other tools: the shell says 141.
 
 TEST(Diagnostics, TheTableIsThatOfTheCode) {
     expect_golden(table(), std::filesystem::path(ETLC_SOURCE_DIR) / "docs" / "diagnostics.md");
+}
+
+TEST(CommandLine, ThePageIsThatOfTheTableOfOptions) {
+    expect_golden(driver::command_line_page(),
+                  std::filesystem::path(ETLC_SOURCE_DIR) / "docs" / "command_line.md");
 }
 
 TEST(Diagnostics, CodesAreSortedAndUnique) {

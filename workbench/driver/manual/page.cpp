@@ -1,0 +1,57 @@
+// docs/command_line.md.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "driver/manual/manual.hpp"
+
+namespace etlc::driver {
+
+namespace {
+
+/// For a cell of a table: on one line, and no '|' ends it.
+std::string cell(const std::string& text) {
+    std::string result;
+    bool after_blank = false;
+    for (const char c : text) {
+        const bool blank = c == ' ' || c == '\n';
+        if (c == '|') result += '\\';
+        if (!(blank && after_blank)) result += blank ? ' ' : c;
+        after_blank = blank;
+    }
+    return result;
+}
+
+std::string form_of(const OptionHelp& option) {
+    const std::string words = fmt::format("{}", fmt::join(option.words, "|"));
+    const std::string& value = option.words.empty() ? option.value : words;
+    if (option.names.empty()) return value;
+    std::string form = fmt::format("{}", fmt::join(option.names, ", "));
+    if (value.empty()) return form;
+    return option.is_flag ? fmt::format("{}[={}]", form, value) : fmt::format("{} {}", form, value);
+}
+
+std::string row(const OptionHelp& option) {
+    std::string text = cell(option.text);
+    if (!option.usual.empty()) text += fmt::format(" (default: {})", option.usual);
+    if (option.is_required) text += " (required)";
+    return fmt::format("| `{}` | {} |\n", cell(form_of(option)), text);
+}
+
+}  // namespace
+
+std::string command_line_page() {
+    std::string text = R"(# The command line
+
+The options of every command, as `--help` and `man etlc` list them.
+This page is made from the table of options; a test keeps the two equal, and `ETLC_UPDATE=1`
+rewrites it. [diagnostics.md](diagnostics.md) has the exit statuses.
+)";
+    for (const CommandHelp& command : all_help()) {
+        const std::string first = command.text.substr(0, command.text.find("\nOther commands:"));
+        text += fmt::format("\n## {}\n\n{}\n\n| option | |\n| --- | --- |\n", command.name, first);
+        for (const OptionHelp& option : command.options) text += row(option);
+    }
+    return text;
+}
+
+}  // namespace etlc::driver

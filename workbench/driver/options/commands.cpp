@@ -1,0 +1,73 @@
+#include "driver/options/commands.hpp"
+
+#include <fmt/format.h>
+
+#include <iterator>
+
+namespace etlc::driver {
+
+namespace {
+
+struct Row {
+    Command command;
+    std::string_view name;   ///< empty: etlc without a command
+    std::string_view takes;  ///< at least; may be empty
+    std::string_view summary;
+};
+constexpr Row kCommands[] = {
+    {Command::compile, "", "", ""},
+    {Command::run, "run", "SPEC.etl --trace FILE",
+     "Executes a spec's monitors on a recorded trace, without a C++ compiler, in constant memory."},
+    {Command::embed, "embed", "SPEC.etl --data FILE... -o FOLDER",
+     "Encodes the images and videos that a spec names, into SPEC.embedded.npz beside it, and "
+     "recordings into\nepisodes that the other commands take."},
+    {Command::fit, "fit", "SPEC.etl --data FILE...",
+     "Finds the projections, targets and metrics that a spec declares fitted(...) from labelled "
+     "demonstrations,\none episode a file, and says how well its predicates then separate."},
+    {Command::calibrate, "calibrate", "SPEC.etl --data FILE...",
+     "Finds the calibrated thresholds of a spec from labelled demonstrations, one episode a file."},
+    {Command::evaluate, "evaluate", "SPEC.etl... --data FILE...",
+     "Compares predicates and monitors of specs with ground truth on recorded episodes."},
+    {Command::crossvalidate, "crossvalidate", "SPEC.etl... --data FILE...",
+     "Calibrates and evaluates specs on the same recorded episodes, in folds: each episode is "
+     "judged\nby monitors that have not seen it."},
+    {Command::lsp, "lsp", "",
+     "The language server, for editors: it speaks the Language Server Protocol on standard input "
+     "and output.\ndocs/editors.md says how editors start it."},
+    {Command::merge, "merge", "PART...",
+     "Makes of the parts that all shards of a call wrote what the call itself gives."},
+    {Command::explain, "explain", "SPEC.etl --trace FILE",
+     "Says why a monitor's verdict on a recorded trace is what it is: the samples that it takes, "
+     "the one\nwhose robustness it has, and the smallest change that would turn it."},
+    {Command::incident, "incident", "FILE --spec SPEC.etl",
+     "Prints what the flight recorder of a monitor wrote: the steps around an alarm."},
+    {Command::report, "report", "SPEC.etl --data FILE... -o PAGE.html",
+     "Makes a page to look at: what a spec's monitors say of recorded episodes, why, and where "
+     "they are wrong."}};
+static_assert(std::size(kCommands) == kCommandCount);
+
+}  // namespace
+
+CommandText text_of(Command command) {
+    const Row& row = kCommands[static_cast<std::size_t>(command)];
+    if (!row.name.empty()) return {fmt::format("etlc {}", row.name), std::string(row.summary), ""};
+    std::string summary =
+        "etlc, the compiler for Embedding Temporal Logic: SPEC.etl in, one C++ monitor class "
+        "out.\nOther commands:\n";
+    for (const Row& other : kCommands)
+        if (!other.name.empty())
+            summary += fmt::format("  etlc {}{}{}\n", other.name, other.takes.empty() ? "" : " ",
+                                   other.takes);
+    summary += "  etlc --explain CODE\n  etlc --completion bash|zsh|fish\n  etlc --man";
+    return {"etlc", summary,
+            "Exit status: 0, all that was asked for is there; 1, it is not, and a message says "
+            "why; 2, the call is wrong; 3, a\nfault of etlc itself."};
+}
+
+std::optional<Command> command_named(std::string_view word) {
+    for (const Row& row : kCommands)
+        if (!row.name.empty() && row.name == word) return row.command;
+    return std::nullopt;
+}
+
+}  // namespace etlc::driver
