@@ -216,6 +216,39 @@ TEST(Arrows, TargetsLinkOnlyWhatTheyBuildOn) {
     }
 }
 
+/// folder -> the folders that its files include, "check/points" -> "check/model"; a folder and
+/// those in it are different ones.
+std::map<std::string, Names> folders_included() {
+    std::map<std::string, Names> found;
+    for (const auto& file : sources()) {
+        const fs::path building = *file.begin();
+        const std::string folder = file.parent_path().lexically_relative(building);
+        for (const std::string& include : includes(file)) {
+            if (!fs::exists(fs::path(ETLC_SOURCE_DIR) / building / include)) continue;
+            const std::string to = fs::path(include).parent_path();
+            if (to != folder) found[folder].insert(to);
+        }
+    }
+    return found;
+}
+
+TEST(Arrows, FoldersHaveNoCircles) {
+    std::map<std::string, Names> above = folders_included();
+    ASSERT_GT(above.size(), 40U);
+    // Take away whoever includes nobody that is left, until nothing goes any more.
+    for (bool changed = true; changed;) {
+        changed = false;
+        for (auto folder = above.begin(); folder != above.end();) {
+            std::erase_if(folder->second, [&](const auto& to) { return !above.contains(to); });
+            changed = changed || folder->second.empty();
+            folder = folder->second.empty() ? above.erase(folder) : std::next(folder);
+        }
+    }
+    for (const auto& [folder, included] : above)
+        for (const std::string& to : included)
+            ADD_FAILURE() << folder << " includes " << to << ", on or above a circle";
+}
+
 TEST(Arrows, TheRuntimeHasTwoHouses) {
     std::size_t gates = 0;
     for (const auto& file : files("runtime")) {
