@@ -154,10 +154,15 @@ private:
     std::optional<std::string> change() const {
         if (found_.change) {
             const explain::Change& change = *found_.change;
-            const Said then = reference_.said_with(altered(change.sample, beyond(change)));
-            if (then != said_by(change.status, change.for_good) || !turned(then))
+            const auto with = [&](float measured) {
+                return reference_.said_with(altered(change.sample, measured));
+            };
+            const auto as_said = [&](Said then) {
+                return then == said_by(change.status, change.for_good) && turned(then);
+            };
+            if (!as_said(with(change.measured)) && !as_said(with(beyond(change))))
                 return fmt::format("{} as {:.9g}: {}", show(set_of({change.sample})),
-                                   change.measured, words(then));
+                                   change.measured, words(with(change.measured)));
         }
         for (explain::Index atom = 0; atom < observations_.atoms().size(); ++atom)
             for (std::uint64_t step = 0; step <= step_; ++step)
