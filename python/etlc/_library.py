@@ -128,7 +128,7 @@ def own(name: str, in_wheel: str) -> Path | None:
     except ImportError:
         pass  # the source tree
     else:
-        places.append((_HERE / getattr(_installed, name)).resolve())
+        places.append(Path(os.path.normpath(_HERE / getattr(_installed, name))))
     return next((place for place in places if place.exists()), None)
 
 

@@ -28,6 +28,17 @@ find "$pages" -name '*.md' | while read -r page; do
 done >"$box/dead"
 [ ! -s "$box/dead" ] || fail "installed pages: $(cat "$box/dead")"
 
+# The Python package below a prefix finds the library and the command below it, and no others.
+if /usr/bin/python3 -c 'import numpy' 2>"$box/log"; then
+    mv "$box/prefix" "$box/moved"
+    said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
+        PYTHONPATH="$box/moved/lib/python3/dist-packages" /usr/bin/python3 -c 'import etlc
+monitor = etlc.Monitor(text="spec t; input x : f32; monitor m = F x > 1;")
+print(monitor.monitors, etlc._library.library._name, etlc.commands.command_path())')
+    expect "$said" "('m',) $(echo "$box"/moved/lib*/libetlc.so.1) $box/moved/bin/etlc"
+    mv "$box/moved" "$box/prefix"
+fi
+
 cp -r "$here/consumer" "$box/consumer"
 cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
 

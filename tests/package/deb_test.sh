@@ -55,9 +55,9 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
 [ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1,0" ] ||
     fail "the verdicts on an .h5 trace: $verdicts"
 
-# Python finds the package, and the package the library.
-said=$(LD_LIBRARY_PATH=$box/root/usr/lib PATH=$box/root/usr/bin:$PATH \
-    PYTHONPATH=$box/root/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
+# Python finds the package, and the package the library and the command, wherever it is unpacked.
+said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
+    PYTHONPATH=$box/root/usr/lib/python3/dist-packages \
     /usr/bin/python3 -c 'import etlc, sys
 print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors, etlc.commands.command_path())
 ' "$box/t.etl") || fail "import etlc"
