@@ -39,6 +39,9 @@ restartable monitor visits = F docked;
 sliding monitor calm = G[0, 2] small;
 """
 
+#: To a run: there are none of these.
+NO_OTHERS = dict.fromkeys(("charge", "stop", "half", "byte"))
+
 
 def samples(**others):
     """Of one step: at the first bay, with a full battery."""
@@ -193,7 +196,8 @@ class Stepping(unittest.TestCase):
     def test_what_float32_cannot_hold_is_missing(self):
         dock = etlc.Monitor(text=DOCK)
         dock.step(**samples(z=np.array([1e300, 0, 0]), charge=1e300))
-        dock.run(z=np.full((1, 3), -1e300), charge=np.array([np.float64(1e300)]))
+        with self.assertWarnsRegex(etlc.EtlcWarning, "every sample of 'z' is missing"):
+            dock.run(z=np.full((1, 3), -1e300), charge=np.array([np.float64(1e300)]))
         self.assertEqual(dock.sample_counts("z")["missing"], 1)
         self.assertEqual(dock.sample_counts("charge")["missing"], 1)
 
@@ -479,7 +483,7 @@ class Refusing(unittest.TestCase):
             (lambda: dock.observe("at_bay", 1.0, True), "is not adaptive"),
             (lambda: dock.let("docked"), "no let 'docked'"),
             (lambda: dock.sample_counts("zz"), "did you mean 'z'"),
-            (lambda: dock.run(z=np.zeros((1, 3), "f4"))["nobody"], "no monitor 'nobody'"),
+            (lambda: dock.run(NO_OTHERS, z=np.zeros((1, 3)))["nobody"], "no monitor 'nobody'"),
             (lambda: etlc.Monitor(text=DOCK, values="truth"), "values is 'truth'"),
             (lambda: etlc.Monitor(text=DOCK, targets_as="f64"), "targets_as is 'f64'"),
             (lambda: etlc.Monitor(text=DOCK, history=-1), "history is -1"),
@@ -519,7 +523,7 @@ class Refusing(unittest.TestCase):
         def runs():
             while not seen.is_set():
                 try:
-                    dock.run(z=z)
+                    dock.run(NO_OTHERS, z=z)
                 except etlc.BusyError:
                     pass
                 except BaseException as error:
@@ -540,11 +544,11 @@ class Refusing(unittest.TestCase):
 
     def test_many_monitors_in_threads(self):
         z = np.random.default_rng(2).normal(size=(2000, 3)).astype("f4")
-        expected = etlc.Monitor(text=DOCK).run(z=z).table
+        expected = etlc.Monitor(text=DOCK).run(NO_OTHERS, z=z).table
         found = [None] * 4
 
         def runs(n):
-            found[n] = etlc.Monitor(text=DOCK).run(z=z).table
+            found[n] = etlc.Monitor(text=DOCK).run(NO_OTHERS, z=z).table
 
         threads = [threading.Thread(target=runs, args=(n,)) for n in range(4)]
         for thread in threads:

@@ -117,7 +117,8 @@ explained() {
 { echo "monitor m = G ("; times 20 "x > 0.5 <-> y > 0.5 <-> "; echo "true);"; } | explained iffs
 { echo "monitor m = G ("; times 20 "b <-> y == 0 <-> b <-> y == 0 <-> "; echo "true);"; } |
   explained iffs_of_bools
-{ echo "monitor m = G ("; times 20 "x > 0.5 -> y > 0.5 -> "; echo "true);"; } | explained implications
+{ echo "monitor m = G ("; times 20 "x > 0.5 -> y > 0.5 -> "; echo "true);"; } |
+  explained implications
 { echo "let a0 = x > 0.5;"; times 12 "let a@j = y > 0.5 <-> O[0, @j] (x > 0.3 <-> a@i);"; echo \
   "monitor m = G (a12 || !a12);"; } | explained iffs_of_pasts
 { echo "monitor m = G ("; times 40 "(x <= 1) S ("; echo "x <= 1"; times 40 ")"; echo ");"; } |
