@@ -6,6 +6,7 @@ something else, is refused: integers for float32 embeddings, floats for int8, nu
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -23,13 +24,22 @@ def as_bool(name: str, value: Any) -> int:
 
 def as_number(name: str, value: Any) -> float:
     """A scalar, rounded to float32."""
-    if isinstance(value, int) and not isinstance(value, bool):  # numpy's end at 2^64
-        value = np.longdouble(str(value))
+    if isinstance(value, int) and abs(value) >> 63:  # numpy's integers end
+        return _rounded(value)
     array = _array(name, value)
     if array.shape == () and array.dtype.kind in "fiu":
         with np.errstate(over="ignore"):
             return float(array.astype("f4"))
     raise InputError(f"input {name!r} is {_shown(array)}, expected a number")
+
+
+def _rounded(value: int) -> float:
+    """The nearest float32. What is cut off counts as one more digit, which no rounding loses."""
+    cut = abs(value).bit_length() - 62
+    kept = abs(value) >> cut
+    kept |= kept << cut != abs(value)
+    size = math.ldexp(np.float32(np.int64(kept)), cut) if cut < 128 else math.inf
+    return size if value > 0 else -size
 
 
 def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:

@@ -154,11 +154,13 @@ class Storing(unittest.TestCase):
         for number, rounded in (
             (between, 1 + 2.0**-23), (2**54 + 2**30 + 1, 2.0**54 + 2.0**31),
             (np.int64(2**54 + 2**30 + 1), 2.0**54 + 2.0**31), (10**30, np.float32(1e30)),
+            (2**100 + 2**76 + 1, 2.0**100 + 2.0**77),
             (0.1, np.float32(0.1)), (np.float64(0.1), np.float32(0.1)),
         ):  # fmt: skip
             found = etlc.Monitor(text=text).step(x=number).m.robustness
             self.assertEqual(found, rounded, number)
-        self.assertTrue(etlc.Monitor(text=text).step(x=10**400).m.unknown)
+        for huge in (10**400, -(10**5000), 2**128):
+            self.assertTrue(etlc.Monitor(text=text).step(x=huge).m.unknown)
 
 
 class Refusing(unittest.TestCase):

@@ -214,7 +214,7 @@ class Refusing(unittest.TestCase):
         self.assertEqual(etlc.Monitor(text=SPEC, history=np.int64(3)).name, "all_types")
 
 
-class Warning_(unittest.TestCase):
+class Saying(unittest.TestCase):
     def test_of_the_compiler_point_to_the_caller(self):
         line = inspect.currentframe().f_lineno + 1
         monitor, found = caught(lambda: etlc.Monitor("d.etl", text=DOUBTFUL))
