@@ -12,6 +12,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import warnings
 import zlib
 from pathlib import Path
 
@@ -41,6 +42,13 @@ sliding monitor calm = G[0, 2] small;
 
 #: To a run: there are none of these.
 NO_OTHERS = dict.fromkeys(("charge", "stop", "half", "byte"))
+
+
+def quiet(call):
+    """What it gives, without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", etlc.EtlcWarning)
+        return call()
 
 
 def samples(**others):
@@ -380,6 +388,72 @@ class Explaining(unittest.TestCase):
             dock.step(**samples()).visits.why
         with self.assertRaisesRegex(etlc.UndecidedError, "'calm' has no verdict yet"):
             etlc.Monitor(text=DOCK, history=1).step(**samples()).calm.why
+
+    def test_what_would_turn_it_does(self):
+        """Applied to the samples, where == and != decide; where nothing is named, nothing does."""
+        random = np.random.default_rng(5)
+        grid = [np.float32(n / 2) for n in range(7)]
+        beside = [np.nextafter(n, np.float32(end)) for n in grid for end in (-np.inf, np.inf)]
+        numbers = [float(n) for n in (*grid, *beside, -9.0, 9.0)]
+
+        def formula(depth):
+            if depth == 0:
+                name = random.choice(["x", "y", "b"])
+                if name == "b":
+                    return "b"
+                compared = random.choice(["==", "!=", "==", "!=", "<=", ">"])
+                return f"{name} {compared} {random.choice(grid)}"
+            left, right = (formula(random.integers(0, depth)) for _ in range(2))
+            return random.choice([
+                f"({left} && {right})", f"({left} || {right})", f"({left} -> {right})",
+                f"({left} <-> {right})", f"!({left})", f"(F[0, 1] {left})", f"(G[0, 2] {left})",
+                f"({left} U[0, 1] {right})", f"(O[0, 1] {left})",
+            ])  # fmt: skip
+
+        turned = 0
+        for _ in range(150):
+            text = ("spec t; input x : f32 in [0, 3]; input y : f32; input b : bool;"
+                    f"sliding monitor m = {formula(3)};")  # fmt: skip
+            try:
+                monitor = quiet(lambda: etlc.Monitor(text=text, history=20))
+            except etlc.SpecError:
+                continue  # it looks back over what looks ahead without bounds
+            steps = monitor.horizon + 1
+            rows = {
+                "x": random.choice(grid, steps), "y": random.choice(grid, steps),
+                "b": random.random(steps) < 0.5,
+            }  # fmt: skip
+            status = self.said_of(monitor, rows)
+            change = monitor.explain("m").data["change"]
+            if change is None or change["name"] == "b":
+                for name, step in [(name, step) for name in "xy" for step in range(steps)]:
+                    for other in numbers:
+                        if name == "y" or 0 <= other <= 3:
+                            found = self.said_of(monitor, self.altered(rows, name, step, other))
+                            self.assertEqual(found, status, (text, rows, name, step, other))
+            if change is None:
+                for step in range(steps):
+                    other = not rows["b"][step]
+                    found = self.said_of(monitor, self.altered(rows, "b", step, other))
+                    self.assertEqual(found, status, (text, rows, step))
+                continue
+            turned += 1
+            changed = self.altered(rows, change["name"][0], change["step"], change["instead"])
+            found = self.said_of(monitor, changed)
+            self.assertEqual(found, change["status"], (text, rows, change))
+            self.assertNotEqual(found, status, (text, rows, change))
+        self.assertGreater(turned, 60)
+
+    def altered(self, rows, name, step, value):
+        column = rows[name].copy()
+        column[step] = value
+        return {**rows, name: column}
+
+    def said_of(self, monitor, rows):
+        monitor.reset()
+        for row in zip(*rows.values()):
+            last = monitor.step(**dict(zip(rows, row)))
+        return last.m.status
 
 
 class Recording(unittest.TestCase):
