@@ -71,8 +71,8 @@ private:
         return result;
     }
 
-    /// Where a literal that supports the status no longer does, or one of == or != that does so
-    /// only in between.
+    /// Where a literal that supports the status no longer does. One of == or != may begin to on the
+    /// way, so all of its points are tried.
     void add_candidates(Sample sample, const std::vector<Index>& atoms, Support& support) {
         const Observations& observed = subject_.observations;
         const float measured = observed.measured(sample);
