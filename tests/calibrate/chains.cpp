@@ -91,7 +91,7 @@ const std::vector<Edit>& edits() {
         {"g) <", "g) - 0.1 <"},
         {"<= 0.7", "<= 1"},
         {"rate 10 Hz", "rate 20 Hz"},
-        {"rate 10 Hz", "rate 100 ms"},
+        {"rate 10 Hz", "period 100 ms"},
         {"F[0, 0.2 s]", "F[0, 0.5 s]"},
         {"G[0, 0.2 s]", "G[0, 0.1 s]"},
         {"(a && own)", "(a || own)"},
@@ -106,7 +106,7 @@ const std::vector<Edit>& edits() {
         {"where = a && own", "where = a"},
         {"where = a)", "where = !a)"},
         {"r = 2, of = z", "r = 2, of = [x, y]"},
-        {"spec t;", "spec t; // a remark"},
+        {"spec t;", "spec t; // a remark\n"},
         {"predicate own", "let unused = high; predicate own"},
     };
     return all;

@@ -161,7 +161,7 @@ void visit(check::Model& model, check::Target& of, Changing& changing) {
     field(changing, "hash", hash);
     field(changing, "encoded", encoded);
     field(changing, "space", Place{space, model.points.size()});
-    field(changing, "source", Place{source, 1});
+    if (source != kNone) field(changing, "source", Place{source, source + 1});
     field(changing, "fitted", fitted);
     field(changing, "span", span);
 }

@@ -20,9 +20,9 @@ const Codes kStale{"E0652"};
 /// What may become of a spec. Where there is no `from` in it, it does not apply.
 const std::vector<Edit>& edits() {
     static const std::vector<Edit> all{
-        {"spec t;", "spec t; // a remark"},
+        {"spec t;", "spec t; // a remark\n"},
         {"rate 10 Hz", "rate 20 Hz"},
-        {"rate 10 Hz", "rate 100 ms"},
+        {"rate 10 Hz", "period 100 ms"},
         {"limit = 0.5", "limit = 0.4"},
         {"limit = 0.5", "limit = 0.50"},
         {" in [-9, 9]", ""},
@@ -38,22 +38,22 @@ const std::vector<Edit>& edits() {
         {"bool missing false", "bool"},
         {"bool missing false", "bool hold 2 missing false"},
         {"Q = [[1, 0.5]", "Q = [[1, 0.6]"},
-        {"R = [[2, 0.5]", "R = [[2, 0.4]"},
+        {"V = [[2, 0.5]", "V = [[2, 0.4]"},
         {" offset [[0.1, 0]]", ""},
         {" offset [[0.1, 0]]", " offset [[0.1, 0.2]]"},
         {"g = [[0, 0]", "g = [[0, 0.3]"},
         {"[0.2, 0.9]]", "[0.2, 0.9], [0.7, 0.7]]"},
-        {"h = [[0.3, 0.1]] of R(z)", "h = [[0.3, 0.1]]"},
+        {"h = [[0.3, 0.1]] of V(z)", "h = [[0.3, 0.1]]"},
         {"h = [[0.3, 0.1]]", "h = [[0.3, 0.2]]"},
         {"k = [[0.4, 0.6]]", "k = [[0.4, 0.5]]"},
         {"min l2(Q(z), g)", "max l2(Q(z), g)"},
         {"min l2(Q(z), g)", "mean l2(Q(z), g)"},
         {"min l2(Q(z), g)", "min l2sq(Q(z), g)"},
         {"min l2(Q(z), g)", "min l2(z, g)"},
-        {"min l2(Q(z), g)", "min l2(R(z), g)"},
-        {"min l2(Q(z), g)", "min l2(Q(R(z)), g)"},
+        {"min l2(Q(z), g)", "min l2(V(z), g)"},
+        {"min l2(Q(z), g)", "min l2(Q(V(z)), g)"},
         {"min l2(Q(z), g)", "min mahalanobis([2, 1])(Q(z), g)"},
-        {"min l2(Q(z), g)", "min cosine(Q(z), h)"},
+        {"min l2(Q(z), g)", "min cosine(V(z), h)"},
         {"kth(2)", "kth(1)"},
         {"kth(2)", "kth(3)"},
         {"kth(2)", "min"},
@@ -76,8 +76,8 @@ const std::vector<Edit>& edits() {
         {"O[0, 0.2 s]", "O[0, 200 ms]"},
         {"l2([x, y], k)", "l1([x, y], k)"},
         {"l2([x, y], k)", "l2([y, x], k)"},
-        {"(b ||", "(!b ||"},
-        {"< 0.8)", "< 0.7)"},
+        {"(b &&", "(!b &&"},
+        {"< 0.4)", "< 0.3)"},
         {kTruth, ""},
         {kOwn, kOwn + "truth own = y <= 0.5;\n"},
         {"<= 0.8 missing true", "<= 0.8"},
@@ -93,12 +93,13 @@ const std::vector<Edit>& edits() {
         {"F[0, 0.2 s]", "F[0, 200 ms]"},
         {"F[0, 0.2 s]", "F[0.1 s, 0.2 s]"},
         {"F[0, 0.2 s]", "G[0, 0.2 s]"},
-        {"monitor m", "sliding monitor m"},
-        {"(a && own && b)", "(a && own || b)"},
-        {"(a && own && b)", "(a && own && !b)"},
-        {"(a && own && b)", "(own && a && b)"},
-        {"(a && own && b)", "(a && b)"},
+        {"monitor m = F[0", "sliding monitor m = F[0"},
+        {"(a && own || a && b)", "(a && own || b)"},
+        {"(a && own || a && b)", "(a && own || a && !b)"},
+        {"(a && own || a && b)", "(a && b || a && own)"},
+        {"(a && own || a && b)", "(a && b)"},
         {"alpha = 0.2", "alpha = 0.15"},
+        {"alpha = 0.4", "alpha = 0.3"},
         {"missed_alarm", "missed_success"},
         {"missed_success", "missed_alarm"},
         {"calibrated(f1)", "calibrated(conformal, alpha = 0.2)"},
@@ -107,7 +108,7 @@ const std::vector<Edit>& edits() {
         {"gamma = 0.1", "gamma = 0.2"},
         {"lo = -9", "lo = -8"},
         {"hi = 9", "hi = 8"},
-        {" <= calibrated", " <= calibrated /* a remark */"},
+        {" <= calibrated", " <= // a remark\n  calibrated"},
     };
     return all;
 }
@@ -116,12 +117,12 @@ const std::vector<Edit>& edits() {
 bool is_harmless(const Edit& edit) {
     return edit.to.find("a remark") != std::string::npos || edit.to.starts_with("gamma") ||
            edit.to.starts_with("lo =") || edit.to.starts_with("hi =") ||
-           edit.to.find("200 ms]") != std::string::npos || edit.to == "rate 100 ms";
+           edit.to.find("200 ms]") != std::string::npos || edit.to == "period 100 ms";
 }
 
 TEST(ChangedSpecs, AreRefusedOrGiveTheSameNumbers) {
     Random random(31);
-    const Files episodes(random_episodes(random, 16));
+    const Files episodes(random_episodes(random, 24));
     std::vector<int> applied(edits().size());
     int accepted = 0;
     int refused = 0;
@@ -166,7 +167,7 @@ const std::string kSmall =
 
 struct WholeMonitor : testing::Test {
     Random random{32};
-    Files episodes{random_episodes(random, 16)};
+    Files episodes{random_episodes(random, 24)};
 
     /// Calibrated for the one spec, read for the other: how it is refused.
     Checked after(const std::string& spec, const std::string& from, const std::string& to) {
@@ -229,7 +230,7 @@ TEST_F(WholeMonitor, AnEntryThatDoesNotSayWhatItReadIsRefused) {
 /// Of a predicate it is believed as far as it goes.
 TEST(ChangedSpecs, APredicatesEntryOfAnEarlierVersionIsCompared) {
     Random random(33);
-    const Files episodes(random_episodes(random, 16));
+    const Files episodes(random_episodes(random, 24));
     const std::string spec = of_predicate("calibrated(conformal, alpha = 0.2)");
     Json file = Json::parse(calibrated(spec, episodes.paths()).thresholds);
     file["predicates"]["a"].erase("reads");

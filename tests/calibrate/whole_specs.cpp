@@ -12,10 +12,10 @@ const std::string kWorld =
     "spec t; rate 10 Hz; const limit = 0.5;\n"
     "input x : f32 in [-9, 9] hold 1; input y : f32; input z : f32[2]; input b : bool missing "
     "false;\n"
-    "projection Q = [[1, 0.5], [0, 1]]; projection R = [[2, 0.5], [0, 1]] offset [[0.1, 0]];\n"
-    "target g = [[0, 0], [0.5, 0.1], [0.2, 0.9]]; target h = [[0.3, 0.1]] of R(z);\n"
-    "target k = [[0.4, 0.6]]; let seen = O[0, 0.2 s] (b || l2([x, y], k) < 0.8);\n";
-const std::string kMeasure = "min l2(Q(z), g) + l1(R(z), h) + kth(2) linf(z, g) - 0.1 * x";
+    "projection Q = [[1, 0.5], [0, 1]]; projection V = [[2, 0.5], [0, 1]] offset [[0.1, 0]];\n"
+    "target g = [[0, 0], [0.5, 0.1], [0.2, 0.9]]; target h = [[0.3, 0.1]] of V(z);\n"
+    "target k = [[0.4, 0.6]]; let seen = O[0, 0.2 s] (b && l2([x, y], k) < 0.4);\n";
+const std::string kMeasure = "min l2(Q(z), g) + l1(V(z), h) + kth(2) linf(z, g) - 0.1 * x";
 
 }  // namespace
 
@@ -35,7 +35,8 @@ std::string of_predicate(const std::string& threshold) {
 
 std::string of_monitor(const std::string& against) {
     return kWorld + "predicate a = " + kMeasure + " <= 1.9 missing false;\n" + kTruth + kOwn +
-           "monitor m = F[0, 0.2 s] (a && own && b) calibrated(conformal, alpha = 0.25, against "
+           "monitor m = F[0, 0.2 s] (a && own || a && b) calibrated(conformal, alpha = 0.4, "
+           "against "
            "= " +
            against + ");";
 }
@@ -70,7 +71,7 @@ std::vector<std::string> random_episodes(Random& random, int count, bool label) 
             const std::string z = fmt::format("{},{}", 1 - y + 0.3 * random.uniform(), y);
             text += fmt::format("{},{},{},{}", cell(y + 0.8 * random.uniform()), y,
                                 random.chance(0.15) ? "," : z,
-                                random.chance(0.3)   ? ""
+                                random.chance(0.1)   ? ""
                                 : random.chance(0.5) ? "1"
                                                      : "0");
             if (label) text += random.chance(0.5) ? ",1" : ",0";

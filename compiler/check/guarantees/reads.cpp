@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <set>
 #include <vector>
 
 #include "check/guarantees/guarantees.hpp"
@@ -82,7 +83,7 @@ public:
                      encoded, inputs, projections, points, targets, fitted, distances, predicates,
                      formulas, lets, truths, monitors, dependencies, reservations] = model;
         // Episodes at another rate have other frames.
-        if (step_seconds > 0) texts_["rate"] = fmt::format("{:.9g} s a step", step_seconds);
+        if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }
 
     void add_calibrated(Index index) {
@@ -91,18 +92,17 @@ public:
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
-        texts_["predicate " + name] =
-            fmt::format("{} {}", print(model_, expression), word(comparison));
+        add("predicate " + name, fmt::format("{} {}", print(model_, expression), word(comparison)));
         add_truth(index);
     }
 
     void add_monitor(const Monitor& monitor) {
         // The method, alpha and `against` stand in the entry, the shift is what is looked for.
         const auto& [name, formula, sliding, restarts, horizon, calibration, span] = monitor;
-        texts_["monitor " + name] =
+        add("monitor " + name,
             fmt::format("{}{}", word(restarts),
-                        sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor");
-        texts_["formula " + name] = hash_of(formula, Atoms::compared);
+                        sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
+        add("formula " + name, hash_of(formula, Atoms::compared));
         hash_of(formula, Atoms::truths);
     }
 
@@ -110,13 +110,18 @@ public:
         // What it gives is looked for.
         const auto& [name, declaration, method, rows, columns, away, point, where, slot, index,
                      filled, span] = fitted;
-        texts_["fitted"] =
+        add("fitted",
             fmt::format("slot {}, method {}, {} x {}, away {}, of {}", static_cast<int>(slot),
-                        static_cast<int>(method), rows, columns, away, text_of(point));
-        texts_["where"] = where == kNone ? "true" : hash_of(where, Atoms::truths);
+                        static_cast<int>(method), rows, columns, away, text_of(point)));
+        add("where", where == kNone ? "true" : hash_of(where, Atoms::truths));
     }
 
-    Reads take() && { return std::move(texts_); }
+    Reads take() && {
+        Reads result;
+        for (const auto& [key, texts] : texts_)
+            result[key] = fmt::format("{}", fmt::join(texts, " and "));
+        return result;
+    }
 
 private:
     std::string add_input(Index index) {
@@ -247,12 +252,13 @@ private:
     }
 
     std::string add(std::string key, std::string text) {
-        texts_[key] = std::move(text);
+        texts_[key].insert(std::move(text));
         return key;
     }
 
     const Model& model_;
-    Reads texts_;
+    /// Of a key one; should two things ever have a name in common, none hides the other.
+    std::map<std::string, std::set<std::string>> texts_;
 };
 
 template <class Add>
