@@ -145,7 +145,7 @@ Chain random_chain(Random& random) {
                                         Method::whole, Method::whole, Method::whole_of_f1});
     World& world = chain.world;
     world.frames_alike = chain.method == Method::class_conditional || random.chance(0.3);
-    world.missing = random.chance(0.6) ? 0.15 : 0;
+    world.missing = random.pick<double>({0, 0.15, 0.4});
     world.missing_truth = random.chance(0.3) ? 0.05 : 0;
     world.noise = random.pick<double>({0.1, 0.3, 0.6});
     world.arrays = random.chance(0.3);

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
 #include <nlohmann/json.hpp>
 
 #include "diag/render.hpp"
@@ -14,8 +15,8 @@
 namespace etlc::tests {
 
 void Files::add(const std::string& text) {
-    files_.push_back(std::make_unique<TemporaryPath>(fmt::format("{}.csv", files_.size()), text));
-    paths_.push_back(files_.back()->path());
+    paths_.push_back(fmt::format("{}{}.csv", folder_->path(), paths_.size()));
+    std::ofstream(paths_.back()) << text;
 }
 
 Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes,
@@ -41,6 +42,7 @@ Calibrated calibrated(const std::string& spec, const std::vector<std::string>& e
 }
 
 std::string numbers(const std::string& thresholds) {
+    if (thresholds.empty()) return "";
     const auto file = nlohmann::json::parse(thresholds);
     std::string text;
     for (const char* kind : {"predicates", "monitors"})

@@ -25,7 +25,7 @@ public:
     const std::vector<std::string>& paths() const { return paths_; }
 
 private:
-    std::vector<std::unique_ptr<TemporaryPath>> files_;
+    std::unique_ptr<TemporaryPath> folder_ = std::make_unique<TemporaryPath>("episode");
     std::vector<std::string> paths_;
 };
 
