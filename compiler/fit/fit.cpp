@@ -52,28 +52,16 @@ bool report(const Filled& all, diag::Sink& sink) {
     return false;
 }
 
-/// Labels of a predicate in `where` that has a truth came from arrays in its place.
-bool chosen_by_arrays(const check::Model& model, const Fitted& fitted,
-                      const Collection& collection) {
-    if (fitted.where == check::kNone) return false;
-    const std::vector<Index> predicates = check::predicates_of(model, fitted.where);
-    return std::any_of(model.truths.begin(), model.truths.end(), [&](const check::Truth& truth) {
-        const auto among = [&](const std::vector<Index>& all) {
-            return std::find(all.begin(), all.end(), truth.predicate) != all.end();
-        };
-        return among(predicates) && among(collection.readings.from_arrays());
-    });
-}
-
 fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const Solution& solution,
                        const Collection& collection) {
-    check::FittedProvenance provenance = check::provenance(model, fitted);
-    if (chosen_by_arrays(model, fitted, collection)) provenance.truth = "array";
+    check::FittedProvenance provenance =
+        check::provenance(model, fitted, collection.readings.labelling());
     fitted::Entry entry;
     entry.name = fitted.name;
     entry.declaration = fitted.declaration;
     entry.of = std::move(provenance.of);
     entry.truth = std::move(provenance.truth);
+    entry.reads = std::move(provenance.reads);
     entry.rows = fitted.rows;
     entry.columns = fitted.columns;
     entry.matrix = solution.filling.matrix;

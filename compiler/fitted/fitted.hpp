@@ -28,7 +28,10 @@ struct Entry {
     std::string declaration;  ///< canonical text of `fitted(...)`
     /// What the point goes through: canonical text, and content hashes of the projections in it.
     std::string of;
-    std::string truth;  ///< canonical text of `where` with truths written out, or "array"
+    std::string truth;  ///< canonical text of `where`, and what the labels in it were
+    /// All that it was made from, by kind and name, check::Reads; empty in files of earlier
+    /// versions.
+    std::map<std::string, std::string> reads;
     std::uint32_t rows = 0;
     std::uint32_t columns = 0;
     std::vector<float> matrix;   ///< rows x columns, row-major

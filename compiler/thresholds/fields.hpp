@@ -41,6 +41,9 @@ protected:
     const Json* member(const Json& object, const std::string& path, const std::string& key,
                        Json::Kind kind, const std::string& expected);
     std::string text(const Json& object, const std::string& path, const std::string& key);
+    /// An object of texts; empty where there is no such key.
+    std::map<std::string, std::string> texts(const Json& object, const std::string& path,
+                                             const std::string& key);
     std::uint64_t count(const Json& object, const std::string& path, const std::string& key);
     std::uint64_t hash(const Json& json, const std::string& path);
     double score(const Json& json, const std::string& path);
@@ -65,6 +68,7 @@ private:
 /// The other way: JSON text of what the functions of the same names read, `indent` blanks deep.
 std::string json_text(const std::string& value);
 std::string json_object(const std::map<std::string, std::string>& members, std::size_t indent);
+std::string json_texts(std::map<std::string, std::string> texts, std::size_t indent);
 std::string json_allowances(const std::vector<Allowance>& all);
 void write_episodes(const std::vector<std::uint64_t>& hashes, std::size_t indent, Pieces& to);
 void write_recordings(const data::KnownEpisodes& all, Pieces& to);

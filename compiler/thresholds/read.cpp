@@ -66,8 +66,8 @@ private:
         result.method = method(json, path);
         const bool ranked = result.method != "f1";
         const bool of_monitor = what == "formula";
-        std::vector<std::string> keys{"method", "alpha", "epsilon", "n",      "k",
-                                      "scores", what,    "truth",   "targets"};
+        std::vector<std::string> keys{"method", "alpha", "epsilon", "n",       "k",
+                                      "scores", what,    "truth",   "targets", "reads"};
         if (of_monitor) keys.insert(keys.end(), {"against", "episodes"});
         check_keys(json, path, keys);
         if (ranked || json.find("alpha") != nullptr) result.alpha = alpha(json, path, ranked);
@@ -82,6 +82,7 @@ private:
         result.predicate = text(json, path, what);
         result.truth = text(json, path, "truth");
         result.targets = targets(json, path);
+        result.reads = texts(json, path, "reads");
         if (!of_monitor) return result;
         result.against = against(json, path);
         result.episodes = episodes(json, path, items_);

@@ -33,9 +33,12 @@ struct Entry {
     std::vector<double> scores;  ///< may be infinite, not NaN
     std::string predicate;  ///< canonical text, check::Predicate::text; of a monitor the text of
                             ///< its formula
-    std::string truth;      ///< canonical text of the truth formula, or "array"
+    std::string truth;  ///< what labels were: canonical text of the truth formula, "array", or both
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
-    std::string against;                         ///< monitors: missed_alarm or missed_success
+    /// All that it was made from, by kind and name, check::Reads; empty in files of earlier
+    /// versions.
+    std::map<std::string, std::string> reads;
+    std::string against;  ///< monitors: missed_alarm or missed_success
     /// Monitors: hashes of the episodes that it was calibrated on.
     std::vector<std::uint64_t> episodes;
 };

@@ -23,6 +23,10 @@ const std::string kDescription = R"text({
       "declaration": "fitted(pca, of = z, where = true, r = 1)",
       "of": "z",
       "truth": "true",
+      "reads": {
+        "input z": "f32[3]",
+        "where": "true"
+      },
       "array": "Q",
       "offset": "Q-offset",
       "frames": 900
@@ -95,6 +99,7 @@ TEST(Fitted, ReadsArraysAndWhereTheyComeFrom) {
     EXPECT_EQ(file.spec, "dock");
     ASSERT_EQ(file.entries.size(), 3U);
     const Entry& q = file.entries.at("Q");
+    EXPECT_EQ(q.reads.at("where"), "true");
     EXPECT_EQ(q.rows, 1U);
     EXPECT_EQ(q.columns, 3U);
     EXPECT_EQ(q.matrix, (std::vector<float>{1, 0.1F, -0.0F}));

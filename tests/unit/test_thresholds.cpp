@@ -31,6 +31,10 @@ const std::string kWhole = R"({
       "truth": "l2([px, py], corner) < 0.25",
       "targets": {
         "goal_a": "b08b72ea4df23cb1"
+      },
+      "reads": {
+        "input z": "f32[2]",
+        "target goal_a": "1 x 2, #b08b72ea4df23cb1"
       }
     },
     "held": {
@@ -57,6 +61,9 @@ const std::string kWhole = R"({
       "targets": {
         "corner": "0123456789abcdef",
         "goal_a": "b08b72ea4df23cb1"
+      },
+      "reads": {
+        "monitor reach": "sliding, horizon 2"
       },
       "against": "missed_success",
       "episodes": [
@@ -93,6 +100,9 @@ TEST(Thresholds, ReadsWhatIsThere) {
     ASSERT_EQ(file->predicates.size(), 2U);
     const Entry& at_a = file->predicates.at("at_a");
     EXPECT_EQ(at_a.method, "conformal");
+    EXPECT_EQ(at_a.reads.at("input z"), "f32[2]");
+    EXPECT_TRUE(file->predicates.at("held").reads.empty());
+    EXPECT_EQ(file->monitors.at("reach").reads.size(), 1U);
     EXPECT_EQ(at_a.alpha, "0.10");
     EXPECT_EQ(at_a.epsilon, 0.31F - 0x1p-25F);
     EXPECT_EQ(at_a.n, 3U);
@@ -284,6 +294,8 @@ std::vector<Broken> content() {
                "'predicates.held.truth' is an array, expected a text"),
         broken("\"targets\": {}", "\"targets\": \"b08b72ea4df23cb1\"",
                "'predicates.held.targets' is the text 'b08b72ea4df23cb1', expected an object"),
+        broken("\"sliding, horizon 2\"", "[]",
+               "'monitors.reach.reads.monitor reach' is an array, expected a text"),
         broken("b08b72ea4df23cb1", "B08B72EA4DF23CB1",
                at_a + "targets.goal_a' is the text 'B08B72EA4DF23CB1', expected a content hash of "
                       "16 hex digits"),
