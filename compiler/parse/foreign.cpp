@@ -65,7 +65,7 @@ std::optional<Native> found_in(const std::array<Row, N>& rows, Foreign kind,
     return Native{std::string(row->here), std::string(row->note)};
 }
 
-/// F_ of F_[0,2], as in papers; GF of GF p.
+/// F_ of F_[0,2], as in papers, and F_I; GF of GF p.
 std::optional<Native> written_together(Foreign kind, std::string_view word) {
     const std::string_view letters = kind == Foreign::prefix ? kPrefixLetters : kInfixLetters;
     const std::string_view stem = word.substr(0, word.size() - 1);
@@ -77,6 +77,9 @@ std::optional<Native> written_together(Foreign kind, std::string_view word) {
         return Native{here,
                       fmt::format("the interval stands behind the operator: {}[0, 2 s]", here)};
     }
+    if (word.size() > 2 && word[1] == '_' && letters.find(word[0]) != letters.npos)
+        return Native{"", fmt::format("the interval stands behind the operator: {}[0, 2 s]",
+                                      word.substr(0, 1))};
     const bool only_letters = kind == Foreign::prefix && word.size() > 1 &&
                               word.find_first_not_of(kPrefixLetters) == word.npos;
     if (!only_letters) return std::nullopt;

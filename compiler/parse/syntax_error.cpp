@@ -97,6 +97,10 @@ private:
                fmt::format("expected a declaration, found {}", quoted(found_, file_)));
         if (word && !add_native(result, Foreign::declaration, found_))
             add_nearest(result, found_, kWords);
+        if (is(&found_, {EtlParser::NOT, EtlParser::NEXT, EtlParser::EVENTUALLY, EtlParser::ALWAYS,
+                         EtlParser::PREVIOUS, EtlParser::ONCE, EtlParser::HISTORICALLY,
+                         EtlParser::LPAREN, EtlParser::LBRACKET}))
+            result.note("a formula has a name: monitor NAME = FORMULA;");
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, const, encoder, input, projection, "

@@ -127,6 +127,16 @@ END
     done
 done
 
+{
+    echo '#include "platform.h"'
+    (cd "$runtime" && find etlmon -name '*.hpp' -not -path '*/hosted/*') |
+        LC_ALL=C sort | sed 's/.*/#include "&"/'
+} >runtime.cpp
+for compiler in "$@"; do
+    "$compiler" -std=c++17 -Wall -Wextra -Werror -I "$runtime" -fsyntax-only runtime.cpp ||
+        fail "$compiler: the runtime among the macros of a platform"
+done
+
 # ---- at namespace scope
 
 for form in "${forms[@]}" adaptive; do
@@ -134,13 +144,13 @@ for form in "${forms[@]}" adaptive; do
     [ "$form" = adaptive ] || space=$form::small
     {
         echo "#include \"$form.hpp\""
-        [ "$form" != retargeted ] || echo "constant $space::Shadow shadow;"
-        echo "constant $space::Monitor monitor;"
+        [ "$form" != retargeted ] || echo "AT_COMPILE_TIME $space::Shadow shadow;"
+        echo "AT_COMPILE_TIME $space::Monitor monitor;"
     } >global.cpp
     for compiler in "$@"; do
-        "$compiler" -std=c++20 -Dconstant=constinit -Wall -Wextra -Werror -I "$runtime" \
+        "$compiler" -std=c++20 -DAT_COMPILE_TIME=constinit -Wall -Wextra -Werror -I "$runtime" \
             -fsyntax-only global.cpp || fail "$compiler: $form is not initialised at compile time"
-        "$compiler" -std=c++17 -Dconstant= -O0 -I "$runtime" -c global.cpp -o global.o
+        "$compiler" -std=c++17 -DAT_COMPILE_TIME= -O0 -I "$runtime" -c global.cpp -o global.o
         if objdump -h global.o | grep -E '\.init_array|\.ctors'; then
             fail "$compiler: $form is initialised by code"
         fi
@@ -150,7 +160,7 @@ for form in "${forms[@]}" adaptive; do
         flags=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
         [ $prefix = arm-none-eabi- ] ||
             flags=(--specs=picolibc.specs -march=rv32imafc -mabi=ilp32f)
-        "${prefix}g++" "${flags[@]}" -std=c++17 -Dconstant= -Os -ffreestanding -fno-exceptions \
+        "${prefix}g++" "${flags[@]}" -std=c++17 -DAT_COMPILE_TIME= -Os -ffreestanding -fno-exceptions \
             -fno-rtti -I "$runtime" -c global.cpp -o global.o
         if "${prefix}objdump" -h global.o | grep -E '\.init_array|\.ctors'; then
             fail "$prefix: $form is initialised by code"

@@ -38,6 +38,7 @@ refuses "-W: found 'all', expected error" t.etl --check -Wall
 # A command that is misspelt is no spec.
 refuses "there is no command 'rn'; did you mean 'run'?" rn t.etl --trace t.csv
 refuses "there is no command 'rn'; did you mean 'run'?" rn
+refuses "there is no command 'help'; did you mean '--help'?" help
 refuses "there is no command 'evalute'; did you mean 'evaluate'?" evalute t.etl --data t.csv
 refuses "there is no command 'simulate'; the commands are run, embed, fit, calibrate, evaluate, \
 crossvalidate, lsp, merge, explain, incident, report; etlc SPEC.etl compiles a spec" \

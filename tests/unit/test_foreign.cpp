@@ -137,6 +137,8 @@ TEST(Foreign, Intervals) {
         {"G F_[0, 2] p", "F[0, 2 s]"},
         {"p U_[0, 2] q", "U[0, 2 s]"},
         {"always_[0, 2] p", "always[0, 2 s]"},
+        {"F_I p", "F[0, 2 s]"},
+        {"p U_I q", "U[0, 2 s]"},
         {"F<=2 p", "F[0, 2 s]"},
         {"F[0, ∞] p", "inf"},
         {"F[0, infinity] p", "did you mean 'inf'?"},
@@ -157,6 +159,8 @@ TEST(Foreign, Intervals) {
 
 TEST(Foreign, Declarations) {
     constexpr Case kCases[] = {
+        {"G p;", "monitor NAME = FORMULA;"},
+        {"[] p;", "monitor NAME = FORMULA;"},
         {"rate = 10 Hz;", "rate 10 Hz;"},
         {"rate: 10 Hz;", "rate 10 Hz;"},
         {"rate 10;", "'Hz'"},

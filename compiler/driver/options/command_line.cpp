@@ -47,6 +47,8 @@ std::optional<int> check_command(int argc, char** argv, const std::vector<std::s
     if (word.empty() || word[0] == '-' || is_path || std::filesystem::exists(word, ignored))
         return std::nullopt;
     const std::string no_command = fmt::format("there is no command {}", data::in_quotes(word));
+    if (word == "help" || word == "version")
+        return complain("etlc", fmt::format("{}; did you mean '--{}'?", no_command, word));
     if (const auto near = diag::nearest_name(word, commands))
         return complain("etlc", fmt::format("{}; did you mean '{}'?", no_command, *near));
     if (argc == 2 || argv[2][0] == '-') return std::nullopt;
