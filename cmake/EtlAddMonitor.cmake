@@ -27,9 +27,10 @@
 #                   boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or embedded,
-# or etlc itself change. In no name of a file or a folder stands one of ; \ ' " & # * < > | : = ? ^ `
-# $ or a square bracket, and no % in that of the spec or the build folder. Of a library, the header and the runtime are public. Needs CMake 3.20 and
-# the Ninja or Makefile generators (3.21 for the others).
+# or etlc itself change. In no name of a file or a folder stands one of ; \ ' " & # * < > | : = ? ^
+# ` $ or a square bracket, and no % in that of the spec or the build folder. Of a library, the
+# header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for
+# the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 

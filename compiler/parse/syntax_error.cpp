@@ -6,7 +6,7 @@
 
 #include "EtlParser.h"
 #include "parse/expected.hpp"
-#include "parse/foreign.hpp"
+#include "parse/foreign/foreign.hpp"
 
 namespace etlc::parse {
 

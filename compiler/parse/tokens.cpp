@@ -9,7 +9,7 @@
 
 #include "EtlLexer.h"
 #include "parse/byte_stream.hpp"
-#include "parse/foreign.hpp"
+#include "parse/foreign/foreign.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {

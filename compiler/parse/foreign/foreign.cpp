@@ -1,4 +1,4 @@
-#include "parse/foreign.hpp"
+#include "parse/foreign/foreign.hpp"
 
 #include <fmt/format.h>
 
@@ -27,7 +27,7 @@ struct Row {
 constexpr std::array kRows{
 #define FOREIGN_WORD(kind, written, here, note) Row{Foreign::kind, written, here, note},
 #define OWN_WORD(kind, written, here)
-#include "parse/foreign_words.def"
+#include "parse/foreign/words.def"
 #undef FOREIGN_WORD
 #undef OWN_WORD
 };
@@ -36,7 +36,7 @@ constexpr std::array kRows{
 constexpr std::array kOwn{
 #define FOREIGN_WORD(kind, written, here, note)
 #define OWN_WORD(kind, written, here) Row{Foreign::kind, written, here, ""},
-#include "parse/foreign_words.def"
+#include "parse/foreign/words.def"
 #undef FOREIGN_WORD
 #undef OWN_WORD
 };
