@@ -160,8 +160,8 @@ for form in "${forms[@]}" adaptive; do
         flags=(-mcpu=cortex-m4 -mthumb -mfpu=fpv4-sp-d16 -mfloat-abi=hard)
         [ $prefix = arm-none-eabi- ] ||
             flags=(--specs=picolibc.specs -march=rv32imafc -mabi=ilp32f)
-        "${prefix}g++" "${flags[@]}" -std=c++17 -DAT_COMPILE_TIME= -Os -ffreestanding -fno-exceptions \
-            -fno-rtti -I "$runtime" -c global.cpp -o global.o
+        "${prefix}g++" "${flags[@]}" -std=c++17 -DAT_COMPILE_TIME= -Os -ffreestanding \
+            -fno-exceptions -fno-rtti -I "$runtime" -c global.cpp -o global.o
         if "${prefix}objdump" -h global.o | grep -E '\.init_array|\.ctors'; then
             fail "$prefix: $form is initialised by code"
         fi
