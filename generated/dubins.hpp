@@ -242,10 +242,10 @@ class Monitor {
   static constexpr uint32_t kOperations = 17;         ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 768;  ///< target elements measured in a step
 
-  Monitor() noexcept { reset(); }
+  constexpr Monitor() noexcept { reset(); }
 
   /// A new episode.
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     reach_ = etlmon::kFalse;
     avoid_ = etlmon::kTrue;
     sequential_met_ = etlmon::kFalse;
@@ -295,14 +295,14 @@ class Monitor {
     return Value{etlmon::key_of(-1.268f), etlmon::key_of(0.732f)};
   }
 
-  etlmon::Register reach_;               // F at_a
-  etlmon::Register avoid_;               // G !near_c
-  etlmon::Register sequential_met_;      // nothing is owed any more
-  etlmon::Register sequential_owing_1_;  // owed: F at_b
-  etlmon::Measured at_a_;                // telemetry of at_a
-  etlmon::Measured at_b_;                // telemetry of at_b
-  etlmon::Measured near_c_;              // telemetry of near_c
-  uint32_t incomplete;                   // steps on which something was unknown; saturates
+  etlmon::Register reach_{};               // F at_a
+  etlmon::Register avoid_{};               // G !near_c
+  etlmon::Register sequential_met_{};      // nothing is owed any more
+  etlmon::Register sequential_owing_1_{};  // owed: F at_b
+  etlmon::Measured at_a_{};                // telemetry of at_a
+  etlmon::Measured at_b_{};                // telemetry of at_b
+  etlmon::Measured near_c_{};              // telemetry of near_c
+  uint32_t incomplete{};                   // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

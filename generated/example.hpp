@@ -81,10 +81,10 @@ class Monitor {
   static constexpr uint32_t kOperations = 2;        ///< min, max, compare in the worst step
   static constexpr uint32_t kDistanceElements = 4;  ///< target elements measured in a step
 
-  Monitor() noexcept { reset(); }
+  constexpr Monitor() noexcept { reset(); }
 
   /// A new episode.
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     stays_ = etlmon::kTrue;
     near_goal_ = etlmon::kUnmeasured;
     incomplete = 0;
@@ -117,9 +117,9 @@ class Monitor {
     return Value{etlmon::kBottom, etlmon::key_of(0.409f)};
   }
 
-  etlmon::Register stays_;      // G near_goal
-  etlmon::Measured near_goal_;  // telemetry of near_goal
-  uint32_t incomplete;          // steps on which something was unknown; saturates
+  etlmon::Register stays_{};      // G near_goal
+  etlmon::Measured near_goal_{};  // telemetry of near_goal
+  uint32_t incomplete{};          // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

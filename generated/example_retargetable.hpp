@@ -70,7 +70,7 @@ inline constexpr size_t goal = 32;  ///< 2 rows of 2 elements
 /// What a block of parameters must be: of this shape, which is that of all below but its numbers,
 /// and made with this encoder, 0 where the spec has none.
 struct Layout {
-  static constexpr uint64_t kShape = 0x351e24991192f9deu;
+  static constexpr uint64_t kShape = 0x5a0904caf8c7e272u;
   static constexpr uint64_t kEncoder = 0x0000000000000000u;
   static constexpr size_t kSize = 192;  ///< in bytes
   /// Where numbers lie, how many, how many a row, and what must hold for each.
@@ -102,9 +102,9 @@ class Monitor {
 
   /// Without parameters: every predicate and bool input is unknown at every step, until retarget()
   /// gives some.
-  Monitor() noexcept : numbers(nullptr) { reset(); }
+  constexpr Monitor() noexcept : numbers(nullptr) { reset(); }
   /// With these, where they are ready.
-  explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { reset(); }
+  constexpr explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { reset(); }
   /// Whether this monitor has parameters.
   bool ready() const noexcept { return numbers != nullptr; }
   /// What they were made from.
@@ -129,7 +129,7 @@ class Monitor {
   }
 
   /// A new episode.
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     stays_ = etlmon::kTrue;
     near_goal_ = etlmon::kUnmeasured;
     incomplete = 0;
@@ -174,10 +174,10 @@ class Monitor {
     return now;
   }
 
-  const float* numbers;         // the parameters; null: none yet
-  etlmon::Register stays_;      // G near_goal
-  etlmon::Measured near_goal_;  // telemetry of near_goal
-  uint32_t incomplete;          // steps on which something was unknown; saturates
+  const float* numbers{};         // the parameters; null: none yet
+  etlmon::Register stays_{};      // G near_goal
+  etlmon::Measured near_goal_{};  // telemetry of near_goal
+  uint32_t incomplete{};          // steps on which something was unknown; saturates
 };
 static_assert(sizeof(Monitor) == Monitor::kStateBytes, "no padding, no surprises");
 

@@ -370,6 +370,9 @@ int execute(int argc, char** argv) {
         return driver::explain_code_command(argv[2]);
     if (word == "--completion" && argc == 3) return driver::completion_command(argv[2], all_help());
     if (word == "--man" && argc == 2) return driver::manual_command(all_help());
+    std::vector<std::string> names;
+    for (const Command& command : kCommands) names.emplace_back(command.name);
+    if (const auto status = driver::check_command(argc, argv, names)) return *status;
     return compile_command(argc, argv);
 }
 

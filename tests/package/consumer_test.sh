@@ -41,6 +41,8 @@ fi
 
 cp -r "$here/consumer" "$box/consumer"
 cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
+odd="an odd (name)+"
+cp "$box/consumer/specs/guard.etl" "$box/consumer/specs/$odd.etl"
 
 "$cmake" -S "$box/consumer" -B "$box/build" -G "$generator" -DCMAKE_CXX_COMPILER="$cxx" \
     -DCMAKE_PREFIX_PATH="$box/prefix" \
@@ -69,8 +71,10 @@ if grep -F "$box" "$reach"; then fail "the header names a folder of the machine 
 stamp() { stat -c %y "$1"; }
 [ ! -s "$box/build/etlc/robot/reach.targets.bin" ] || fail "small targets are in a file"
 reach_made=$(stamp "$reach") guard_made=$(stamp "$guard")
+odd_made=$(stamp "$box/build/etlc/robot/$odd.hpp")
 compile
 expect "$(stamp "$reach")" "$reach_made"
+expect "$(stamp "$box/build/etlc/robot/$odd.hpp")" "$odd_made"
 
 change cp "$box/consumer/specs/far.npy" "$box/consumer/specs/goal.npy"
 compile
