@@ -21,8 +21,9 @@ using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes_of(const std::string& path) {
+    if (!std::filesystem::is_regular_file(path)) refuse(kRefused, "is not a file");
     std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) refuse(kRefused, "cannot be read");
+    if (!file) refuse(kRefused, "cannot be read");
     return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 
