@@ -15,6 +15,8 @@ namespace {
 
 /// How far the begin of an episode may be from a frame of its video, in frames.
 constexpr double kTolerance = 0.1;
+/// What is as far from its place is not there, but where another frame is.
+constexpr double kFrame = 1 - kTolerance;
 
 double frames_of(const Clip& clip, double fps) {
     return std::round((clip.end - clip.begin) * fps);
@@ -28,26 +30,29 @@ std::string in_words(const VideoPart& part, double fps) {
                        clip.is_whole ? clip.begin + length / fps : clip.end);
 }
 
-/// Why a part is not where the one before it ends; empty: it is. `place`: its first frame, as far
-/// as the rows of those before it say. `before`: null of the first.
-std::string why_misplaced(const VideoPart* before, const VideoPart& part, double place,
-                          double fps) {
-    if (before != nullptr && *before->camera != *part.camera)
-        return fmt::format("it is the video of two cameras, {} and {}",
-                           in_quotes(std::min(*before->camera, *part.camera)),
-                           in_quotes(std::max(*before->camera, *part.camera)));
-    const double away = part.clip->begin * fps - place;
-    const bool is_there = std::abs(away) < 1 - kTolerance;
+/// Why a part is not where the one before it ends; empty: it is. `before`: null of the first;
+/// `away`: frames between its begin and where the rows of all those before it end.
+std::string why_misplaced(const VideoPart* before, const VideoPart& part, double away, double fps) {
+    const bool is_there = std::abs(away) < kFrame;
     if (before == nullptr)
         return is_there ? ""
                         : fmt::format("{} is its first, expected one that begins at 0 s",
                                       in_words(part, fps));
     const std::string both = fmt::format("{} and {}", in_words(*before, fps), in_words(part, fps));
-    if (!is_there && away < 0) return both + " overlap";
     if (!is_there) return both + " leave a hole between them";
     if (before->episode->index > part.episode->index)
         return both + " are not in the order of their numbers";
     return "";
+}
+
+/// Why two parts cannot both be there; empty: they can. `end`: of the one before, in frames.
+std::string why_shared(const VideoPart& before, double end, const VideoPart& part, double fps) {
+    if (*before.camera != *part.camera)
+        return fmt::format("it is the video of two cameras, {} and {}",
+                           in_quotes(std::min(*before.camera, *part.camera)),
+                           in_quotes(std::max(*before.camera, *part.camera)));
+    if (end - part.clip->begin * fps < kFrame) return "";
+    return fmt::format("{} and {} overlap", in_words(before, fps), in_words(part, fps));
 }
 
 }  // namespace
@@ -70,17 +75,24 @@ void Dataset::judge(VideoParts& video) {
     std::sort(video.parts.begin(), video.parts.end(),
               [&](const auto& a, const auto& b) { return place_of(a) < place_of(b); });
     const VideoPart* before = nullptr;
+    std::string shared, misplaced;  // the first of either kind
     std::uint64_t frames = 0;
+    double end = 0;
     for (const VideoPart& part : video.parts) {
-        if (video.fault.empty())
-            video.fault = why_misplaced(before, part, static_cast<double>(frames), fps_);
-        // Of an episode that contradicts itself, its rows tell how long it is.
         const Clip& clip = *part.clip;
+        const double begin = clip.begin * fps_;
+        if (before != nullptr && shared.empty()) shared = why_shared(*before, end, part, fps_);
+        if (misplaced.empty())
+            misplaced = why_misplaced(before, part, begin - static_cast<double>(frames), fps_);
+        // Of an episode that contradicts itself, its rows tell how long it is.
         const auto length = static_cast<double>(part.episode->length);
         const bool is_sound = clip.is_whole || frames_of(clip, fps_) == length;
-        frames += is_sound ? part.episode->length : found(*part.episode).rows;
+        const std::uint64_t rows = is_sound ? part.episode->length : found(*part.episode).rows;
+        frames += rows;
+        end = begin + static_cast<double>(rows);
         before = &part;
     }
+    video.fault = shared.empty() ? misplaced : shared;
     video.frames = frames;
     if (before != nullptr) video.last = in_words(*before, fps_);
 }

@@ -13,8 +13,6 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <mutex>
-#include <set>
 #include <utility>
 
 #include "data/files/file.hpp"
@@ -87,16 +85,6 @@ void clear(int folder) {
     }
     while (const dirent* const entry = ::readdir(entries.get()))
         if (is_left_over(folder, entry->d_name)) ::unlinkat(folder, entry->d_name, 0);
-}
-
-/// Whether this process has not yet asked this of the folder.
-bool is_first_time(int folder) {
-    static std::mutex lock;
-    static std::set<std::pair<dev_t, ino_t>> folders;
-    struct stat status {};
-    if (::fstat(folder, &status) != 0) return false;
-    const std::lock_guard guard(lock);
-    return folders.emplace(status.st_dev, status.st_ino).second;
 }
 
 /// "folder/", "folder" and the like: nothing that a file could be called.
@@ -297,7 +285,7 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
     };
     if (auto uncommitted = all(&AtomicFile::finish)) return uncommitted;
     const Turn turn(files.empty() ? -1 : *files.back()->folder_);
-    if (turn.is_held() && is_first_time(*files.back()->folder_)) clear(*files.back()->folder_);
+    if (turn.is_held()) clear(*files.back()->folder_);
     if (auto uncommitted = all(&AtomicFile::place)) {
         while (n > 0) files[--n]->take_back();
         return uncommitted;
