@@ -142,6 +142,13 @@ def move(episode, by):
     return lambda: rewrite_table(change)
 
 
+def place(begins, ends):
+    def change(table):
+        table[f"videos/{TOP}/from_timestamp"][1][:] = begins
+        table[f"videos/{TOP}/to_timestamp"][1][:] = ends
+    return lambda: rewrite_table(change)
+
+
 # Of a video whose windows contradict each other nothing is known: a change, the words of the error
 # where any episode is asked for.
 NEIGHBOURS = (
@@ -149,10 +156,9 @@ NEIGHBOURS = (
                     "overlap"),
     (move(2, 0.2), "episode 1 (8 rows, from 0.9 to 1.7 s) and episode 2 (7 rows, from 1.9 to 2.6 s)"
                    " leave a hole between them"),
-    (move(0, 0.1), "episode 0 (9 rows, from 0.1 to 1 s) is its first, expected one that begins at"),
-    (lambda: rewrite_table(lambda table: [
-        table[f"videos/{TOP}/{name}"][1].__setitem__(slice(3), times) for name, times in (
-            ("from_timestamp", [0.8, 0.0, 1.7]), ("to_timestamp", [1.7, 0.8, 2.4]))]),
+    (place([0.1, 1.0, 1.8], [1.0, 1.8, 2.5]),
+     "episode 0 (9 rows, from 0.1 to 1 s) is its first, expected one that begins at 0 s"),
+    (place([0.8, 0.0, 1.7], [1.7, 0.8, 2.4]),
      "are not in the order of their numbers"),
     (lambda: change("set/meta/info.json", lambda info: info.update(
         video_path="videos/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4")) or shutil.copytree(

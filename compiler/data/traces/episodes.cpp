@@ -104,6 +104,12 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
         std::sort(files->begin(), files->end());
         for (const std::string& file : *files) {
             if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
+            const std::string place = trace_file(file);
+            const auto why = is_directory(place) ? std::nullopt : why_unreadable(place);
+            if (why) {
+                sink.report(in_file({Code::unreadable_trace, *why}, file));
+                continue;
+            }
             if (groups.empty() || !is_hdf5(file)) {
                 episodes.push_back(file);
                 continue;
