@@ -265,9 +265,9 @@ def check_calls(base):
             (f"{base}:2:2", "'2:2' ends before it begins"),
             ("v211", "did you mean the data set 'v21'?"), ("v211:0:2", "the data set 'v21'?"),
             ("empty:0", "'empty' has no meta/info.json and is no data set"),
-            *((path, "`hf download --repo-type dataset lerobot/pusht --local-dir FOLDER`") for path in (
-                "lerobot/pusht", "lerobot/pusht:0:2", "hf://datasets/lerobot/pusht",
-                "https://huggingface.co/datasets/lerobot/pusht"))):
+            *((path, "`hf download --repo-type dataset lerobot/pusht --local-dir FOLDER`")
+              for path in ("lerobot/pusht", "lerobot/pusht:0:2", "hf://datasets/lerobot/pusht",
+                           "https://huggingface.co/datasets/lerobot/pusht"))):
         for call in (["embed", "seen.etl", "--data", path, "-o", "out", "--encoder-cmd", "true"],
                      ["run", "plain.etl", "--trace", path, "--map", "q=timestamp"],
                      ["evaluate", "plain.etl", "--data", path, "--map", "q=timestamp"]):
