@@ -12,6 +12,7 @@
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::calibrate {
 
@@ -132,6 +133,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 evidence[i].add(demonstration.scores[i]);
         });
     if (!all_scored) return std::nullopt;
+    episodes::warn_of_unmarked(demonstrations, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, demonstrations, {}, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -15,6 +15,7 @@
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/unmarked.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
@@ -189,6 +190,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
             scored.push_back(std::move(episode.scores));
         });
     if (!all_scored) return std::nullopt;
+    episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, before, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -38,11 +38,13 @@ struct Recorded {
     data::EpisodeContent content;
     std::uint64_t frames = 0;
     std::optional<Leak> leak;  ///< the first one
+    bool is_unmarked = false;  ///< it does not say which encoder made its embeddings
 };
 
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
+    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak,
+            recorded.is_unmarked);
 }
 
 /// Its hash as a number, as files of thresholds and of fitted things have it.
@@ -93,7 +95,9 @@ public:
     /// Number of frames where the file tells it beforehand, else 0.
     std::uint64_t length() const { return trace_->length(); }
     /// Of the frames so far; hash and content over the inputs of `identity`.
-    Recorded recorded() const { return {path_, hash_.text(), hash_.content(), frames_, leak_}; }
+    Recorded recorded() const {
+        return {path_, hash_.text(), hash_.content(), frames_, leak_, is_unmarked_};
+    }
 
 private:
     struct Source {
@@ -110,6 +114,7 @@ private:
     const check::Model* model_;
     const Leaks* leaks_;
     std::string path_;
+    bool is_unmarked_ = false;
     data::EpisodeHash hash_;
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;  ///< per channel of an input, that input

@@ -8,6 +8,7 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::evaluate {
 
@@ -147,6 +148,7 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         }
     }
     if (sink.has_errors()) return std::nullopt;
+    episodes::warn_of_unmarked(result.episodes, sink);
     warn_of_leaks(first, result, request, sink);
     return result;
 }

@@ -7,6 +7,7 @@
 #include "check/guarantees/provenance.hpp"
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::fit {
 
@@ -98,6 +99,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     if (!collection) return std::nullopt;
     const std::vector<episodes::Recorded>& read = collection->readings.episodes();
     const auto recorded = episodes::recorded(read);
+    episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -199,7 +199,7 @@ std::string text(const Allowance& allowance) {
 }
 
 diag::Result<File> read(const std::string& path) {
-    const auto source = data::open_file(path);
+    const auto source = data::open_file(path, data::Streams::taken);
     if (!source) return Failure{Code::unreadable_thresholds, source.failure().message};
     return read_from(**source, path);
 }

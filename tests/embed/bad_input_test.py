@@ -111,11 +111,13 @@ def images_are_refused():
     pathlib.Path("empty.png").write_bytes(b"")
     pathlib.Path("text.png").write_text("no image\n")
     os.mkdir("folder.png")
+    os.mkfifo("pipe.png")
     for name, fault in (("deep_grey.png", "16 bits a channel"), ("deep.png", "16 bits a channel"),
                         ("half.png", "transparent"), ("hole.png", "transparent"),
                         ("cut.png", "damaged"), ("cut.jpg", "cut"), ("changed.png", "damaged"),
                         ("empty.png", "empty"), ("text.png", "no image"),
-                        ("folder.png", "cannot be read"), ("none.png", "cannot be read")):
+                        ("folder.png", "cannot be read"), ("none.png", "cannot be read"),
+                        ("pipe.png", "cannot be read as a file")):
         given = refused(["images", "colour.png", name], fault)
         assert len(given) == 1, "the image before is whole"
         if os.path.isfile(name):
@@ -189,6 +191,11 @@ def late_frames_are_those_of_all():
         some = video(path, "--only", ",".join(map(str, wanted)))
         assert len(some) == len(wanted), path
         assert all((a == every[n]).all() for a, n in zip(some, wanted)), path
+        part = video(path, "--first", 60, "--count", 3, "--total", 140)
+        assert len(part) == 3 and all((a == b).all() for a, b in zip(part, every[60:])), path
+        for total in (139, 141):
+            refused(["video", path, "--first", 60, "--count", 3, "--total", total],
+                    f"has 140 frames, expected the {total}", 69)
         if path == "late.mp4":
             of_late = every
     every = of_late

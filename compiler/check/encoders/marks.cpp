@@ -21,4 +21,16 @@ std::optional<diag::Failure> other_encoder(const Model& model, const Input& inpu
                     input.name, mark->second, run_by, encoder.fingerprint, encoder.name)};
 }
 
+bool is_unmarked(const Input& input, const std::string& array, const embedded::Marks& marks) {
+    return input.encoder != kNone && !marks.contains(array);
+}
+
+void explain_unmarked(diag::Diagnostic& warning) {
+    warning.note("embeddings by another encoder than the spec's would be taken in the same way");
+    warning.note(
+        "an episode of `etlc embed` says it in embedded.json, a member of its .npz file that "
+        "numpy.savez does not write: copy it, as docs/recordings.md shows under Fingerprints; "
+        "recordings of other kinds cannot say it");
+}
+
 }  // namespace etlc::check

@@ -23,7 +23,8 @@ enum Exit : int {
     kRefused = 65,      ///< the image, video or model
     kOutOfStep = 66,    ///< frames that do not come at the rate
     kNoSuchFrame = 67,  ///< fewer frames than are wanted
-    kNotBuilt = 68      ///< a library is asked for that it was built without
+    kNotBuilt = 68,     ///< a library is asked for that it was built without
+    kOtherCount = 69    ///< more or fewer frames than the video has to have
 };
 
 // Limits of what decodes. An honest file needs a small part of them.

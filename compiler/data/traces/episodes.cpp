@@ -44,8 +44,9 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
         return diag::Failure{Code::unreadable_trace,
                              fmt::format("cannot be read: {}", error.message())};
     if (files.empty())
-        return diag::Failure{Code::unreadable_trace,
-                             fmt::format("holds no episodes, {}", expected())};
+        return diag::Failure{
+            Code::unreadable_trace,
+            with_dataset_meant(fmt::format("holds no episodes, {}", expected()), folder)};
     return files;
 }
 
@@ -85,7 +86,7 @@ diag::Result<std::vector<std::string>> expand(const std::string& argument, diag:
     if (!why) return std::vector<std::string>{argument};
     if (argument.find_first_of(kPatternCharacters) != std::string::npos)
         return matching(argument, sink);
-    return diag::Failure{Code::unreadable_trace, *why};
+    return diag::Failure{Code::unreadable_trace, with_dataset_meant(*why, argument)};
 }
 
 }  // namespace
@@ -103,6 +104,12 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
         std::sort(files->begin(), files->end());
         for (const std::string& file : *files) {
             if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
+            const std::string place = trace_file(file);
+            const auto why = is_directory(place) ? std::nullopt : why_unreadable(place);
+            if (why) {
+                sink.report(in_file({Code::unreadable_trace, *why}, file));
+                continue;
+            }
             if (groups.empty() || !is_hdf5(file)) {
                 episodes.push_back(file);
                 continue;

@@ -21,8 +21,10 @@ using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 
 Bytes bytes_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) refuse(kRefused, "cannot be read");
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may never begin
+    std::ifstream file(is_file ? path : "", std::ios::binary);
+    if (!file) refuse(kRefused, "cannot be read as a file");
     return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 
