@@ -234,7 +234,6 @@ TEST(BareBounds, AreWarnedOfOnceWhereNothingSaysSteps) {
         EXPECT_EQ(with_rate(std::string("monitor m = ") + formula + " || F (p && q);"), "W0506")
             << formula;
     EXPECT_EQ(with_rate("monitor m = G[0, 2] p; monitor n = F[3, 9] q;"), "W0506");
-    EXPECT_EQ(with_rate("input x : f32 hold 3; monitor m = G (p || q || x > 1);"), "W0506");
     EXPECT_EQ(with_rate("const n = 2; monitor m = F[0, n] (p && q);"), "W0506");
     EXPECT_EQ(with_rate("input x : f32; predicate a = x > 1; "
                         "truth a = H[0, 2] p; monitor m = G (q -> a);"),
@@ -247,8 +246,7 @@ TEST(BareBounds, AreRightOnPurposeAndWithoutARate) {
           "const n = 2 steps; monitor m = F[0, n] (p && q);",
           "const n = 2; monitor m = F[0, n steps] (p && q);",
           "const n = 2; monitor m = F[0, n s] (p && q);",
-          "input x : f32 hold 3 steps; monitor m = F[0, 2] (p && q && x > 1);",
-          "input x : f32 hold 0; monitor m = F[0, 2 s] (p && q && x > 1);",
+          "input x : f32 hold 3; monitor m = F[0, 2 s] (p && q && x > 1);",
           "monitor m = F[0, inf] (p && q);", "monitor m = G (p -> F[0, 1 min] q);"})
         EXPECT_EQ(with_rate(rest), "") << rest;
     EXPECT_EQ(Checked("spec t; input p : bool; monitor m = F[0, 2] p;").codes(), "");
