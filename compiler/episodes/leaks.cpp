@@ -192,7 +192,8 @@ std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
     const bool embedding = is_embedding(model_, distance);
     const auto vector = embedding ? std::vector<float>{} : gathered(model_, distance, samples);
     const std::vector<float>& z = embedding ? sample.values : vector;
-    if (!sample.present || z.empty()) return std::nullopt;
+    const bool finite = std::all_of(z.begin(), z.end(), [](float x) { return std::isfinite(x); });
+    if (!sample.present || z.empty() || !finite) return std::nullopt;
     const double size = watched.by_direction ? length(z.data(), z.size()) : 1;
     Rounded rounded{model_.inputs[first]};
     if (watched.by_direction) rounded.relative = rounding_of_length(rounded.input, z, size);

@@ -87,6 +87,25 @@ NearRows::NearRows(const check::Model& model, Index distance, Index point, Index
             norms[i].offset = std::sqrt(square) + 2 * std::abs(product);
         }
     }
+    if (rows.source != check::kNone) add_moves(rows);
+}
+
+/// How far rows are from what they were before they were stored and then projected: of a row the
+/// most of its elements.
+void NearRows::add_moves(const check::Target& rows) {
+    const check::Target& declared = model_.targets[rows.source];
+    Index from = declared.space;
+    if (from == check::kNone)
+        for (from = point_; model_.points[from].is_projected();) from = model_.points[from].inner;
+    for (std::uint32_t row = 0; row < rows.rows; ++row) {
+        const float* g = declared.values.data() + std::size_t{row} * declared.dimension;
+        moved_.push_back(0);
+        if (!is_half(g, declared.dimension)) continue;
+        Rounded stored{{g, g + declared.dimension}, {}};
+        for (const float x : stored.elements)
+            stored.error.push_back(half_rounding(static_cast<double>(x)));
+        moved_.back() = largest(projected(point_, from, stored).error);
+    }
 }
 
 /// What was recorded, and how far from what it was before it was stored.
@@ -98,7 +117,9 @@ NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& 
         const plan::Sample& sample = samples[of];
         const bool there = sample.present && (input.is_embedding() ||
                                               model_.inputs[of].range.contains(sample.values[0]));
-        if (!there) return {};
+        const bool finite = std::all_of(sample.values.begin(), sample.values.end(),
+                                        [](float x) { return std::isfinite(x); });
+        if (!there || !finite) return {};
         result.elements.insert(result.elements.end(), sample.values.begin(), sample.values.end());
     }
     const bool half =
@@ -111,10 +132,10 @@ NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& 
     return result;
 }
 
-NearRows::Rounded NearRows::rounded(Index index, const std::vector<plan::Sample>& samples) const {
+NearRows::Rounded NearRows::projected(Index index, Index from, const Rounded& at) const {
+    if (index == from) return at;
     const check::Point& point = model_.points[index];
-    if (!point.is_projected()) return taken(index, samples);
-    const Rounded inner = rounded(point.inner, samples);
+    const Rounded inner = projected(point.inner, from, at);
     if (inner.elements.empty()) return {};
     const Projection& map = model_.projections[point.projection];
     const std::vector<RowNorms>& norms = norms_[point.projection];
@@ -165,7 +186,9 @@ void NearRows::weigh(Rounded& at) const {
 }
 
 NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
-    Rounded at = rounded(point_, samples);
+    Index from = point_;
+    while (model_.points[from].is_projected()) from = model_.points[from].inner;
+    Rounded at = projected(point_, from, taken(from, samples));
     Found found;
     if (at.elements.empty()) return found;
     if (!weights_.empty()) weigh(at);
@@ -200,7 +223,8 @@ void NearRows::add_row(const Rounded& at, double size, std::size_t largest, std:
         const double x = static_cast<double>(g[i]) * per_length;
         const double stored = is_half_[row] ? half_rounding(static_cast<double>(g[i])) * per_length
                                             : 2 * kUnit * std::abs(x);
-        const double bound = at.error[i] + stored;
+        const double moved = moved_.empty() ? 0 : moved_[row] * per_length;
+        const double bound = at.error[i] + stored + moved;
         const double wide = std::max(kWide * bound, kWideOfSize * size);
         const double apart = std::abs(y - x);
         if (!(apart <= wide)) return;

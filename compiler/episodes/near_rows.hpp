@@ -60,7 +60,9 @@ private:
         double offset = 0;  ///< the size of a (-m)
     };
 
-    Rounded rounded(Index point, const std::vector<plan::Sample>& samples) const;
+    void add_moves(const check::Target& rows);
+    /// `at`: what `from` is, through which the point goes.
+    Rounded projected(Index point, Index from, const Rounded& at) const;
     Rounded taken(Index point, const std::vector<plan::Sample>& samples) const;
     std::vector<double> carried(const Rounded& inner, const check::Projection& map,
                                 const std::vector<RowNorms>& norms, Index from) const;
@@ -73,9 +75,10 @@ private:
     Index point_;
     Index target_;
     bool by_direction_ = false;
-    std::vector<float> weights_;                ///< diagonal ones
-    std::vector<double> per_length_;            ///< by direction: 1 / |row|
-    std::vector<bool> is_half_;                 ///< per row: its numbers are all of float16
+    std::vector<float> weights_;      ///< diagonal ones
+    std::vector<double> per_length_;  ///< by direction: 1 / |row|
+    std::vector<bool> is_half_;       ///< per row: its numbers are all of float16
+    std::vector<double> moved_;       ///< per row that was projected, what it was rounded before
     std::vector<std::vector<RowNorms>> norms_;  ///< per projection of the model
 };
 

@@ -145,7 +145,9 @@ def test_frames_and_single_rows(world):
             rows = f'frames("{"demos" if leaks else "aside"}/04.npz", "z", [3])'
             says = told_of_targets(world, target_spec(kind, "", point, "l2", rows, False))
             assert ("E0665" in says[0]) == leaks, (kind, point, says)
-        for space, name in ((" of Q(z)", "q"), (" of P(Q(z))", "p")):
+        # What int8 rounds is too much to tell behind both maps.
+        spaces = {" of Q(z)": "q", " of P(Q(z))": "p"} if kind[0] == "f" else {" of Q(z)": "q"}
+        for space, name in spaces.items():
             frames = np.stack([z[3] for z, _ in written[:5]]) / (grain or 1)
             for leaks in (True, False):
                 z = frames if leaks else np.stack([z[3] for z, _ in world.others[:5]])
