@@ -109,6 +109,8 @@ InputContent ContentReader::content() const {
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
     result.sketch = units_;
     sift(result.sketch);
+    // A few runs are mostly the same samples over again.
+    if (!tells_alone_ && result.sketch.size() < kLeastUnits) result.sketch.clear();
     return result;
 }
 
