@@ -196,6 +196,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
+    result.file.format = thresholds::kFormat;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     episodes::record(recorded, allowance, result.file);

@@ -59,7 +59,7 @@ public:
 private:
     bool begin(const Json& root, const std::vector<std::string>& keys) {
         if (root.kind != Json::Kind::object) fail("", root, "an object");
-        if (!failure_) check_format(root);
+        if (!failure_) format(root, 1);
         if (!failure_) check_keys(root, "", keys);
         return !failure_;
     }

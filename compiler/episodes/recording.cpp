@@ -146,13 +146,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     for (const Index input : wanted.inputs) required[input] = true;
 
     // What only truths read may be absent where arrays stand in for them.
-    std::vector<data::HashedInput> identity;
-    for (const Index input : wanted.identity)
-        identity.push_back(
-            {static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) -
-                                      inputs.begin()),
-             model.inputs[input].name, model.inputs[input].is_embedding()});
-    Recording result(wanted, std::move(identity));
+    Recording result(wanted);
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
     result.trace_ = std::move(*trace);
@@ -201,7 +195,8 @@ diag::Result<bool> Recording::next() {
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
     if (leaks_ != nullptr && !leak_) leak_ = leaks_->find(samples_, frames_);
-    hash_.add(sample_);
+    if (leaks_ != nullptr) leaks_->find_near(samples_, frames_, near_);
+    seen_.add(samples_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
         std::swap(recorded, sample_.values[c]);

@@ -1,8 +1,8 @@
 // The file of fitted things: what `etlc fit` found, with where it came from.
-// Takes: an .npz archive of format 1: the member fitted.json, and an array for every entry. Gives:
-// one entry per fitted projection, target or metric. Keeps true: writing what was read gives the
-// same bytes; all numbers are finite; whether an entry fits the spec is check/'s question, which
-// compares `declaration`, `of` and `truth`.
+// Takes: an .npz archive of format 1 or 2: the member fitted.json, and an array for every entry.
+// Gives: one entry per fitted projection, target or metric. Keeps true: writing what was read gives
+// the same bytes; all numbers are finite; whether an entry fits the spec is check/'s question,
+// which compares `declaration`, `of` and `truth`.
 #pragma once
 
 #include <cstdint>
@@ -42,6 +42,7 @@ struct Entry {
 };
 
 struct File {
+    std::uint32_t format = thresholds::kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote it

@@ -44,7 +44,7 @@ public:
             fail("", root, "an object");
             return *failure_;
         }
-        check_format(root);
+        file.format = format(root, thresholds::kFormat);
         check_keys(root, "",
                    {"format", "spec", "entries", "episodes", "recordings", "allowances", "etlc"});
         file.spec = text(root, "", "spec");

@@ -51,7 +51,7 @@ std::string write(const File& file) {
             members.push_back(
                 {array + "-offset.npy", data::npy_bytes({entry.columns}, entry.offset)});
     }
-    std::string description = "{\n  \"format\": 1,\n";
+    std::string description = fmt::format("{{\n  \"format\": {},\n", file.format);
     const auto line = [&](const std::string& key, const std::string& value) {
         description += fmt::format("  \"{}\": {},\n", key, value);
     };

@@ -63,12 +63,17 @@ const Json* Fields::member(const Json& object, const std::string& path, const st
     return nullptr;
 }
 
-void Fields::check_format(const Json& root) {
-    const Json* format = member(root, "", "format", Json::Kind::number, "1");
-    if (format != nullptr && format->text != "1")
-        failure_ = Failure{unknown_format_,
-                           fmt::format("'format' is {}, expected 1, the one this version reads",
-                                       in_quotes(format->text))};
+std::uint32_t Fields::format(const Json& root, std::uint32_t newest) {
+    const bool one = newest == 1;
+    const std::string expected = one ? "1" : fmt::format("a number from 1 to {}", newest);
+    const Json* format = member(root, "", "format", Json::Kind::number, expected);
+    if (format == nullptr) return 0;
+    for (std::uint32_t known = 1; known <= newest; ++known)
+        if (format->text == std::to_string(known)) return known;
+    failure_ = Failure{unknown_format_,
+                       fmt::format("'format' is {}, expected {}, {} this version reads",
+                                   in_quotes(format->text), expected, one ? "the one" : "those")};
+    return 0;
 }
 
 void Fields::check_keys(const Json& object, const std::string& path,

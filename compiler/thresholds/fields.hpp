@@ -25,6 +25,10 @@ struct Allowance {
     std::uint64_t leaked = 0;       ///< episodes with a target among their frames
 };
 
+/// The newest format of files with episodes behind them. In format 1 these are told apart by the
+/// numbers that were stored, in format 2 as the monitor sees them (episodes/seen.hpp).
+inline constexpr std::uint32_t kFormat = 2;
+
 class Items;
 
 class Fields {
@@ -33,8 +37,8 @@ protected:
     Fields(diag::Code invalid, diag::Code unknown_format)
         : invalid_(invalid), unknown_format_(unknown_format) {}
 
-    /// "format" is 1, the one there is.
-    void check_format(const Json& root);
+    /// "format": a number from 1 to `newest`.
+    std::uint32_t format(const Json& root, std::uint32_t newest);
 
     /// The value of a key that has to be there and of this kind; null, after a failure, where it is
     /// not. `path`: of the object, in messages.

@@ -31,7 +31,7 @@ public:
             fail("", root, "an object");
             return *failure_;
         }
-        check_format(root);
+        file.format = format(root, kFormat);
         check_keys(root, "",
                    {"format", "spec", "predicates", "monitors", "episodes", "recordings",
                     "allowances", "etlc"});

@@ -1,7 +1,7 @@
 // The thresholds file: what `etlc calibrate` found, with where it came from.
-// Takes: JSON of format 1. Gives: one entry per calibrated predicate. Keeps true: every float32 in
-// it reads back to the same bits, and writing what was read gives the same text; whether an entry
-// fits the spec is check/'s question, which compares `predicate` and `targets`.
+// Takes: JSON of format 1 or 2. Gives: one entry per calibrated predicate. Keeps true: every
+// float32 in it reads back to the same bits, and writing what was read gives the same text; whether
+// an entry fits the spec is check/'s question, which compares `predicate` and `targets`.
 #pragma once
 
 #include <cstdint>
@@ -44,6 +44,7 @@ struct Entry {
 };
 
 struct File {
+    std::uint32_t format = kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote it

@@ -72,7 +72,7 @@ void write_entries(const std::map<std::string, Entry>& all, const std::string& w
 
 bool write(const File& file, const Pieces::Take& take) {
     Pieces to(take);
-    to.add(fmt::format("{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": ",
+    to.add(fmt::format("{{\n  \"format\": {},\n  \"spec\": {},\n  \"predicates\": ", file.format,
                        json_text(file.spec)));
     write_entries(file.predicates, "predicate", to);
     to.add(",\n  \"monitors\": ");

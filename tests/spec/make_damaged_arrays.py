@@ -94,7 +94,7 @@ FITTED = """{
 }
 """
 for name, description in (
-    ("E0673_unknown_fitted_format", FITTED % (2, "3")),
+    ("E0673_unknown_fitted_format", FITTED % (3, "3")),
     ("E0674_invalid_fitted", FITTED % (1, '"three"')),
 ):
     write(name + ".fitted.npz", zipped([("fitted.json", description), ("g.npy", npy())]))

@@ -16,7 +16,7 @@ namespace {
 using diag::Code;
 
 const std::string kDescription = R"text({
-  "format": 1,
+  "format": 2,
   "spec": "dock",
   "entries": {
     "Q": {
@@ -163,7 +163,7 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
         EXPECT_EQ(failure.message, one.message);
         EXPECT_EQ(failure.code, Code::invalid_fitted);
     }
-    EXPECT_EQ(failure_of(R"("format": 1)", R"("format": 2)").code, Code::unknown_fitted_format);
+    EXPECT_EQ(failure_of(R"("format": 2)", R"("format": 3)").code, Code::unknown_fitted_format);
     EXPECT_EQ(failure_of("}\n", "").code, Code::malformed_fitted);
     EXPECT_EQ(failure_of(R"("array": "anchors")", R"("array": "anchor")").message,
               "has no array 'anchor'; it holds 'Q', 'Q-offset', 'anchors', 'metric-1' and "

@@ -17,7 +17,7 @@ using diag::Code;
 using tests::patched;
 
 const std::string kWhole = R"({
-  "format": 1,
+  "format": 2,
   "spec": "dubins",
   "predicates": {
     "at_a": {
@@ -123,6 +123,8 @@ TEST(Thresholds, WritingWhatWasReadChangesNothing) {
     const auto file = parse(kWhole, "x");
     ASSERT_TRUE(file);
     EXPECT_EQ(write(*file), kWhole);
+    const std::string old = patched(kWhole, "\"format\": 2", "\"format\": 1");
+    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are told apart as they were
 }
 
 TEST(Thresholds, SmallestFile) {
@@ -235,13 +237,14 @@ std::vector<Broken> content() {
     const std::string at_a = "'predicates.at_a.";
     return {
         {"array", "[]", Code::invalid_thresholds, "the file is an array, expected an object"},
-        {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected 1"},
-        {"format 2", with("\"format\": 1", "\"format\": 2"), Code::unknown_thresholds_format,
-         "'format' is '2', expected 1, the one this version reads"},
-        {"format 2 with other keys", R"({"format": 2, "entries": []})",
+        {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected a number from 1 to 2"},
+        {"format 3", with("\"format\": 2", "\"format\": 3"), Code::unknown_thresholds_format,
+         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+        {"format 3 with other keys", R"({"format": 3, "entries": []})",
          Code::unknown_thresholds_format,
-         "'format' is '2', expected 1, the one this version reads"},
-        broken("\"format\": 1", "\"format\": \"1\"", "'format' is the text '1', expected 1"),
+         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+        broken("\"format\": 2", "\"format\": \"2\"",
+               "'format' is the text '2', expected a number from 1 to 2"),
         broken("\"spec\": \"dubins\"", "\"spec\": null", "'spec' is null, expected a text"),
         broken("\"spec\"", "\"spek\"", "unknown key 'spek'; did you mean 'spec'?"),
         broken("\"etlc\"", "\"spec\"", "key 'spec' stands twice in one object"),
