@@ -166,7 +166,7 @@ std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder
     };
     add(std::string(kCommand), "a command");
     add("network", "OpenCV");
-    for (unsigned minor = 12; minor < 100; ++minor)
+    for (unsigned minor = 13; minor < 100; ++minor)
         for (unsigned patch = 0; patch < 5; ++patch) {
             const std::string kind = fmt::format("{}1.{}.{}", kOnnxRuntime, minor, patch);
             add(kind, kind);

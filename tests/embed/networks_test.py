@@ -7,8 +7,10 @@ import subprocess
 import sys
 import tempfile
 
+import exports
 import numpy as np
 import onnx
+import onnx_encoder
 from networks import DEVIATION, MEAN, Convolutional, Exported, Graph, Transformer
 from networks import prepared, resized
 from onnx import TensorProto, helper, numpy_helper
@@ -94,6 +96,22 @@ def networks_give_what_loops_give():
         for what, wrong in wrong_preparations(images[1], network.rows, network.columns):
             error = difference([rows[1]], [network(wrong)])
             assert error > 10 * TOLERANCE, (kind, what, error)
+
+
+def exports_give_what_their_nodes_give():
+    """In double precision."""
+    spec("t.etl", exports.SIDE, exports.SIDE)
+    images = [np.asarray(Image.open(f"bay/{i}.png")) for i in range(2)]
+    for make in (exports.mobilenet, exports.convnext, exports.clip, exports.dinov2):
+        dimension = make("net.onnx", random)
+        call(ETLC, "embed", "t.etl")
+        rows = np.load("t.embedded.npz")["rows-1"]
+        assert rows.shape == (2, dimension), (make, rows.shape)
+        graph = onnx.load("net.onnx").graph
+        expected = [onnx_encoder.run(graph, prepared(image, exports.SIDE, exports.SIDE).transpose(
+            2, 0, 1)[None])[0] for image in images]
+        error = difference(rows, expected)
+        assert error <= TOLERANCE, (make, error)
 
 
 def refused(*words):
@@ -279,8 +297,11 @@ def what_is_given_is_what_is_declared():
     refused(f"gives '{z}' of 1 x 12, and declares 1 x 13")
     z = save(["batch", 3, 4])
     refused("12", "3 x 4")
-    z = save([1, 12], ends_flat=False)
+    save([1, 12], ends_flat=False)
     refused("1 x 12")
+    g = Graph()
+    g.save("net.onnx", [1, 3, 2, 2], g.node("Flatten", "x"), 13)  # what the nodes contradict
+    refused("13")
 
 
 def weights_in_another_file_are_refused():
@@ -307,6 +328,7 @@ def weights_in_another_file_are_refused():
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     networks_give_what_loops_give()
+    exports_give_what_their_nodes_give()
     quantised_products_are_those_of_whole_numbers()
     os.remove("t.embedded.npz")
     what_is_not_run_is_named()
