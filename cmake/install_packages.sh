@@ -7,12 +7,13 @@ set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
 onnxruntime=1.30.0
 library=$(dirname "$list")/../build/onnxruntime/libonnxruntime.so.$onnxruntime
-machine=$(uname -m | sed 's/x86_64/x64/; s/aarch64/arm64/')
 
 # The package is for many machines: only the library for this one is kept.
 get_onnxruntime() {
-    local box
+    local box machine
     box=$(mktemp -d)
+    machine=$(uname -m)
+    machine=${machine/x86_64/x64} machine=${machine/aarch64/arm64}
     echo "Getting ONNX Runtime $onnxruntime"
     npm pack --silent --pack-destination "$box" "onnxruntime-node@$onnxruntime" >/dev/null &&
         tar -C "$box" -xzf "$box/onnxruntime-node-$onnxruntime.tgz" --wildcards \
@@ -22,6 +23,7 @@ get_onnxruntime() {
         echo "It cannot be got from npm: networks will not be tested." >&2
     rm -rf "$box"
 }
+
 wants_onnxruntime=
 if [[ " $* " = *" recordings "* && ! -e $library ]]; then
     wants_onnxruntime=yes

@@ -1,7 +1,8 @@
-"""conformance_test.py ETLC NODES PART PARTS: `etlc embed` computes what ONNX defines: the node tests
-of the ONNX project (NODES: a folder for each, with a node, its inputs and its outputs), many in a
-model. The first input of a node is known only once an image is there, so that nothing is computed
-ahead; the others are weights. What gives no embedding, or is not run, is listed by reason."""
+"""conformance_test.py ETLC NODES PART PARTS: `etlc embed` computes what ONNX defines: the node
+tests of the ONNX project (NODES: a folder for each, with a node, its inputs and its outputs), many
+in a model. The first input of a node is known only once an image is there, so that nothing is
+computed ahead; the others are weights. What gives no embedding, or is not run, is listed by
+reason."""
 import collections
 import json
 import os

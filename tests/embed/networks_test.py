@@ -285,7 +285,8 @@ def what_is_given_is_what_is_declared():
             z = g.node("Unsqueeze", z, g.weight([0], np.int64))
         g.save("net.onnx", [1, 3, 2, 2], z, 12)
         model = onnx.load("net.onnx")
-        model.graph.output[0].CopyFrom(helper.make_tensor_value_info(z, TensorProto.FLOAT, declared))
+        value = helper.make_tensor_value_info(z, TensorProto.FLOAT, declared)
+        model.graph.output[0].CopyFrom(value)
         onnx.save(model, "net.onnx")
         return z
 

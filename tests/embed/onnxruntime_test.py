@@ -89,6 +89,8 @@ def it_is_found_where_it_is_put():
     no_python = {"PATH": os.path.abspath("empty") + ":/bin"}
     program("empty/python3", "exit 1\n")
     assert found(**no_python) == of_npm
+    program("node/bin/node", "")
+    os.mkdir("node/lib")
     os.makedirs("inner/folder", exist_ok=True)
     os.chdir("inner/folder")
     assert found(**no_python) == of_npm, "in a folder further up"
@@ -100,7 +102,10 @@ def it_is_found_where_it_is_put():
     assert found(PYTHONPATH=os.path.abspath("site")) == of_pip
     call(PYTHONPATH=os.path.abspath("site"))
     assert encoder() == first, "wherever it lies"
-    shutil.rmtree("node_modules")
+    os.rename("node_modules", "node/lib/node_modules")
+    assert found(PATH="/nowhere:" + os.path.abspath("node/bin") + ":" + no_python["PATH"]) == (
+        os.path.abspath(os.path.join("node/lib", os.path.relpath(of_npm))))
+    shutil.rmtree("node")
 
     of_system = placed("system/libonnxruntime.so.1")
     assert found(**no_python, LD_LIBRARY_PATH=os.path.dirname(of_system)) == of_system

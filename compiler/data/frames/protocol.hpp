@@ -2,10 +2,10 @@
 // Frames, on the standard output of `etlc-embed video FILE ...`, `etlc-embed images FILE...` and
 // `etlc-embed given`, and the standard input of encoders: of each frame its height and its width,
 // 32 bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
-// of each how many bytes its file would have, 32 bits, then these. The version and the path of what
-// runs networks, a line each, on the standard output of `etlc-embed onnxruntime`. Embeddings, on the standard
+// of each how many bytes its file would have, 32 bits, then these. Embeddings, on the standard
 // output of encoders: once their dimension, 32 bits, then for every frame as many float32. All
-// numbers are little-endian. What went wrong is the last line on standard error.
+// numbers are little-endian. The version and the path of what runs networks, a line each, on the
+// standard output of `etlc-embed onnxruntime`. What went wrong is the last line on standard error.
 #pragma once
 
 #include <cstdint>

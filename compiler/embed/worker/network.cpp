@@ -53,10 +53,10 @@ constexpr char kRunning[] = "cannot be run";
 }  // namespace
 
 struct Network::Parts {
-    Parts(const Library& library, const Model& run)
+    Parts(const Library& library, const Model& given)
         : version(library.version),
-          model(run),
-          shape{1, kChannels, run.height, run.width},
+          model(given),
+          shape{1, kChannels, given.height, given.width},
           environment(made<Environment>(kLoading,
                                         [](ort::Environment** result) {
                                             return ort::create_environment(
@@ -75,7 +75,7 @@ struct Network::Parts {
         done(kLoading, ort::configure(options.get(), "session.x64quantprecision", "1"));
         done(kLoading, ort::configure(options.get(), "session.disable_quant_qdq", "1"));
         session = made<Session>(kLoading, [&](ort::Session** result) {
-            return ort::create_session(environment.get(), run.bytes.data(), run.bytes.size(),
+            return ort::create_session(environment.get(), given.bytes.data(), given.bytes.size(),
                                        options.get(), result);
         });
     }

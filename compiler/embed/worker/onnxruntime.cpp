@@ -9,6 +9,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <sstream>
 #include <string_view>
 #include <vector>
 
@@ -67,17 +68,27 @@ Paths of_pip() {
     return folder.empty() ? Paths{} : named(fs::path(folder) / "capi", kName);
 }
 
-/// Of the folders in which node looks for packages, and npm installs them.
-Paths of_npm() {
+/// The folders in which node looks for packages, and npm installs them: here and further up, and
+/// beside the node on the PATH.
+Paths folders_of_npm() {
     Paths folders;
     std::error_code none;
     for (fs::path at = fs::current_path(none); !at.empty(); at = at.parent_path()) {
         folders.push_back(at / "node_modules");
         if (at == at.root_path()) break;
     }
-    add(folders, {"/usr/local/lib/node_modules", "/usr/lib/node_modules"});
+    const char* const path = std::getenv("PATH");
+    std::istringstream programs(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(programs, folder, ':');)
+        if (fs::exists(fs::path(folder) / "node", none))
+            folders.push_back(fs::path(folder).parent_path() / "lib" / "node_modules");
+    folders.emplace_back("/usr/local/lib/node_modules");
+    return folders;
+}
+
+Paths of_npm() {
     Paths found;
-    for (const fs::path& folder : folders)
+    for (const fs::path& folder : folders_of_npm())
         for (const fs::path& version : named(folder / "onnxruntime-node" / "bin", "napi-v"))
             add(found, named(version / "linux" / kNodeMachine, kName));
     return found;
