@@ -161,7 +161,7 @@ def what_is_none_is_named():
     for where, words in (("/nowhere", ["there is no '/nowhere'"]),
                          ("text.so", ["text.so' is no shared library", expected]),
                          ("foreign.so", ["foreign.so' is for another processor"]),
-                         ("cut.so", ["cut.so"]),
+                         ("cut.so", ["cut.so' is cut"]),
                          ("old.so", ["old.so' is ONNX Runtime 1.12.1", expected]),
                          ("other.so", ["other.so' is another library", expected]),
                          ("nothing", ["'nothing' holds no libonnxruntime.so", expected])):

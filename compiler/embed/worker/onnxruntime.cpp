@@ -1,6 +1,8 @@
 #include "embed/worker/onnxruntime.hpp"
 
 #include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 
 #include <algorithm>
 #include <array>
@@ -9,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <optional>
 #include <sstream>
 #include <string_view>
 #include <vector>
@@ -114,19 +117,21 @@ fs::path library_at(const std::string& where) {
     refuse_library("'" + where + "' holds no " + std::string(kName) + kExpected);
 }
 
-/// What tells a program of this machine: an ELF file, its class, its byte order, its processor.
-struct Kind {
-    bool is_elf = false;
-    std::array<char, 4> machine{};
-};
+using Head = ElfW(Ehdr);
 
-Kind kind_of(const fs::path& path) {
-    std::array<char, 20> head{};
+/// Of an ELF file; nothing where it is none.
+std::optional<Head> head_of(const fs::path& path) {
+    Head head{};
     std::ifstream file(path, std::ios::binary);
-    file.read(head.data(), head.size());
-    constexpr std::string_view kElf = "\177ELF";
-    return {file.gcount() == head.size() && std::string_view(head.data(), 4) == kElf,
-            {head[4], head[5], head[18], head[19]}};
+    file.read(reinterpret_cast<char*>(&head), sizeof head);
+    if (!file || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0) return std::nullopt;
+    return head;
+}
+
+/// Whether programs of both kinds run on one machine.
+bool are_alike(const Head& one, const Head& other) {
+    return one.e_ident[EI_CLASS] == other.e_ident[EI_CLASS] &&
+           one.e_ident[EI_DATA] == other.e_ident[EI_DATA] && one.e_machine == other.e_machine;
 }
 
 struct Opened {
@@ -137,10 +142,13 @@ struct Opened {
 Opened open(const fs::path& found) {
     const fs::path path = fs::absolute(found);  // a name alone is looked for elsewhere
     const std::string name = "'" + path.string() + "'";
-    const Kind kind = kind_of(path);
-    if (!kind.is_elf) refuse_library(name + " is no shared library" + kExpected);
-    if (kind.machine != kind_of("/proc/self/exe").machine)
+    const auto head = head_of(path);
+    if (!head) refuse_library(name + " is no shared library" + kExpected);
+    if (!are_alike(*head, head_of("/proc/self/exe").value_or(*head)))
         refuse_library(name + " is for another processor than this etlc");
+    // The table of sections is its end, without which the loader would be stopped by a signal.
+    if (head->e_shoff + std::size_t{head->e_shnum} * head->e_shentsize > fs::file_size(path))
+        refuse_library(name + " is cut: its end is missing");
     void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
     if (library == nullptr) refuse_library(name + " cannot be loaded: " + ::dlerror());
     return {library, name};
