@@ -181,7 +181,7 @@ def embed(
     *,
     output: str | os.PathLike[str] | None = None,
     settings: Mapping[str, object] | None = None,
-    runtime: str | None = None,
+    onnxruntime: str | os.PathLike[str] | None = None,
     encoder_command: str | None = None,
     encoder_timeout: int | None = None,
 ) -> Written:
@@ -193,7 +193,8 @@ def embed(
         data: recordings to make episodes of: videos, folders of images, patterns.
         output: the folder where the episodes go; given with `data`.
         settings: other values for constants.
-        runtime: what runs the spec's networks, "opencv" or "onnxruntime"; without it OpenCV does.
+        onnxruntime: what runs the spec's networks: the library, or a folder that has it; without it
+            the one that the environment, pip, npm or the system has.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
         encoder_timeout: seconds after which an encoder that does nothing is stopped.
 
@@ -202,11 +203,11 @@ def embed(
 
     Raises:
         SpecError: the command failed, and says why: E1016 where etlc was installed without it,
-            or without the runtime.
+            or where there is no ONNX Runtime.
     """
     ran = _run(
         "embed", [spec], data, settings, None,
-        {"-o": output, "--runtime": runtime, "--encoder-cmd": encoder_command,
+        {"-o": output, "--onnxruntime": onnxruntime, "--encoder-cmd": encoder_command,
          "--encoder-timeout": encoder_timeout},
     )  # fmt: skip
     path = _output(spec, output, ".embedded.npz")

@@ -15,12 +15,12 @@ depends=$(dpkg-deb -f "$deb" Depends)
 for library in libc6 libstdc++6 libfmt9 libhdf5-103 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
-for library in opencv avcodec openmpi; do
+for library in avcodec libpng libjpeg openmpi; do
     [[ $depends != *"$library"* ]] || fail "etlc itself depends on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
 # Each helper that is built is in a package of its own, with the libraries that it needs.
-for helper in embed=libopencv-dnn mpi=libopenmpi; do
+for helper in embed=libavcodec mpi=libopenmpi; do
     name=etlc-${helper%=*} library=${helper#*=}
     [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"
     [ -e "$build_dir/$name" ] || continue

@@ -31,8 +31,7 @@ refuses "--targets-as: found 'f8', expected f32, f16 or i8; did you mean 'i8'?" 
 expected="ast, graph, plan, hpp, params, dot or report"
 refuses "--emit: found 'hp', expected $expected; did you mean 'hpp'?" \
     t.etl --emit hp
-refuses "--runtime: found 'onnx', expected opencv or onnxruntime" embed t.etl --runtime onnx
-refuses "--runtime excludes --encoder-cmd" embed t.etl --runtime opencv --encoder-cmd cat
+refuses "--onnxruntime excludes --encoder-cmd" embed t.etl --onnxruntime a.so --encoder-cmd cat
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
 # A command that is misspelt is no spec.

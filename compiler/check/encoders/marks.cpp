@@ -14,7 +14,7 @@ std::optional<diag::Failure> other_encoder(const Model& model, const Input& inpu
     const auto same_model = encoder.otherwise.find(mark->second);
     const std::string run_by = same_model == encoder.otherwise.end()
                                    ? ""
-                                   : fmt::format(", the same model as a {}", same_model->second);
+                                   : fmt::format(", the same model run by {}", same_model->second);
     return diag::Failure{
         diag::Code::other_encoder,
         fmt::format("'{}' is by the encoder {}{}; expected {}, which is '{}' of the spec",

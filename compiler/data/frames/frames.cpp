@@ -88,13 +88,12 @@ std::string embedder_path() {
 }
 
 Failure no_embedder() {
-    return {
-        Code::no_embedder,
-        fmt::format("{} cannot be run, which reads images and video and runs networks; etlc "
-                    "builds it where it finds OpenCV and FFmpeg (Debian: libopencv-dnn-dev, "
-                    "libopencv-imgcodecs-dev, libavformat-dev, libswscale-dev); of the packages of "
-                    "etlc, etlc-embed has it",
-                    in_quotes(embedder_path()))};
+    return {Code::no_embedder,
+            fmt::format("{} cannot be run, which reads images and video and runs networks; etlc "
+                        "builds it where it finds FFmpeg, libpng and libjpeg (Debian: "
+                        "libavformat-dev, libswscale-dev, libpng-dev, libjpeg62-turbo-dev); of the "
+                        "packages of etlc, etlc-embed has it",
+                        in_quotes(embedder_path()))};
 }
 
 namespace {

@@ -56,16 +56,16 @@ void add_embed_options(CLI::App& app, EmbedRequest& request) {
     add_shard_option(app, request.shard,
                      "make episodes of this shard of the recordings only; the first encodes what "
                      "the spec names as well");
-    CLI::Option* const runtime = add_choice<embed::Runtime>(
-        app, "--runtime", request.embed.running.runtime,
-        {{"opencv", embed::Runtime::opencv}, {"onnxruntime", embed::Runtime::onnxruntime}},
-        "what runs the models of encoders; ONNX Runtime has all operators, where etlc was built "
-        "with it");
+    CLI::Option* const library =
+        app.add_option("--onnxruntime", request.embed.running.onnxruntime,
+                       "what runs the models of encoders: the library, or a folder that has it "
+                       "(default: ETLC_ONNXRUNTIME, or where pip, npm or the system put it)")
+            ->type_name("PATH");
     app.add_option("--encoder-cmd", request.embed.running.command,
                    "a command that encodes: frames on its standard input, embeddings on its "
                    "standard output (docs/encoders.md)")
         ->type_name("COMMAND")
-        ->excludes(runtime);
+        ->excludes(library);
     add_number(app, "--encoder-timeout", request.embed.running.max_silence_seconds,
                "seconds after which an encoder that neither reads nor writes is stopped", 1, 86400)
         ->default_str(std::to_string(request.embed.running.max_silence_seconds));
