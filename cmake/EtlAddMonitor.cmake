@@ -27,8 +27,10 @@
 #                   boolean. The property ETLC_PARAMS_FILES of TARGET lists these files.
 # Relative paths are relative to the current source directory. The header lies in the build folder
 # and is made again when the spec, a file that it loads, the thresholds, what is fitted or embedded,
-# or etlc itself change. Of a library, the header and the runtime are public. Needs CMake 3.20 and
-# the Ninja or Makefile generators (3.21 for the others).
+# or etlc itself change. In no name of a file or a folder stands one of ; \ ' " & # * < > | : = ? ^
+# ` $ or a square bracket, and no % in that of the spec or the build folder. Of a library, the
+# header and the runtime are public. Needs CMake 3.20 and the Ninja or Makefile generators (3.21 for
+# the others).
 cmake_policy(PUSH)
 cmake_policy(VERSION 3.20)
 
@@ -72,6 +74,11 @@ function(etlc_add_monitor target)
   get_filename_component(stem "${spec}" NAME_WLE)
   set(folder "${CMAKE_CURRENT_BINARY_DIR}/etlc/${target}")
   set(header "${folder}/${stem}.hpp")
+  __etlc_check_name("${call}" "the header" "${header}")
+  if(header MATCHES "%")  # a pattern, to Make
+    message(FATAL_ERROR "${call}: the header ${header}: a name with % in it, which "
+                        "not all build tools read alike: rename the file or its folder")
+  endif()
   get_target_property(monitors ${target} ETLC_MONITORS)
   if("${stem}" IN_LIST monitors)
     message(FATAL_ERROR
@@ -176,12 +183,24 @@ endfunction()
 
 # The absolute path of a file that exists or that the build makes.
 function(__etlc_input call keyword path result)
+  __etlc_check_name("${call}" ${keyword} "${path}")
   get_filename_component(absolute "${path}" ABSOLUTE BASE_DIR "${CMAKE_CURRENT_SOURCE_DIR}")
   get_source_file_property(generated "${absolute}" GENERATED)
   if(NOT generated AND (NOT EXISTS "${absolute}" OR IS_DIRECTORY "${absolute}"))
     message(FATAL_ERROR "${call}: ${keyword} ${path}: there is no such file: ${absolute}")
   endif()
+  __etlc_check_name("${call}" ${keyword} "${absolute}")
   set(${result} "${absolute}" PARENT_SCOPE)
+endfunction()
+
+# Stops at a name with a character that CMake, Make, Ninja and depfiles do not all read alike.
+function(__etlc_check_name call what name)
+  string(REPLACE "\\;" ";" name "${name}")  # as cmake_parse_arguments writes it
+  string(REGEX REPLACE "^[A-Za-z]:" "" rest "${name}")  # a drive
+  if(rest MATCHES "[];['\"&#*<>|:=?^`$\\]")
+    message(FATAL_ERROR "${call}: ${what} ${name}: a name with ${CMAKE_MATCH_0} in it, "
+                        "which not all build tools read alike: rename the file or its folder")
+  endif()
 endfunction()
 
 cmake_policy(POP)

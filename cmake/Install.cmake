@@ -1,5 +1,5 @@
 # What `cmake --install` puts under the prefix, and the Debian packages with the same content: what
-# needs OpenCV and FFmpeg, or MPI, is a package of its own.
+# needs FFmpeg, or MPI, is a package of its own.
 include(CMakePackageConfigHelpers)
 
 set(package_dir "${CMAKE_INSTALL_DATADIR}/cmake/etlc")
@@ -72,6 +72,7 @@ if(TARGET etlc_embed_worker)
   list(APPEND CPACK_COMPONENTS_ALL embed)
   set(CPACK_DEBIAN_EMBED_PACKAGE_NAME etlc-embed)
   set(CPACK_DEBIAN_EMBED_PACKAGE_DEPENDS "etlc (= ${PROJECT_VERSION})")
+  set(CPACK_DEBIAN_EMBED_PACKAGE_SUGGESTS libonnxruntime-dev)  # Debian 13 has it
   set(CPACK_COMPONENT_EMBED_DESCRIPTION "Images, video and networks for etlc embed")
   list(APPEND suggested etlc-embed)
 endif()

@@ -1,9 +1,33 @@
 #!/usr/bin/env bash
 # install_packages.sh GROUP...: installs the packages of these groups of packages.txt that are
 # missing, through apt, as root or with sudo. Without apt it names what is missing and fails; if
-# nothing is missing it prints nothing.
+# nothing is missing it prints nothing. With `recordings` it gets ONNX Runtime, which Debian 12 has
+# no package of, from npm into build/onnxruntime, where tests look for it.
 set -euo pipefail
 list=$(dirname "${BASH_SOURCE[0]}")/packages.txt
+onnxruntime=1.30.0
+library=$(dirname "$list")/../build/onnxruntime/libonnxruntime.so.$onnxruntime
+
+# The package is for many machines: only the library for this one is kept.
+get_onnxruntime() {
+    local box machine
+    box=$(mktemp -d)
+    machine=$(uname -m)
+    machine=${machine/x86_64/x64} machine=${machine/aarch64/arm64}
+    echo "Getting ONNX Runtime $onnxruntime"
+    npm pack --silent --pack-destination "$box" "onnxruntime-node@$onnxruntime" >/dev/null &&
+        tar -C "$box" -xzf "$box/onnxruntime-node-$onnxruntime.tgz" --wildcards \
+            "package/bin/napi-v*/linux/$machine/libonnxruntime.so.1" &&
+        mkdir -p "$(dirname "$library")" &&
+        mv "$box"/package/bin/napi-v*/linux/"$machine"/libonnxruntime.so.1 "$library" ||
+        echo "It cannot be got from npm: networks will not be tested." >&2
+    rm -rf "$box"
+}
+
+wants_onnxruntime=
+if [[ " $* " = *" recordings "* && ! -e $library ]]; then
+    wants_onnxruntime=yes
+fi
 
 packages=()
 for group in "$@"; do
@@ -23,7 +47,13 @@ missing=()
 for package in "${packages[@]}"; do
     grep -qxF -- "$package" <<<"$installed" || missing+=("$package")
 done
-[ ${#missing[@]} -gt 0 ] || exit 0
+if [ -n "$wants_onnxruntime" ] && ! command -v npm >/dev/null; then
+    missing+=(npm)
+fi
+if [ ${#missing[@]} -eq 0 ]; then
+    [ -z "$wants_onnxruntime" ] || get_onnxruntime
+    exit 0
+fi
 
 as_root=()
 if [ "$(id -u)" -ne 0 ]; then
@@ -41,3 +71,4 @@ as_root+=(env DEBIAN_FRONTEND=noninteractive)
 "${as_root[@]}" apt-get -qq update
 "${as_root[@]}" apt-get -qq install --no-install-recommends -o Dpkg::Use-Pty=0 "${missing[@]}" \
     >/dev/null
+[ -z "$wants_onnxruntime" ] || get_onnxruntime

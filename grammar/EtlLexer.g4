@@ -98,6 +98,7 @@ HERTZ        : 'Hz' ;
 MICROSECONDS : 'us' ;
 MILLISECONDS : 'ms' ;
 SECONDS      : 's' ;
+STEPS        : 'steps' | 'step' ;
 
 // ---- contextual: distances, aggregations, functions; `min` is a unit as well
 

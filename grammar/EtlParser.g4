@@ -17,7 +17,7 @@ declaration
     : SPEC name SEMICOLON                                                 # SpecDeclaration
     | RATE amount HERTZ rounding? SEMICOLON                               # RateDeclaration
     | PERIOD (NUMBER timeUnit | name timeUnit?) rounding? SEMICOLON       # PeriodDeclaration
-    | CONST name ASSIGN MINUS? NUMBER timeUnit? SEMICOLON                 # ConstDeclaration
+    | CONST name ASSIGN MINUS? NUMBER unit? SEMICOLON                     # ConstDeclaration
     | ENCODER name ASSIGN load (COMMA setting)* SEMICOLON                  # EncoderDeclaration
     | INPUT name (COMMA name)* COLON type encodedBy? range? hold? missing? SEMICOLON
                                                                           # InputDeclaration
@@ -109,8 +109,8 @@ duration
     ;
 
 bound
-    : amount timeUnit?      # FiniteBound
-    | INF                   # InfiniteBound
+    : amount unit?      # FiniteBound
+    | INF               # InfiniteBound
     ;
 
 // ---- distances
@@ -188,7 +188,7 @@ limit
     ;
 
 hold
-    : HOLD amount
+    : HOLD amount unit?
     ;
 
 missing
@@ -255,6 +255,10 @@ timeUnit
     : MICROSECONDS | MILLISECONDS | SECONDS | MIN
     ;
 
+unit
+    : timeUnit | STEPS
+    ;
+
 // ---- names: contextual words are names wherever they cannot be keywords
 
 name
@@ -266,7 +270,7 @@ name
     | PROJECTION | OFFSET | FITTED | FRAMES | STRIDE | OF | WHERE
     | ENCODER | BY | IMAGES | IMAGE | DEVIATION
     | DURATIONS | UP | DOWN | NEAREST
-    | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS
+    | HERTZ | MICROSECONDS | MILLISECONDS | SECONDS | STEPS
     | DISTANCE | MAHALANOBIS
     | MIN | MAX | MEAN | KTH | ABS | SQRT
     ;

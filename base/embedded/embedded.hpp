@@ -15,23 +15,23 @@
 
 namespace etlc::embedded {
 
-/// What runs a model: OpenCV, ONNX Runtime (`--runtime`), a command (`--encoder-cmd`).
-inline constexpr std::string_view kNetwork = "network";
-inline constexpr std::string_view kNetworkByOnnxRuntime = "network by onnxruntime";
+/// What runs a model: ONNX Runtime, followed by its version, or a command (`--encoder-cmd`).
+inline constexpr std::string_view kOnnxRuntime = "ONNX Runtime ";
 inline constexpr std::string_view kCommand = "command";
 
 struct Encoder {
     std::string declaration;  ///< canonical text, "load(\"dino.onnx\"), image [224, 224]"
     std::string model;        ///< hash of its bytes, 16 hex digits
     std::string settings;     ///< canonical text, those of the .json beside the model among them
-    std::string kind;         ///< one of the above
+    std::string kind;         ///< what runs it, as above
     std::uint32_t dimension = 0;
 };
 
 /// What tells encoders apart: XXH64 of model, settings and kind, 16 hex digits.
 std::string fingerprint(const Encoder& encoder);
 
-/// The fingerprints of the same model and settings, run by something else, with that kind.
+/// The fingerprints of the same model and settings, run by something else, and by what: a command,
+/// any release of ONNX Runtime, OpenCV in earlier versions of etlc.
 std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder);
 
 /// An image or a video.

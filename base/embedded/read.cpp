@@ -59,7 +59,7 @@ public:
 private:
     bool begin(const Json& root, const std::vector<std::string>& keys) {
         if (root.kind != Json::Kind::object) fail("", root, "an object");
-        if (!failure_) check_format(root);
+        if (!failure_) format(root, 1);
         if (!failure_) check_keys(root, "", keys);
         return !failure_;
     }
@@ -159,11 +159,18 @@ std::string fingerprint(const Encoder& encoder) {
 
 std::map<std::string, std::string> fingerprints_otherwise(const Encoder& encoder) {
     std::map<std::string, std::string> found;
-    for (const std::string_view kind : {kNetwork, kNetworkByOnnxRuntime, kCommand}) {
+    const auto add = [&](const std::string& kind, const std::string& name) {
         Encoder other = encoder;
         other.kind = kind;
-        if (kind != encoder.kind) found[fingerprint(other)] = kind;
-    }
+        if (kind != encoder.kind) found[fingerprint(other)] = name;
+    };
+    add(std::string(kCommand), "a command");
+    add("network", "OpenCV");
+    for (unsigned minor = 13; minor < 100; ++minor)
+        for (unsigned patch = 0; patch < 5; ++patch) {
+            const std::string kind = fmt::format("{}1.{}.{}", kOnnxRuntime, minor, patch);
+            add(kind, kind);
+        }
     return found;
 }
 

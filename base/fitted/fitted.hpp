@@ -1,8 +1,8 @@
 // The file of fitted things: what `etlc fit` found, with where it came from.
-// Takes: an .npz archive of format 1: the member fitted.json, and an array for every entry. Gives:
-// one entry per fitted projection, target or metric. Keeps true: writing what was read gives the
-// same bytes; all numbers are finite; whether an entry fits the spec is check/'s question, which
-// compares `declaration`, `of` and `truth`.
+// Takes: an .npz archive of format 1 or 2: the member fitted.json, and an array for every entry.
+// Gives: one entry per fitted projection, target or metric. Keeps true: writing what was read gives
+// the same bytes; all numbers are finite; whether an entry fits the spec is check/'s question,
+// which compares `declaration`, `of` and `truth`.
 #pragma once
 
 #include <cstdint>
@@ -28,7 +28,10 @@ struct Entry {
     std::string declaration;  ///< canonical text of `fitted(...)`
     /// What the point goes through: canonical text, and content hashes of the projections in it.
     std::string of;
-    std::string truth;  ///< canonical text of `where` with truths written out, or "array"
+    std::string truth;  ///< canonical text of `where`, and what the labels in it were
+    /// All that it was made from, by kind and name, check::Reads; empty in files of earlier
+    /// versions.
+    std::map<std::string, std::string> reads;
     std::uint32_t rows = 0;
     std::uint32_t columns = 0;
     std::vector<float> matrix;   ///< rows x columns, row-major
@@ -39,6 +42,7 @@ struct Entry {
 };
 
 struct File {
+    std::uint32_t format = thresholds::kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote it

@@ -44,7 +44,7 @@ public:
             fail("", root, "an object");
             return *failure_;
         }
-        check_format(root);
+        file.format = format(root, thresholds::kFormat);
         check_keys(root, "",
                    {"format", "spec", "entries", "episodes", "recordings", "allowances", "etlc"});
         file.spec = text(root, "", "spec");
@@ -69,7 +69,7 @@ private:
             return result;
         }
         check_keys(json, path,
-                   {"declaration", "of", "truth", "array", "offset", "frames", "medoids"});
+                   {"declaration", "of", "truth", "reads", "array", "offset", "frames", "medoids"});
         result.declaration = text(json, path, "declaration");
         if (!failure_ && name != result.declaration && !is_name(name))
             failure_ = Failure{Code::invalid_fitted,
@@ -78,6 +78,7 @@ private:
                                            in_quotes(path))};
         result.of = text(json, path, "of");
         result.truth = text(json, path, "truth");
+        result.reads = texts(json, path, "reads");
         result.frames = count(json, path, "frames");
         read_matrix(result, text(json, path, "array"));
         if (json.find("offset") != nullptr) read_offset(result, text(json, path, "offset"));

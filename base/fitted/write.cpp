@@ -27,6 +27,7 @@ std::string description_of(const Entry& entry, const std::string& array) {
     line("declaration", json_text(entry.declaration));
     line("of", json_text(entry.of));
     line("truth", json_text(entry.truth));
+    if (!entry.reads.empty()) line("reads", thresholds::json_texts(entry.reads, 6));
     line("array", json_text(array));
     if (!entry.offset.empty()) line("offset", json_text(array + "-offset"));
     line("frames", std::to_string(entry.frames));
@@ -50,7 +51,7 @@ std::string write(const File& file) {
             members.push_back(
                 {array + "-offset.npy", data::npy_bytes({entry.columns}, entry.offset)});
     }
-    std::string description = "{\n  \"format\": 1,\n";
+    std::string description = fmt::format("{{\n  \"format\": {},\n", file.format);
     const auto line = [&](const std::string& key, const std::string& value) {
         description += fmt::format("  \"{}\": {},\n", key, value);
     };

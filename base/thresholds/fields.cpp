@@ -38,6 +38,16 @@ std::string Fields::text(const Json& object, const std::string& path, const std:
     return value != nullptr ? value->text : std::string();
 }
 
+std::map<std::string, std::string> Fields::texts(const Json& object, const std::string& path,
+                                                 const std::string& key) {
+    std::map<std::string, std::string> result;
+    if (failure_ || object.find(key) == nullptr) return result;
+    const Json* texts = member(object, path, key, Json::Kind::object, "an object of texts");
+    for (std::size_t i = 0; texts != nullptr && i < texts->keys.size() && !failure_; ++i)
+        result[texts->keys[i]] = text(*texts, fmt::format("{}.{}", path, key), texts->keys[i]);
+    return result;
+}
+
 const Json* Fields::member(const Json& object, const std::string& path, const std::string& key,
                            Json::Kind kind, const std::string& expected) {
     if (failure_) return nullptr;
@@ -53,12 +63,17 @@ const Json* Fields::member(const Json& object, const std::string& path, const st
     return nullptr;
 }
 
-void Fields::check_format(const Json& root) {
-    const Json* format = member(root, "", "format", Json::Kind::number, "1");
-    if (format != nullptr && format->text != "1")
-        failure_ = Failure{unknown_format_,
-                           fmt::format("'format' is {}, expected 1, the one this version reads",
-                                       in_quotes(format->text))};
+std::uint32_t Fields::format(const Json& root, std::uint32_t newest) {
+    const bool one = newest == 1;
+    const std::string expected = one ? "1" : fmt::format("a number from 1 to {}", newest);
+    const Json* format = member(root, "", "format", Json::Kind::number, expected);
+    if (format == nullptr) return 0;
+    for (std::uint32_t known = 1; known <= newest; ++known)
+        if (format->text == std::to_string(known)) return known;
+    failure_ = Failure{unknown_format_,
+                       fmt::format("'format' is {}, expected {}, {} this version reads",
+                                   in_quotes(format->text), expected, one ? "the one" : "those")};
+    return 0;
 }
 
 void Fields::check_keys(const Json& object, const std::string& path,
@@ -161,6 +176,11 @@ std::string json_object(const std::map<std::string, std::string>& members, std::
         result += fmt::format("{}\n{:{}}{}: {}", result.size() > 1 ? "," : "", "", indent + 2,
                               json_text(key), value);
     return result + fmt::format("\n{:{}}}}", "", indent);
+}
+
+std::string json_texts(std::map<std::string, std::string> texts, std::size_t indent) {
+    for (auto& [key, text] : texts) text = json_text(text);
+    return json_object(texts, indent);
 }
 
 void write_episodes(const std::vector<std::uint64_t>& hashes, std::size_t indent, Pieces& to) {

@@ -25,6 +25,10 @@ struct Allowance {
     std::uint64_t leaked = 0;       ///< episodes with a target among their frames
 };
 
+/// The newest format of files with episodes behind them. In format 1 these are told apart by the
+/// numbers that were stored, in format 2 as the monitor sees them (episodes/seen.hpp).
+inline constexpr std::uint32_t kFormat = 2;
+
 class Items;
 
 class Fields {
@@ -33,14 +37,17 @@ protected:
     Fields(diag::Code invalid, diag::Code unknown_format)
         : invalid_(invalid), unknown_format_(unknown_format) {}
 
-    /// "format" is 1, the one there is.
-    void check_format(const Json& root);
+    /// "format": a number from 1 to `newest`.
+    std::uint32_t format(const Json& root, std::uint32_t newest);
 
     /// The value of a key that has to be there and of this kind; null, after a failure, where it is
     /// not. `path`: of the object, in messages.
     const Json* member(const Json& object, const std::string& path, const std::string& key,
                        Json::Kind kind, const std::string& expected);
     std::string text(const Json& object, const std::string& path, const std::string& key);
+    /// An object of texts; empty where there is no such key.
+    std::map<std::string, std::string> texts(const Json& object, const std::string& path,
+                                             const std::string& key);
     std::uint64_t count(const Json& object, const std::string& path, const std::string& key);
     std::uint64_t hash(const Json& json, const std::string& path);
     double score(const Json& json, const std::string& path);
@@ -65,6 +72,7 @@ private:
 /// The other way: JSON text of what the functions of the same names read, `indent` blanks deep.
 std::string json_text(const std::string& value);
 std::string json_object(const std::map<std::string, std::string>& members, std::size_t indent);
+std::string json_texts(std::map<std::string, std::string> texts, std::size_t indent);
 std::string json_allowances(const std::vector<Allowance>& all);
 void write_episodes(const std::vector<std::uint64_t>& hashes, std::size_t indent, Pieces& to);
 void write_recordings(const data::KnownEpisodes& all, Pieces& to);

@@ -31,7 +31,7 @@ public:
             fail("", root, "an object");
             return *failure_;
         }
-        check_format(root);
+        file.format = format(root, kFormat);
         check_keys(root, "",
                    {"format", "spec", "predicates", "monitors", "episodes", "recordings",
                     "allowances", "etlc"});
@@ -66,8 +66,8 @@ private:
         result.method = method(json, path);
         const bool ranked = result.method != "f1";
         const bool of_monitor = what == "formula";
-        std::vector<std::string> keys{"method", "alpha", "epsilon", "n",      "k",
-                                      "scores", what,    "truth",   "targets"};
+        std::vector<std::string> keys{"method", "alpha", "epsilon", "n",       "k",
+                                      "scores", what,    "truth",   "targets", "reads"};
         if (of_monitor) keys.insert(keys.end(), {"against", "episodes"});
         check_keys(json, path, keys);
         if (ranked || json.find("alpha") != nullptr) result.alpha = alpha(json, path, ranked);
@@ -82,6 +82,7 @@ private:
         result.predicate = text(json, path, what);
         result.truth = text(json, path, "truth");
         result.targets = targets(json, path);
+        result.reads = texts(json, path, "reads");
         if (!of_monitor) return result;
         result.against = against(json, path);
         result.episodes = episodes(json, path, items_);
@@ -198,7 +199,7 @@ std::string text(const Allowance& allowance) {
 }
 
 diag::Result<File> read(const std::string& path) {
-    const auto source = data::open_file(path);
+    const auto source = data::open_file(path, data::Streams::taken);
     if (!source) return Failure{Code::unreadable_thresholds, source.failure().message};
     return read_from(**source, path);
 }

@@ -1,7 +1,7 @@
 // The thresholds file: what `etlc calibrate` found, with where it came from.
-// Takes: JSON of format 1. Gives: one entry per calibrated predicate. Keeps true: every float32 in
-// it reads back to the same bits, and writing what was read gives the same text; whether an entry
-// fits the spec is check/'s question, which compares `predicate` and `targets`.
+// Takes: JSON of format 1 or 2. Gives: one entry per calibrated predicate. Keeps true: every
+// float32 in it reads back to the same bits, and writing what was read gives the same text; whether
+// an entry fits the spec is check/'s question, which compares `predicate` and `targets`.
 #pragma once
 
 #include <cstdint>
@@ -33,14 +33,18 @@ struct Entry {
     std::vector<double> scores;  ///< may be infinite, not NaN
     std::string predicate;  ///< canonical text, check::Predicate::text; of a monitor the text of
                             ///< its formula
-    std::string truth;      ///< canonical text of the truth formula, or "array"
+    std::string truth;  ///< what labels were: canonical text of the truth formula, "array", or both
     std::map<std::string, std::string> targets;  ///< target name -> content hash, 16 hex digits
-    std::string against;                         ///< monitors: missed_alarm or missed_success
+    /// All that it was made from, by kind and name, check::Reads; empty in files of earlier
+    /// versions.
+    std::map<std::string, std::string> reads;
+    std::string against;  ///< monitors: missed_alarm or missed_success
     /// Monitors: hashes of the episodes that it was calibrated on.
     std::vector<std::uint64_t> episodes;
 };
 
 struct File {
+    std::uint32_t format = kFormat;
     std::string path;
     std::string spec;
     std::string etlc;  ///< version that wrote it

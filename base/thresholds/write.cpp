@@ -29,8 +29,6 @@ void write_scores(const std::vector<double>& values, Pieces& to) {
 }
 
 void write_entry(const Entry& entry, const std::string& what, Pieces& to) {
-    std::map<std::string, std::string> targets;
-    for (const auto& [name, hash] : entry.targets) targets[name] = json_text(hash);
     const auto line = [&](const std::string& key, const std::string& value,
                           std::string_view end = ",\n") {
         to.add(fmt::format("      \"{}\": {}{}", key, value, end));
@@ -47,7 +45,9 @@ void write_entry(const Entry& entry, const std::string& what, Pieces& to) {
     line(what, json_text(entry.predicate));
     line("truth", json_text(entry.truth));
     const bool of_monitor = !entry.against.empty();
-    line("targets", json_object(targets, 6), of_monitor ? ",\n" : "\n");
+    const std::string_view last = of_monitor ? ",\n" : "\n";
+    line("targets", json_texts(entry.targets, 6), entry.reads.empty() ? last : ",\n");
+    if (!entry.reads.empty()) line("reads", json_texts(entry.reads, 6), last);
     if (of_monitor) {
         line("against", json_text(entry.against));
         line("episodes", "", "");
@@ -72,7 +72,7 @@ void write_entries(const std::map<std::string, Entry>& all, const std::string& w
 
 bool write(const File& file, const Pieces::Take& take) {
     Pieces to(take);
-    to.add(fmt::format("{{\n  \"format\": 1,\n  \"spec\": {},\n  \"predicates\": ",
+    to.add(fmt::format("{{\n  \"format\": {},\n  \"spec\": {},\n  \"predicates\": ", file.format,
                        json_text(file.spec)));
     write_entries(file.predicates, "predicate", to);
     to.add(",\n  \"monitors\": ");

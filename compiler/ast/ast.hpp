@@ -154,10 +154,13 @@ enum class Comparison : std::uint8_t {
     not_equal,
 };
 
-/// One bound of an interval: steps, a duration, or inf.
+/// The unit of what says that it is a number of steps: `2 steps`, `1 step`.
+inline constexpr std::string_view kStepsUnit = "steps";
+
+/// One bound of an interval, or of `held` or `hold`: steps, a duration, or inf.
 struct Bound {
     Number number;
-    std::string unit;  ///< "", "us", "ms", "s", "min"
+    std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
     Span span;
 };
 
@@ -223,7 +226,7 @@ std::string_view word(Rounding rounding);  ///< "up"
 struct Constant {
     Name name;
     Number value;
-    std::string unit;  ///< "", "us", "ms", "s", "min"
+    std::string unit;  ///< "", "us", "ms", "s", "min", kStepsUnit
     Span span;
 };
 
@@ -259,7 +262,7 @@ struct Input {
     Type type;
     std::optional<Name> encoder;  ///< `by NAME`
     std::optional<Range> range;
-    std::optional<Number> hold;
+    std::optional<Bound> hold;
     std::optional<bool> missing;  ///< what a sample that is not there counts as
     Span span;
 };

@@ -181,9 +181,16 @@ private:
 
 // ---- formulas -----------------------------------------------------------------------------------
 
+/// "1 step", "n steps"
+std::string unit_word(const Number& number, const std::string& unit) {
+    return unit == kStepsUnit && number.text == "1" ? "step" : unit;
+}
+
 std::string text_of(const Bound& bound) {
-    const bool apart = !bound.number.constant.empty() && !bound.unit.empty();
-    return fmt::format("{}{}{}", bound.number.text, apart ? " " : "", bound.unit);
+    const bool apart =
+        !bound.unit.empty() && (!bound.number.constant.empty() || bound.unit == kStepsUnit);
+    return fmt::format("{}{}{}", bound.number.text, apart ? " " : "",
+                       unit_word(bound.number, bound.unit));
 }
 
 std::string text_of(const Interval& interval) {
@@ -277,7 +284,7 @@ std::string text_of(const Rate& rate) {
 
 std::string text_of(const Constant& constant) {
     return fmt::format("const {} = {}{}{}", constant.name.text, constant.value.text,
-                       constant.unit.empty() ? "" : " ", constant.unit);
+                       constant.unit.empty() ? "" : " ", unit_word(constant.value, constant.unit));
 }
 
 std::string text_of_missing(std::optional<bool> missing) {
@@ -302,7 +309,7 @@ std::string text_of(const Input& input) {
         text_of(input.type), text_of_encoder(input.encoder));
     if (input.range)
         result += fmt::format(" in [{}, {}]", input.range->low.text, input.range->high.text);
-    if (input.hold) result += fmt::format(" hold {}", input.hold->text);
+    if (input.hold) result += fmt::format(" hold {}", text_of(*input.hold));
     return result + text_of_missing(input.missing);
 }
 

@@ -20,7 +20,7 @@ namespace etlc::check {
 struct Setting {
     std::string name;
     std::string number;  ///< decimal text, with a leading '-' where it is negative
-    std::string unit;    ///< of a duration: "us", "ms", "s", "min"
+    std::string unit;    ///< "us", "ms", "s", "min", "steps"; of a number ""
 };
 
 struct Options {

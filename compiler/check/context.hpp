@@ -44,6 +44,10 @@ struct Context {
     Scope scope{};
     StepLength step{};
 
+    /// Those above 0 without a unit, by their places.
+    std::map<std::uint32_t, const ast::Bound*> bare_bounds{};
+    bool steps_on_purpose = false;  ///< some bound has the unit `steps`
+
     /// Parallel to model.formulas.
     std::vector<Span> operator_spans{};
     std::vector<std::uint32_t> depths{};

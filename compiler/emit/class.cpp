@@ -176,13 +176,14 @@ void print_step_on_demand(Printer& out, const Context& context) {
 void print_constructors(Printer& out, const Context& context) {
     if (context.retargetable()) return print_retarget_interface(out, context);
     if (!context.stores_targets()) {
-        out.line("Monitor() noexcept { reset(); }");
+        out.line("constexpr Monitor() noexcept { reset(); }");
         return out.line();
     }
     print_doc(out, fmt::format("Over the targets of {}, which must stay where they are. Where they "
                                "are not ready, every predicate on them is unknown at every step.",
                                context.targets_file));
-    out.open("explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) {");
+    out.open(
+        "constexpr explicit Monitor(const Targets& targets) noexcept : rows(targets.rows()) {");
     out.line("reset();");
     out.close();
     print_doc(out,
@@ -238,7 +239,7 @@ std::string reset_words(const Context& context) {
 void print_interface(Printer& out, const Context& context, const std::vector<Member>& all) {
     print_constructors(out, context);
     print_doc(out, reset_words(context));
-    out.open("void reset() noexcept {");
+    out.open("constexpr void reset() noexcept {");
     for (const Member& member : all)
         if (!member.reset.empty() && member.begins_with == plan::kNone) out.line(member.reset);
     for (const plan::Monitor& monitor : context.plan.monitors)
@@ -311,7 +312,7 @@ void print_state(Printer& out, const std::vector<Member>& all) {
     std::vector<std::pair<std::string, std::string>> lines;
     for (const Member& member : all)
         lines.emplace_back(fmt::format("{} {}{};", member.type, member.name,
-                                       member.initial.empty() ? "" : " = " + member.initial),
+                                       member.initial.empty() ? "{}" : " = " + member.initial),
                            member.comment);
     print_aligned(out, lines);
 }

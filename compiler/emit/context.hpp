@@ -173,7 +173,7 @@ struct Member {
     std::string name;
     std::string comment;
     std::string reset;    ///< a statement; empty: it outlives the episode
-    std::string initial;  ///< empty: reset() or the constructor sets it
+    std::string initial;  ///< empty: zeros, until the constructor or reset() sets it
     /// restart_NAME() of this monitor of the plan resets it too.
     std::uint32_t begins_with = plan::kNone;
 };

@@ -6,6 +6,7 @@
 #include "emit/context.hpp"
 #include "emit/emit.hpp"
 #include "emit/standalone.hpp"
+#include "emit/text/macros.hpp"
 #include "plan/program/value_type.hpp"
 #include "plan/targets/narrow_targets.hpp"
 #include "plan/targets/stored.hpp"
@@ -179,14 +180,16 @@ std::string header(const plan::Plan& plan, const Options& options) {
                               options.version, context.spec_file));
     print_summary(out, context);
     print_includes(out, context, options.version, !options.standalone.empty());
-    out.line("namespace {} {{", context.name_space);
-    out.line(
+    Printer inner;
+    inner.line("namespace {} {{", context.name_space);
+    inner.line(
         "inline namespace ETLMON_BUILD {  // units compiled with other flags have another class");
-    out.line();
-    print_body(out, context);
-    out.line("}  // namespace ETLMON_BUILD");
-    out.line("}}  // namespace {}", context.name_space);
-    return options.standalone.empty() ? out.take() : standalone(out.take(), options.standalone);
+    inner.line();
+    print_body(inner, context);
+    inner.line("}  // namespace ETLMON_BUILD");
+    inner.line("}}  // namespace {}", context.name_space);
+    const std::string text = out.take() + shielded(inner.take());
+    return options.standalone.empty() ? text : standalone(text, options.standalone);
 }
 
 std::string params(const plan::Plan& plan, const Options& options) {

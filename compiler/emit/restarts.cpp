@@ -10,7 +10,7 @@ void print_restarts(Printer& out, const Context& context, const std::vector<Memb
         print_doc(out, fmt::format("From the next step on, {} is about that step; past operators "
                                    "still see the whole trace.",
                                    monitor.name));
-        out.open(fmt::format("void restart_{}() noexcept {{", monitor.name));
+        out.open(fmt::format("constexpr void restart_{}() noexcept {{", monitor.name));
         for (const Member& member : all)
             if (member.begins_with == m) out.line(member.reset);
         // What a repeating one has answered is returned before it is asked again.

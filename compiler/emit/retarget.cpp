@@ -146,11 +146,11 @@ void print_retarget_interface(Printer& out, const Context& context) {
     print_doc(out,
               "Without parameters: every predicate and bool input is unknown at every step, until "
               "retarget() gives some.");
-    out.line("Monitor() noexcept : numbers(nullptr) { reset(); }");
+    out.line("constexpr Monitor() noexcept : numbers(nullptr) { reset(); }");
     print_doc(out, "With these, where they are ready.");
     out.line(
-        "explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { reset(); "
-        "}");
+        "constexpr explicit Monitor(const Params& params) noexcept : numbers(params.numbers()) { "
+        "reset(); }");
     print_doc(out, "Whether this monitor has parameters.");
     out.line("bool ready() const noexcept { return numbers != nullptr; }");
     print_doc(out, "What they were made from.");

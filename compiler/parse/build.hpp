@@ -100,6 +100,7 @@ private:
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;
     ast::Interval interval(Grammar::IntervalContext& context) const;
     ast::Bound bound(Grammar::BoundContext& context) const;
+    std::string unit(Grammar::UnitContext& context) const;
     static ast::Comparison comparison(Grammar::ComparisonOperatorContext& context);
 
     std::string text(const Token& token) const { return text_of(token, file_); }

@@ -162,6 +162,7 @@ std::vector<std::string> spellings(std::size_t type) {
         case EtlLexer::PREVIOUS: return {"Y", "previous"};
         case EtlLexer::ONCE: return {"O", "once"};
         case EtlLexer::HISTORICALLY: return {"H", "historically"};
+        case EtlLexer::STEPS: return {"steps", "step"};
         case EtlLexer::DISTANCE: {
             std::vector<std::string> words = distance_words();
             std::erase(words, keyword(EtlLexer::MAHALANOBIS));

@@ -73,7 +73,7 @@ ast::Constant Builder::constant(Grammar::ConstDeclarationContext& context,
         result.value.text.insert(0, "-");
         result.value.span.begin = span_of(*context.MINUS()->getSymbol()).begin;
     }
-    if (auto* const unit = context.timeUnit()) result.unit = text(*unit);
+    if (context.unit() != nullptr) result.unit = unit(*context.unit());
     return result;
 }
 
@@ -104,7 +104,13 @@ ast::Input Builder::input(Grammar::InputDeclarationContext& context, source::Spa
     result.type = type(*context.type());
     result.encoder = encoded_by(context.encodedBy());
     if (auto* const limits = context.range()) result.range = range(*limits);
-    if (auto* const hold = context.hold()) result.hold = number(*hold->amount());
+    if (auto* const hold = context.hold()) {
+        result.hold = {number(*hold->amount()), "", span_of(*hold->amount())};
+        if (hold->unit() != nullptr) {
+            result.hold->unit = unit(*hold->unit());
+            result.hold->span = source::join(result.hold->span, span_of(*hold->unit()));
+        }
+    }
     result.missing = missing(context.missing());
     result.span = span;
     return result;

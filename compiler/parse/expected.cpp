@@ -44,6 +44,7 @@ const std::vector<Group>& groups() {
         {{EtlParser::DISTANCE, EtlParser::MAHALANOBIS},
          fmt::format("a distance ({})", distances_in_words(" or ")),
          true},
+        {{EtlParser::SECONDS, EtlParser::STEPS}, "a unit (us, ms, s, min or steps)", true},
         {{EtlParser::MICROSECONDS, EtlParser::SECONDS}, "a unit of time (us, ms, s or min)", true},
         {{EtlParser::HERTZ}, "'Hz'", true},
         {{EtlParser::DURATIONS}, "'durations'", true},

@@ -203,8 +203,12 @@ ast::Interval Builder::interval(Grammar::IntervalContext& context) const {
 ast::Bound Builder::bound(Grammar::BoundContext& context) const {
     ast::Bound result{number(*context.start), {}, span_of(context)};
     if (auto* const finite = dynamic_cast<Grammar::FiniteBoundContext*>(&context))
-        if (auto* const unit = finite->timeUnit()) result.unit = text(*unit);
+        if (finite->unit() != nullptr) result.unit = unit(*finite->unit());
     return result;
+}
+
+std::string Builder::unit(Grammar::UnitContext& context) const {
+    return context.STEPS() != nullptr ? std::string(ast::kStepsUnit) : text(context);
 }
 
 ast::Comparison Builder::comparison(Grammar::ComparisonOperatorContext& context) {

@@ -97,7 +97,8 @@ private:
                 if (source::first_invalid_utf8(content) < content.size()) throw Unexplained{};
             }
             if (!is_mistake(*tokens_[i])) continue;
-            std::optional<Diagnostic> explained = explain_mistake(*tokens_[i], file_);
+            std::optional<Diagnostic> explained = explain_mistake(
+                *tokens_[i], i > slice.begin ? tokens_[i - 1].get() : nullptr, file_);
             if (!explained) throw Unexplained{};
             throw SyntaxError{std::move(*explained), {}, {}};
         }

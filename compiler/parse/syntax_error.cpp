@@ -6,6 +6,7 @@
 
 #include "EtlParser.h"
 #include "parse/expected.hpp"
+#include "parse/foreign/foreign.hpp"
 
 namespace etlc::parse {
 
@@ -23,7 +24,7 @@ bool is(const Token* token, std::initializer_list<std::size_t> types) {
 }
 
 const std::vector<std::string>& units() {
-    static const std::vector<std::string> all{"us", "ms", "s", "min"};
+    static const std::vector<std::string> all{"us", "ms", "s", "min", "steps"};
     return all;
 }
 
@@ -40,6 +41,7 @@ public:
     Diagnostic make() {
         if (stuck_.previous == nullptr) return no_declaration();
         if (reserved_as_name()) return reserved();
+        if (auto foreign = foreign_operator(stuck_, found_, file_)) return std::move(*foreign);
         if (unknown_call()) return no_such_callable();
         if (interval_misplaced()) return no_interval();
         if (unknown_unit()) return no_such_unit();
@@ -75,6 +77,15 @@ private:
         if (to.span != span_of(word)) to.meant.clear();
     }
 
+    /// Whether the word is one of another language.
+    bool add_native(Diagnostic& to, Foreign kind, const Token& word) const {
+        auto here = native(kind, text(word));
+        if (!here) return false;
+        to.note(std::move(here->note));
+        if (to.span == span_of(word)) to.meant = std::move(here->word);
+        return true;
+    }
+
     Diagnostic no_declaration() const {
         static const std::vector<std::string> kWords{
             "spec",  "rate",       "period",  "const",       "encoder",
@@ -84,7 +95,12 @@ private:
         Diagnostic result =
             at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
                fmt::format("expected a declaration, found {}", quoted(found_, file_)));
-        if (word) add_nearest(result, found_, kWords);
+        if (word && !add_native(result, Foreign::declaration, found_))
+            add_nearest(result, found_, kWords);
+        if (is(&found_, {EtlParser::NOT, EtlParser::NEXT, EtlParser::EVENTUALLY, EtlParser::ALWAYS,
+                         EtlParser::PREVIOUS, EtlParser::ONCE, EtlParser::HISTORICALLY,
+                         EtlParser::LPAREN, EtlParser::LBRACKET}))
+            result.note("a formula has a name: monitor NAME = FORMULA;");
         if (result.notes.empty())
             result.note(
                 "a declaration begins with spec, rate, period, const, encoder, input, projection, "
@@ -128,7 +144,8 @@ private:
                    ? fmt::format("expected a distance after {}, found {}",
                                  quoted(*stuck_.previous, file_), quoted(word, file_))
                    : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
-        if (word.getType() == EtlParser::IDENTIFIER) add_nearest(result, word, callable_words());
+        if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
+            add_nearest(result, word, callable_words());
         if (result.notes.empty())
             result.note(fmt::format("distances: {}; functions: abs, sqrt, min, max",
                                     distances_in_words(", ")));
@@ -154,19 +171,21 @@ private:
     /// A word after a bound is a unit where the interval goes on behind it, or where it is close to
     /// one; else the interval should have ended before it, as in "F[0, 5 q".
     bool unknown_unit() const {
-        if (!is(stuck_.previous, {EtlParser::NUMBER}) || !found_is_word()) return false;
+        const bool word = is_name(found_) || is_reserved_word(found_, file_);
+        if (!is(stuck_.previous, {EtlParser::NUMBER}) || !word) return false;
         if (stuck_.declaration == EtlParser::CONST) return true;
-        return stuck_.rule == EtlParser::RuleInterval &&
-               (is(stuck_.following, {EtlParser::COMMA, EtlParser::RBRACKET}) ||
-                diag::nearest_name(text(found_), units()));
+        if (stuck_.rule != EtlParser::RuleInterval && stuck_.rule != EtlParser::RuleDuration)
+            return false;
+        return is(stuck_.following, {EtlParser::COMMA, EtlParser::RBRACKET}) ||
+               native(Foreign::unit, text(found_)) || diag::nearest_name(text(found_), units());
     }
 
     Diagnostic no_such_unit() const {
         Diagnostic result =
             at(Code::unknown_keyword, span_of(found_),
-               fmt::format("expected a unit of time (us, ms, s or min) after {}, found {}",
+               fmt::format("expected a unit (us, ms, s, min or steps) after {}, found {}",
                            quoted(*stuck_.previous, file_), quoted(found_, file_)));
-        add_nearest(result, found_, units());
+        if (!add_native(result, Foreign::unit, found_)) add_nearest(result, found_, units());
         return result;
     }
 
@@ -178,7 +197,8 @@ private:
     }
 
     void add_notes(Diagnostic& to) const {
-        if (found_is_word() && stuck_.rule != EtlParser::RuleName)
+        add_note_on_foreign_form(stuck_, found_, file_, to);
+        if (to.notes.empty() && found_is_word() && stuck_.rule != EtlParser::RuleName)
             add_nearest(to, found_, expected_spellings(stuck_));
         if (to.notes.empty()) add_note_on_words(to);
         if (to.notes.empty()) add_note_on_rule(to);
@@ -214,7 +234,7 @@ private:
                                  stuck_.parent_rule == EtlParser::RuleDuration ||
                                  is(stuck_.previous, {EtlParser::HELD});
         if (in_duration) {
-            to.note("'held' takes one bound, for how long: held[20] f, held[2 s] f");
+            to.note("'held' takes one bound, for how long: held[20 steps] f, held[2 s] f");
             return;
         }
         switch (stuck_.rule) {
@@ -229,8 +249,8 @@ private:
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
                 to.note(
-                    "an interval is written [a, b] or [a, inf], in steps or with units: [0, 20], "
-                    "[0s, 2s]");
+                    "an interval is written [a, b] or [a, inf], in steps or with units of time: "
+                    "[0, 20 steps], [0s, 2s]");
                 break;
             case EtlParser::RuleThreshold:
                 to.note(

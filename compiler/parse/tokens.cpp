@@ -9,6 +9,7 @@
 
 #include "EtlLexer.h"
 #include "parse/byte_stream.hpp"
+#include "parse/foreign/foreign.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {
@@ -38,25 +39,51 @@ constexpr std::array kHints{
     Hint{"|", "'or' is '||'", "||"},
     Hint{"\\/", "'or' is '||'", "||"},
     Hint{"~", "'not' is '!'", "!"},
-    Hint{"^", "there are no powers; a square is a product"},
+    Hint{"^", "there are no powers; a square is a product; 'either f or g' is '!(f <-> g)'"},
     Hint{"**", "there are no powers; a square is a product"},
-    Hint{":=", "a declaration has '=' after its name"},
+    Hint{"%", "a comment begins with '//'; there are no remainders"},
+    Hint{":=", "a declaration has '=' after its name", "="},
     Hint{"{", "a spec has no blocks; formulas are grouped by '( )'"},
     Hint{"}", "a spec has no blocks; formulas are grouped by '( )'"},
     Hint{"'", "a file name stands between double quotes"},
     Hint{"#", "a comment begins with '//'", "//"},
     Hint{"≤", "'less or equal' is '<='", "<="},
     Hint{"≥", "'greater or equal' is '>='", ">="},
+    Hint{"≠", "'not equal' is '!='", "!="},
+    Hint{"⊤", "'true' is 'true'", "true"},
+    Hint{"⊥", "'false' is 'false'", "false"},
+    Hint{"⋀", "'and' is '&&'", "&&"},
+    Hint{"⋁", "'or' is '||'", "||"},
     Hint{"∧", "'and' is '&&'", "&&"},
     Hint{"∨", "'or' is '||'", "||"},
     Hint{"¬", "'not' is '!'", "!"},
     Hint{"→", "'implies' is '->'", "->"},
     Hint{"⇒", "'implies' is '->'", "->"},
+    Hint{"⟶", "'implies' is '->'", "->"},
+    Hint{"⟹", "'implies' is '->'", "->"},
     Hint{"↔", "'if and only if' is '<->'", "<->"},
+    Hint{"⇔", "'if and only if' is '<->'", "<->"},
+    Hint{"⟷", "'if and only if' is '<->'", "<->"},
+    Hint{"⟺", "'if and only if' is '<->'", "<->"},
     Hint{"□", "'always' is 'G'", "G"},
+    Hint{"◻", "'always' is 'G'", "G"},
+    Hint{"◊", "'eventually' is 'F'", "F"},
+    Hint{"⬦", "'eventually' is 'F'", "F"},
     Hint{"◇", "'eventually' is 'F'", "F"},
     Hint{"♢", "'eventually' is 'F'", "F"},
     Hint{"○", "'next' is 'X'", "X"},
+    Hint{"◯", "'next' is 'X'", "X"},
+    Hint{"𝒰", "'until' is 'U'", "U"},
+    Hint{"µ", "microseconds are 'us'", "u"},
+    Hint{"μ", "microseconds are 'us'", "u"},
+    Hint{"²", "there are no powers; a square is a product"},
+    Hint{"√", "the square root of x is sqrt(x)"},
+    Hint{"…", "a comma stands between the bounds: [0, 2 s]"},
+    Hint{"‘", "a file name stands between double quotes"},
+    Hint{"’", "a file name stands between double quotes"},
+    Hint{"„", "a file name stands between plain double quotes"},
+    Hint{"«", "a file name stands between plain double quotes"},
+    Hint{"»", "a file name stands between plain double quotes"},
     Hint{"−", "this is not the minus sign '-'", "-"},
     Hint{"–", "this is not the minus sign '-'", "-"},
     Hint{"×", "a product is written '*'", "*"},
@@ -64,22 +91,73 @@ constexpr std::array kHints{
     Hint{"∞", "infinity is written 'inf'", "inf"},
     Hint{"“", "a file name stands between plain double quotes"},
     Hint{"”", "a file name stands between plain double quotes"},
-    Hint{"\xC2\xA0", "this is a no-break space; put a plain space"},
+    Hint{"\xC2\xA0", "this is a no-break space; put a plain space", " "},
+    Hint{"\xE2\x80\x87", "this is a figure space; put a plain space", " "},
+    Hint{"\xE2\x80\x89", "this is a thin space; put a plain space", " "},
+    Hint{"\xE2\x80\xAF", "this is a narrow no-break space; put a plain space", " "},
+    Hint{"\xE2\x80\x8B", "this is a space of no width; take it away"},
+    Hint{"\xEF\xBB\xBF", "this is a byte order mark; take it away"},
+    Hint{"\xE3\x80\x80", "this is an ideographic space; put a plain space", " "},
 };
 
-void add_hint(diag::Diagnostic& to, std::string_view written) {
-    const auto* const found = std::find_if(
-        kHints.begin(), kHints.end(), [written](const Hint& h) { return h.written == written; });
-    if (found == kHints.end()) return;
-    to.note(std::string(found->hint));
-    to.meant = found->meant;
+/// Where an operand should begin, and behind an operator, some mean another thing.
+constexpr std::array kHintsBeforeOperand{
+    Hint{"<>", "'eventually' is 'F'", "F"},
+    Hint{"|", "the value of x without its sign is abs(x)"},
+};
+constexpr Hint kIntervalInBraces{
+    "{", "an interval is written in square brackets, F[0, 2 s]; formulas are grouped by '( )'"};
+
+const Hint* hint_for(std::string_view written, const Token* previous, const source::File& file) {
+    const auto in = [written](const auto& hints) -> const Hint* {
+        const auto* const found = std::find_if(
+            hints.begin(), hints.end(), [written](const Hint& h) { return h.written == written; });
+        return found == hints.end() ? nullptr : found;
+    };
+    const bool behind_name = previous != nullptr && text_of(*previous, file).ends_with('_');
+    const bool behind_operator =
+        previous != nullptr && ((previous->getType() >= EtlLexer::UNTIL &&
+                                 previous->getType() <= EtlLexer::HISTORICALLY) ||
+                                previous->getType() == EtlLexer::HELD);
+    if (written == "{" && (behind_name || behind_operator)) return &kIntervalInBraces;
+    const Hint* const before_operand = ends_operand(previous) ? nullptr : in(kHintsBeforeOperand);
+    return before_operand != nullptr ? before_operand : in(kHints);
+}
+
+void add_hint(diag::Diagnostic& to, std::string_view written, const Token* previous,
+              const source::File& file) {
+    if (const Hint* const hint = hint_for(written, previous, file)) {
+        to.note(std::string(hint->hint));
+        to.meant = hint->meant;
+    } else if (written.size() > 1 && static_cast<unsigned char>(written[0]) >= 0x80) {
+        to.note("outside comments and strings a spec is ASCII");
+    }
+}
+
+constexpr const char* kCommaInInterval = "a comma stands between the bounds: [0, 2 s]";
+
+/// `0.` and `..` of 0..2.
+bool begins_dots(Span span, const source::File& file) {
+    const std::string_view rest = file.text().substr(span.begin);
+    return rest.starts_with("..") || file.text().substr(span.end).starts_with('.');
+}
+
+/// A number with a digit missing: .5, 5., 0.5f.
+std::string mended(std::string number) {
+    const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
+    if (number.starts_with('.')) return "0" + number;
+    if (number.ends_with('.')) return number + "0";
+    if (number.find('x') != number.npos || number.find('X') != number.npos) return "";
+    if (number.ends_with('f') || number.ends_with('F')) number.pop_back();
+    return is_digit(number.back()) ? number : "";
 }
 
 diag::Diagnostic diagnostic(diag::Code code, Span span, std::string message) {
     return {code, std::move(message), span, {}, 0, 0, {}};
 }
 
-std::optional<diag::Diagnostic> explain_character(Span span, const source::File& file) {
+std::optional<diag::Diagnostic> explain_character(Span span, const Token* previous,
+                                                  const source::File& file) {
     const std::size_t length = source::utf8_length(file.text().substr(span.begin));
     if (length == 0) return std::nullopt;
     span.end = span.begin + static_cast<std::uint32_t>(length);
@@ -90,7 +168,10 @@ std::optional<diag::Diagnostic> explain_character(Span span, const source::File&
                                   : fmt::format("unexpected character '{}'", character);
     diag::Diagnostic result =
         diagnostic(diag::Code::unexpected_character, span, std::move(message));
-    add_hint(result, character);
+    if (character == "." && begins_dots(span, file))
+        result.note(kCommaInInterval);
+    else
+        add_hint(result, character, previous, file);
     return result;
 }
 
@@ -141,7 +222,8 @@ bool is_mistake(const Token& token) {
     }
 }
 
-std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source::File& file) {
+std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token* previous,
+                                                const source::File& file) {
     const Span span = span_of(token);
     switch (token.getType()) {
         case EtlLexer::UNTERMINATED_STRING:
@@ -154,18 +236,24 @@ std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source
             diag::Diagnostic result =
                 diagnostic(diag::Code::malformed_number, span,
                            fmt::format("{} is not a number", quoted(token, file)));
+            if (begins_dots(span, file)) {
+                result.note(kCommaInInterval);
+                return result;
+            }
             result.note(
                 "numbers are decimal, with digits on both sides of a point: 2, 0.5, 1.0e-3");
+            result.meant = mended(text_of(token, file));
+            if (!result.meant.empty()) diag::did_you_mean(result, result.meant);
             return result;
         }
         case EtlLexer::FOREIGN_OPERATOR: {
             diag::Diagnostic result =
                 diagnostic(diag::Code::unexpected_character, span,
                            fmt::format("there is no operator {}", quoted(token, file)));
-            add_hint(result, file.text(span));
+            add_hint(result, file.text(span), previous, file);
             return result;
         }
-        default: return explain_character(span, file);
+        default: return explain_character(span, previous, file);
     }
 }
 

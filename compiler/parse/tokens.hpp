@@ -30,9 +30,10 @@ std::string text_of(const Token& token, const source::File& file);
 std::string quoted(const Token& token, const source::File& file);
 
 bool is_mistake(const Token& token);
-/// What to say of such a token; nothing where its bytes are not UTF-8, which has been said of the
-/// file as a whole.
-std::optional<diag::Diagnostic> explain_mistake(const Token& token, const source::File& file);
+/// What to say of such a token, and of what it stands behind (null: of nothing); nothing where its
+/// bytes are not UTF-8, which has been said of the file as a whole.
+std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token* previous,
+                                                const source::File& file);
 
 /// Reserved words cannot be names; contextual words can.
 bool is_reserved_word(const Token& token, const source::File& file);

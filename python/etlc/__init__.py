@@ -14,10 +14,12 @@ of everything.
 from ._library import library as _native
 from .commands import Evaluation, Written, calibrate, embed, evaluate, fit, incident
 from .errors import (
+    AmbiguousError,
     BusyError,
     ClosedError,
     Diagnostic,
     Error,
+    EtlcWarning,
     InputError,
     NotKeptError,
     SpecError,
@@ -29,12 +31,14 @@ from .verdicts import Episode, EpisodeVerdicts, Explanation, Verdict, Verdicts
 __version__: str = _native.etlc_version().decode()
 
 __all__ = [
+    "AmbiguousError",
     "BusyError",
     "ClosedError",
     "Diagnostic",
     "Episode",
     "EpisodeVerdicts",
     "Error",
+    "EtlcWarning",
     "Evaluation",
     "Explanation",
     "Input",

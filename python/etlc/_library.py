@@ -7,7 +7,7 @@ import os
 from ctypes import POINTER, c_char_p, c_double, c_float, c_int32, c_int64, c_size_t, c_uint32
 from ctypes import c_uint64, c_void_p
 from pathlib import Path
-from typing import Any
+from typing import Any, Callable
 
 from .errors import BusyError, ClosedError, Error, InputError, NotKeptError, SpecError
 from .errors import UndecidedError, diagnostics_of
@@ -116,15 +116,27 @@ _ARGUMENTS: dict[str, list[Any]] = {
     "etlc_explain": [c_uint64, c_uint32, c_uint32, POINTER(c_char_p)],
 }
 
-NATIVE = Path(__file__).parent / "_native"
+_HERE = Path(__file__).resolve().parent
+NATIVE = _HERE / "_native"
+
+
+def own(name: str, in_wheel: str) -> Path | None:
+    """What was installed with this package: in it, of a wheel; else below the same prefix."""
+    places = [NATIVE / in_wheel]
+    try:
+        from . import _installed  # type: ignore[attr-defined]
+    except ImportError:
+        pass  # the source tree
+    else:
+        places.append(Path(os.path.normpath(_HERE / getattr(_installed, name))))
+    return next((place for place in places if place.exists()), None)
 
 
 def _load() -> ctypes.CDLL:
-    """The library: $ETLC_LIBRARY, the one in this package, or the system's."""
-    own = NATIVE / "lib" / "libetlc.so.1"
-    path = os.environ.get("ETLC_LIBRARY") or (str(own) if own.exists() else "libetlc.so.1")
+    """The library: $ETLC_LIBRARY, the one that was installed with this package, or the system's."""
+    path = os.environ.get("ETLC_LIBRARY") or own("LIBRARY", "lib/libetlc.so.1") or "libetlc.so.1"
     try:
-        library = ctypes.CDLL(path)
+        library = ctypes.CDLL(os.fspath(path))
     except OSError as error:
         raise ImportError(f"libetlc cannot be loaded: {error}") from None
     for name, arguments in _ARGUMENTS.items():
@@ -139,6 +151,12 @@ def _load() -> ctypes.CDLL:
 
 library = _load()
 
+
+def decoded(text: bytes | None) -> str:
+    """Of C. Names of files may be of any bytes."""
+    return (text or b"").decode(errors="replace")
+
+
 _EXCEPTIONS: dict[int, type[Error]] = {
     3: ClosedError, 4: BusyError, 6: InputError, 7: InputError, 8: InputError, 9: InputError,
     10: NotKeptError, 11: UndecidedError, 12: ClosedError,
@@ -147,12 +165,35 @@ _EXCEPTIONS: dict[int, type[Error]] = {
 
 def raise_for(status: int) -> None:
     """Raises what the status of the last call of this thread means."""
-    message = library.etlc_message().decode(errors="replace")
+    message = decoded(library.etlc_message())
     if status == 1:
         raise SpecError(message, diagnostics_of(library.etlc_message_json()))
     if status == 13:
         raise MemoryError(message)
     raise _EXCEPTIONS.get(status, Error)(message)
+
+
+def encoded(what: str, text: str) -> bytes:
+    """A text as C has it: none is cut off at a NUL."""
+    return _checked(what, text, str.encode)
+
+
+def encoded_path(what: str, path: str | bytes | os.PathLike[str]) -> bytes:
+    """The name of a file, of any bytes that a file system has."""
+    return _checked(what, path, os.fsencode)
+
+
+def _checked(what: str, text: Any, encode: Callable[[Any], bytes]) -> bytes:
+    try:
+        raw = encode(text)
+    except UnicodeEncodeError as error:
+        found = error.object[error.start]
+        raise InputError(f"{what} {text!r} has {found!r} in it, which is no character") from None
+    except TypeError as error:
+        raise InputError(f"{what} is {text!r}: {error}") from None
+    if b"\0" in raw:
+        raise InputError(f"{what} {text!r} has a NUL in it")
+    return raw
 
 
 def call(function: Any, *arguments: Any) -> None:

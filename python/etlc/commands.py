@@ -10,15 +10,16 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Iterable, Mapping, Union
 
-from ._library import NATIVE
-from .errors import Diagnostic, Error, SpecError, diagnostics_of
+from ._ambiguous import Ambiguous
+from ._library import encoded, encoded_path, own
+from .errors import Diagnostic, Error, EtlcWarning, SpecError, diagnostics_of, warn, warn_of
 
 Paths = Union[str, "os.PathLike[str]", Iterable[Union[str, "os.PathLike[str]"]]]
 
 
 @dataclass(frozen=True)
 class Written:
-    """What a command made.
+    """What a command made. True, as it is there.
 
     Attributes:
         path: of the file that it wrote.
@@ -31,9 +32,11 @@ class Written:
     diagnostics: tuple[Diagnostic, ...] = ()
 
 
-@dataclass(frozen=True)
-class Evaluation:
+@dataclass(frozen=True, eq=False)
+class Evaluation(Ambiguous):
     """How good monitors are.
+
+    Its truth value raises AmbiguousError.
 
     Attributes:
         data: for programs, as `etlc evaluate --json` has it (docs/evaluation.md).
@@ -45,18 +48,19 @@ class Evaluation:
     report: str
     diagnostics: tuple[Diagnostic, ...] = ()
 
+    _ask = "its .data or .report"
+
 
 def command_path() -> str:
-    """The command: $ETLC_COMMAND, the one in this package, or the one in the path.
+    """The command: $ETLC_COMMAND, the one installed with this package, or the one in the path.
 
     Raises:
         Error: there is none.
     """
-    own = NATIVE / "bin" / "etlc"
-    path = os.environ.get("ETLC_COMMAND") or (str(own) if own.exists() else shutil.which("etlc"))
+    path = os.environ.get("ETLC_COMMAND") or own("COMMAND", "bin/etlc") or shutil.which("etlc")
     if path is None:
         raise Error("there is no etlc: install it, or name it in ETLC_COMMAND")
-    return path
+    return os.fspath(path)
 
 
 def calibrate(
@@ -97,7 +101,7 @@ def calibrate(
         {"-o": path, "--thresholds": thresholds, "--fitted": fitted, "--episodes": groups,
          "--allow-overlap": allow_overlap, "--folds": folds, "--jobs": jobs},
     )  # fmt: skip
-    return Written(path, ran.stdout, tuple(diagnostics_of(ran.stderr)))
+    return Written(path, ran.report, ran.diagnostics)
 
 
 def fit(
@@ -127,7 +131,7 @@ def fit(
         "fit", [spec], data, settings, names,
         {"-o": path, "--episodes": groups, "--allow-overlap": allow_overlap, "--jobs": jobs},
     )  # fmt: skip
-    return Written(path, ran.stdout, tuple(diagnostics_of(ran.stderr)))
+    return Written(path, ran.report, ran.diagnostics)
 
 
 def evaluate(
@@ -167,8 +171,8 @@ def evaluate(
              "--allow-overlap": allow_overlap, "--folds": folds, "--jobs": jobs},
             ["--by-episode"] if by_episode else [],
         )  # fmt: skip
-        found = json.loads(path.read_text())
-    return Evaluation(found, ran.stdout, tuple(diagnostics_of(ran.stderr)))
+        found = json.loads(path.read_text(encoding="utf-8"))
+    return Evaluation(found, ran.report, ran.diagnostics)
 
 
 def embed(
@@ -177,7 +181,7 @@ def embed(
     *,
     output: str | os.PathLike[str] | None = None,
     settings: Mapping[str, object] | None = None,
-    runtime: str | None = None,
+    onnxruntime: str | os.PathLike[str] | None = None,
     encoder_command: str | None = None,
     encoder_timeout: int | None = None,
 ) -> Written:
@@ -189,7 +193,8 @@ def embed(
         data: recordings to make episodes of: videos, folders of images, patterns.
         output: the folder where the episodes go; given with `data`.
         settings: other values for constants.
-        runtime: what runs the spec's networks, "opencv" or "onnxruntime"; without it OpenCV does.
+        onnxruntime: what runs the spec's networks: the library, or a folder that has it; without it
+            the one that the environment, pip, npm or the system has.
         encoder_command: a command that encodes (docs/encoders.md), in place of the spec's network.
         encoder_timeout: seconds after which an encoder that does nothing is stopped.
 
@@ -198,15 +203,15 @@ def embed(
 
     Raises:
         SpecError: the command failed, and says why: E1016 where etlc was installed without it,
-            or without the runtime.
+            or where there is no ONNX Runtime.
     """
     ran = _run(
         "embed", [spec], data, settings, None,
-        {"-o": output, "--runtime": runtime, "--encoder-cmd": encoder_command,
+        {"-o": output, "--onnxruntime": onnxruntime, "--encoder-cmd": encoder_command,
          "--encoder-timeout": encoder_timeout},
     )  # fmt: skip
     path = _output(spec, output, ".embedded.npz")
-    return Written(path, ran.stdout, tuple(diagnostics_of(ran.stderr)))
+    return Written(path, ran.report, ran.diagnostics)
 
 
 def incident(
@@ -241,24 +246,24 @@ def incident(
             "incident", [path], None, settings, None,
             {"--spec": spec, "--format": form, "--thresholds": thresholds, "--fitted": fitted},
         )  # fmt: skip
-    return ran.stdout
+    return ran.report
 
 
-def _place(found: Diagnostic) -> str:
-    if not found.file:
-        return ""
-    return f"{found.file}:{found.line}:{found.column}: " if found.line else f"{found.file}: "
-
-
-def _paths(paths: Paths) -> list[str]:
-    one = isinstance(paths, (str, os.PathLike))
-    return [os.fspath(path) for path in ([paths] if one else paths)]  # type: ignore[list-item]
+def _paths(paths: Paths) -> list[str | bytes | os.PathLike[str]]:
+    one = isinstance(paths, (str, bytes, os.PathLike))
+    return [paths] if one else list(paths)  # type: ignore[list-item, arg-type]
 
 
 def _output(
     spec: str | os.PathLike[str], output: str | os.PathLike[str] | None, ending: str
 ) -> Path:
     return Path(spec).with_suffix(ending) if output is None else Path(output)
+
+
+@dataclass(frozen=True)
+class _Ran:
+    report: str
+    diagnostics: tuple[Diagnostic, ...]
 
 
 def _run(
@@ -269,21 +274,42 @@ def _run(
     names: Mapping[str, str] | None,
     options: Mapping[str, object],
     flags: Iterable[str] = (),
-) -> subprocess.CompletedProcess[str]:
-    words = [command_path(), name, *(os.fspath(spec) for spec in specs), "--diagnostics", "json"]
-    words += [f"--set={key}={value}" for key, value in (settings or {}).items()]
-    words += [f"--map={key}={value}" for key, value in (names or {}).items()]
+) -> _Ran:
+    command = command_path()
+    words = [os.fsencode(command), name.encode(), *(encoded_path("spec", spec) for spec in specs)]
+    words += [b"--diagnostics", b"json"]
+    words += [encoded("settings", f"--set={key}={to}") for key, to in (settings or {}).items()]
+    words += [encoded("names", f"--map={key}={to}") for key, to in (names or {}).items()]
     for option, value in options.items():
         if value is not None:
-            words += [option, os.fspath(value) if isinstance(value, os.PathLike) else str(value)]
-    words += [*flags, *(["--data", *_paths(data)] if data is not None else [])]
+            path = value if isinstance(value, (str, bytes, os.PathLike)) else str(value)
+            words += [option.encode(), encoded_path(option.lstrip("-"), path)]
+    words += [flag.encode() for flag in flags]
+    if data is not None:
+        words += [b"--data", *(encoded_path("data", path) for path in _paths(data))]
     try:
-        ran = subprocess.run(words, capture_output=True, text=True, check=False)
+        ran = subprocess.run(words, capture_output=True, check=False)
     except OSError as error:
-        raise Error(f"{words[0]} cannot be run: {error}") from None
-    if ran.returncode == 0:
-        return ran
-    found = diagnostics_of(ran.stderr)
-    errors = [one for one in found if one.severity == "error"] or found
-    said = "\n".join(f"{_place(one)}{one.message} [{one.code}]" for one in errors)
-    raise SpecError(said or ran.stderr.strip() or f"etlc ended with {ran.returncode}", found)
+        raise Error(f"{command} cannot be run: {error}") from None
+    found, others = _said(ran.stderr)
+    if ran.returncode != 0:
+        errors = [one for one in found if one.severity == "error"] or found
+        said = "\n".join(map(str, errors))
+        raise SpecError(said or others or f"etlc ended with {ran.returncode}", found)
+    warn_of(found)
+    if others:
+        warn(EtlcWarning(others))
+    return _Ran(ran.stdout.decode(errors="replace"), tuple(found))
+
+
+def _said(stderr: bytes) -> tuple[list[Diagnostic], str]:
+    """The diagnostics, and what libraries that etlc loads said beside them."""
+    text = stderr.decode(errors="replace")
+    begin = text.find('{\n  "diagnostics"')
+    if begin < 0:
+        return [], text.strip()
+    try:
+        _, end = json.JSONDecoder().raw_decode(text, begin)
+    except ValueError:
+        return [], text.strip()
+    return diagnostics_of(text[begin:end]), (text[:begin] + text[end:]).strip()

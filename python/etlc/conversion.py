@@ -6,6 +6,7 @@ something else, is refused: integers for float32 embeddings, floats for int8, nu
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -15,25 +16,34 @@ from .errors import InputError
 
 def as_bool(name: str, value: Any) -> int:
     """0 or 1."""
-    array = np.asarray(value)
-    if array.shape == () and (array.dtype == np.bool_ or array.dtype.kind in "iu"):
-        if array == 0 or array == 1:
-            return int(array)
-    raise InputError(f"input {name!r} is {value!r}, expected a bool")
+    array = _array(name, value)
+    if array.shape == () and array.dtype.kind in "biu" and (array == 0 or array == 1):
+        return int(array)
+    raise InputError(f"input {name!r} is {_shown(array)}, expected a bool")
 
 
 def as_number(name: str, value: Any) -> float:
-    """A scalar."""
-    array = np.asarray(value)
+    """A scalar, rounded to float32."""
+    if isinstance(value, int) and abs(value) >> 63:  # numpy's integers end
+        return _rounded(value)
+    array = _array(name, value)
     if array.shape == () and array.dtype.kind in "fiu":
-        return float(array)
+        with np.errstate(over="ignore"):
+            return float(array.astype("f4"))
     raise InputError(f"input {name!r} is {_shown(array)}, expected a number")
+
+
+def _rounded(value: int) -> float:
+    """The nearest float32. What is cut off counts as one more digit, which no rounding loses."""
+    cut = abs(value).bit_length() - 62
+    kept = abs(value) >> cut
+    kept |= kept << cut != abs(value)
+    size = math.ldexp(np.float32(np.int64(kept)), cut) if cut < 128 else math.inf
+    return size if value > 0 else -size
 
 
 def as_elements(name: str, value: Any, dtype: np.dtype, shape: tuple[int, ...]) -> np.ndarray:
     """An embedding, as elements of the type."""
-    if isinstance(value, np.ma.MaskedArray):
-        raise InputError(f"input {name!r} is a masked array; one that is missing is None")
     array = _array(name, value)
     if array.shape != shape:
         raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {shape}")
@@ -47,23 +57,31 @@ def as_rows(
 
     The elements of a row are contiguous and aligned; it is the caller's array where that allows it.
     """
-    array = _array(name, value)
+    masked = isinstance(value, np.ma.MaskedArray)
+    array = _array(name, value.data if masked else value)
     if array.ndim != 1 + len(shape) or array.shape[1:] != shape:
         expected = "(N,)" if shape == () else f"(N, {shape[0]})"
         raise InputError(f"input {name!r} is {_shown(array)}, expected the shape {expected}")
     present = None
-    if isinstance(value, np.ma.MaskedArray):
-        mask = np.ma.getmaskarray(value).reshape(len(array), -1)
-        present = np.ascontiguousarray(~mask.any(axis=1)).view("u1")
+    if masked:
+        mask = np.ma.getmaskarray(value)
+        present = np.ascontiguousarray(~mask.any(axis=tuple(range(1, mask.ndim)))).view("u1")
     is_list = isinstance(value, (list, tuple))
     rows = array if array.dtype == dtype else _converted(name, array, dtype, is_list, present)
     is_packed = rows.ndim == 1 or rows.shape[1] == 1 or rows.strides[1] == dtype.itemsize
     if not rows.flags.aligned or rows.strides[0] % dtype.itemsize != 0 or not is_packed:
-        rows = np.ascontiguousarray(rows)
+        rows = rows.copy(order="C")
     return present, rows
 
 
 def _array(name: str, value: Any) -> np.ndarray:
+    """What numpy makes of it. It would forget what is masked."""
+    if isinstance(value, np.ma.MaskedArray):
+        raise InputError(f"input {name!r} is a masked array; one that is missing is None")
+    if isinstance(value, (list, tuple)) and any(
+        isinstance(one, np.ma.MaskedArray) for one in value
+    ):
+        raise InputError(f"input {name!r} has masked arrays in a list; numpy.ma.stack joins them")
     try:
         return np.asarray(value)
     except (ValueError, TypeError, RuntimeError) as error:
@@ -74,6 +92,8 @@ def _converted(
     name: str, array: np.ndarray, dtype: np.dtype, is_list: bool, present: np.ndarray | None = None
 ) -> np.ndarray:
     kind = array.dtype.kind
+    if array.size == 0 and is_list:  # of no type
+        return array.astype(dtype)
     if dtype == np.uint8:
         if kind == "b":
             return array.view("u1")
@@ -92,6 +112,6 @@ def _converted(
 
 
 def _shown(array: np.ndarray) -> str:
-    if array.shape == ():
+    if array.shape == () and array.dtype.kind != "V":
         return f"{array.item()!r}"
     return f"an array of {array.dtype.name} and the shape {array.shape}"

@@ -12,8 +12,9 @@ from typing import Any, Callable, Mapping
 import numpy as np
 
 from . import _library, conversion
-from ._library import BOOL, F16, F32, I8, call, library
-from .errors import Error, InputError
+from ._ambiguous import Ambiguous
+from ._library import BOOL, F16, F32, I8, call, decoded, encoded, encoded_path, library
+from .errors import Error, EtlcWarning, InputError, diagnostics_of, warn, warn_of
 from .verdicts import VERDICT_DTYPE, Episode, Explanation, Verdicts
 
 _DTYPES = {F32: np.dtype("f4"), BOOL: np.dtype("u1"), F16: np.dtype("f2"), I8: np.dtype("i1")}
@@ -41,9 +42,12 @@ class Input:
     is_used: bool
 
 
-@dataclass(frozen=True)
-class Measurement:
+@dataclass(frozen=True, eq=False)
+class Measurement(Ambiguous):
     """What a predicate came to at the last step.
+
+    Its truth value raises AmbiguousError: whether the predicate holds is in its distance and its
+    threshold.
 
     Attributes:
         distance: or the expression; NaN where it is unknown, or no monitor needs it.
@@ -54,6 +58,8 @@ class Measurement:
     distance: float
     threshold: float
     nearest: int | None
+
+    _ask = "its .distance, .threshold or .nearest"
 
 
 class Monitor:
@@ -77,6 +83,9 @@ class Monitor:
     Raises:
         SpecError: the spec does not compile; its `diagnostics` say where.
         InputError: an argument means nothing.
+
+    Warns:
+        EtlcWarning: what the spec says is surely not meant; its `diagnostic` says where.
 
     Example:
         >>> monitor = etlc.Monitor("dock.etl")
@@ -103,14 +112,16 @@ class Monitor:
         max_work: int = 0,
     ) -> None:
         self._session = c_uint64(0)
-        words = [f"{name}={value}".encode() for name, value in (settings or {}).items()]
+        words = [
+            encoded("a setting", f"{name}={value}") for name, value in (settings or {}).items()
+        ]
         options = _library.Options(
             struct_size=ctypes.sizeof(_library.Options),
             api_version=_library.API_VERSION,
-            path=_path(spec),
-            text=_text(text),
-            thresholds=_path(thresholds),
-            fitted=_path(fitted),
+            path=None if spec is None else encoded_path("spec", spec),
+            text=None if text is None else encoded("text", text),
+            thresholds=None if thresholds is None else encoded_path("thresholds", thresholds),
+            fitted=None if fitted is None else encoded_path("fitted", fitted),
             settings=(c_char_p * len(words))(*words),
             setting_count=len(words),
             values=_choice("values", values, ("robustness", "boolean")),
@@ -123,8 +134,10 @@ class Monitor:
             recorder=_recorder(recorder),
         )
         call(library.etlc_open, byref(options), byref(self._session))
+        found = diagnostics_of(library.etlc_message_json())
         self._describe()
         self._make_room()
+        warn_of(found)
 
     def _describe(self) -> None:
         spec = _described(_library.Description, library.etlc_describe, self._session)
@@ -133,7 +146,7 @@ class Monitor:
         #: Of a step, in seconds; 0: the spec says no rate.
         self.step_seconds: float = spec.step_seconds
         #: What etlc warned of; empty: nothing.
-        self.warnings: str = spec.warnings.decode()
+        self.warnings: str = decoded(spec.warnings)
         #: The most steps that a sliding monitor is late by.
         self.horizon: int = spec.horizon
         #: XXH64 of the spec, its data and its thresholds, as in the generated class.
@@ -164,7 +177,7 @@ class Monitor:
         self.monitors: tuple[str, ...] = tuple(one.name.decode() for one in monitors)
         #: By name of the monitor, as text.
         self.formulas: dict[str, str] = {
-            one.name.decode(): one.formula.decode() for one in monitors
+            one.name.decode(): decoded(one.formula) for one in monitors
         }
         predicates = [
             _described(
@@ -174,10 +187,10 @@ class Monitor:
         ]
         #: By name, as text: "min l2(z, goal) <= 0.25".
         self.predicates: dict[str, str] = {
-            one.name.decode(): one.text.decode() for one in predicates
+            decoded(one.name): decoded(one.text) for one in predicates
         }
         self._nearest = [bool(one.has_nearest) for one in predicates]
-        self._predicate_at = {one.name.decode(): p for p, one in enumerate(predicates)}
+        self._predicate_at = {decoded(one.name): p for p, one in enumerate(predicates)}
         self._monitor_at = {name: m for m, name in enumerate(self.monitors)}
         self._offsets = {name: 16 * m for m, name in enumerate(self.monitors)}
         self._let_at = {}
@@ -260,7 +273,7 @@ class Monitor:
         self._missing.add(name)
         sample.data = None
 
-    def step(self, **samples: Any) -> Verdicts:
+    def step(self, /, **samples: Any) -> Verdicts:
         """One step.
 
         Args:
@@ -309,7 +322,12 @@ class Monitor:
 
         Raises:
             InputError: as `step`; no step was made.
+
+        Warns:
+            EtlcWarning: an input that a monitor looks at is missing at every step, and not None.
         """
+        if arrays is not None and not isinstance(arrays, Mapping):
+            raise InputError(f"arrays is of {type(arrays).__name__}, expected a dict by input")
         given = {**(arrays or {}), **more}
         for name in given:
             if name not in self.inputs:
@@ -344,7 +362,28 @@ class Monitor:
                 table.ctypes.data, table.size,
             )  # fmt: skip
         self._said += steps
+        self._warn_of_missing(steps, given)
         return Episode(self.monitors, table)
+
+    def _warn_of_missing(self, steps: int, given: Mapping[str, Any]) -> None:
+        """Of inputs that monitors look at, and that have no sample throughout."""
+        said = []
+        for name, one in self.inputs.items():
+            if steps == 0 or not one.is_used or given.get(name, ...) is None:
+                continue
+            counts = self.sample_counts(name)
+            if counts["missing"] + counts["out_of_range"] < steps:
+                continue
+            why = "missing or not finite"
+            if name not in given:
+                why = "missing: it is not given"
+            elif counts["out_of_range"] > 0:
+                bounds = f"[{one.low:g}, {one.high:g}]"
+                why = f"{'missing or ' if counts['missing'] else ''}out of its range, {bounds}"
+            said.append(f"every sample of {name!r} is {why}")
+        if said:
+            end = "; predicates that measure it are unknown throughout"
+            warn(EtlcWarning("; ".join(said) + end))
 
     def finish(self) -> Verdicts:
         """The episode has ended: sliding monitors report one of the positions that are left.
@@ -375,7 +414,10 @@ class Monitor:
             truth: whether it should have held there.
         """
         at = self._at(self._predicate_at, "predicate", predicate)
-        call(library.etlc_observe, self._session, at, distance, conversion.as_bool("truth", truth))
+        call(
+            library.etlc_observe, self._session, at, conversion.as_number("distance", distance),
+            conversion.as_bool("truth", truth),
+        )  # fmt: skip
 
     @property
     def steps(self) -> int:
@@ -463,7 +505,7 @@ class Monitor:
         for form in (0, 1):
             text = c_char_p()
             call(library.etlc_explain, self._session, at, form, byref(text))
-            said.append((text.value or b"").decode())
+            said.append(decoded(text.value))
         return Explanation(said[0], json.loads(said[1]))
 
     def close(self) -> None:
@@ -498,16 +540,6 @@ class Monitor:
         return f"the spec has no {kind} {name!r}{hint}"
 
 
-def _path(path: str | os.PathLike[str] | None) -> bytes | None:
-    return None if path is None else os.fsencode(path)
-
-
-def _text(text: str | None) -> bytes | None:
-    if text is not None and "\0" in text:
-        raise InputError("a text has a NUL in it")
-    return None if text is None else text.encode()
-
-
 def _choice(name: str, value: str, choices: tuple[str, ...]) -> int:
     if value not in choices:
         raise InputError(f"{name} is {value!r}, expected {' or '.join(choices)}")
@@ -515,15 +547,15 @@ def _choice(name: str, value: str, choices: tuple[str, ...]) -> int:
 
 
 def _recorder(given: str | tuple[int | str, int | str, int] | None) -> bytes | None:
-    if given is None or isinstance(given, str):
-        return _text(given)
-    return ",".join(map(str, given)).encode()
+    if given is None:
+        return None
+    return encoded("recorder", given if isinstance(given, str) else ",".join(map(str, given)))
 
 
 def _size(name: str, value: int) -> int:
-    if not isinstance(value, int) or not 0 <= value < 1 << 63:
+    if not isinstance(value, (int, np.integer)) or not 0 <= value < 1 << 63:
         raise InputError(f"{name} is {value!r}, expected a whole number from 0 on")
-    return value
+    return int(value)
 
 
 def _described(kind: Any, function: Any, *arguments: Any) -> Any:

@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING, Any, Iterator
 
 import numpy as np
 
+from ._ambiguous import Ambiguous
 from ._library import ALARM, DECIDED, FINAL, FULFILLED, SATISFIED, VIOLATED
-from .errors import InputError, NotKeptError
+from .errors import AmbiguousError, InputError, NotKeptError
 
 if TYPE_CHECKING:
     from .monitor import Monitor
@@ -20,8 +21,8 @@ VERDICT_DTYPE = np.dtype(
 )
 
 
-@dataclass(frozen=True)
-class Explanation:
+@dataclass(frozen=True, eq=False)
+class Explanation(Ambiguous):
     """Why a verdict is what it is, as `etlc explain` says it.
 
     Attributes:
@@ -32,12 +33,16 @@ class Explanation:
     text: str
     data: dict[str, Any]
 
+    _ask = "its .text or .data"
+
     def __str__(self) -> str:
         return self.text
 
 
-class Verdict:
+class Verdict(Ambiguous):
     """What one monitor said after one step. It does not change with later steps.
+
+    Its truth value raises AmbiguousError: whether it is an alarm is `alarm`.
 
     Attributes:
         name: of the monitor.
@@ -47,6 +52,7 @@ class Verdict:
     """
 
     __slots__ = ("_monitor", "_said", "_status", "lower", "name", "robustness", "upper")
+    _ask = "its .alarm, .fulfilled, .satisfied, .violated, .unknown or .status"
 
     def __init__(self, monitor: Monitor, said: int, name: str, raw: bytes, at: int) -> None:
         self._monitor = monitor
@@ -118,6 +124,9 @@ class Verdict:
             )
         return self._monitor.explain(self.name)
 
+    def _content(self) -> tuple[Any, ...]:
+        return self.name, _VERDICT.pack(*self.bounds, self.robustness, self._status)
+
     def __repr__(self) -> str:
         text = f"<{self.name}: {self.status}{' for good' if self.final else ''}"
         if self.decided:
@@ -125,10 +134,14 @@ class Verdict:
         return text + ">"
 
 
-class Verdicts:
-    """What all monitors said after one step: `verdicts.NAME` or `verdicts["NAME"]`."""
+class Verdicts(Ambiguous):
+    """What all monitors said after one step: `verdicts.NAME` or `verdicts["NAME"]`.
+
+    Its truth value raises AmbiguousError: which monitors raise an alarm is `alarms`.
+    """
 
     __slots__ = ("_monitor", "_raw", "_said")
+    _ask = "its .alarms, or the .alarm, .fulfilled, .violated, ... of one of its verdicts"
 
     def __init__(self, monitor: Monitor, raw: bytes, said: int) -> None:
         self._monitor = monitor
@@ -142,7 +155,9 @@ class Verdicts:
         return Verdict(self._monitor, self._said, name, self._raw, at)
 
     def __getattr__(self, name: str) -> Verdict:
-        if name.startswith("_") or name not in self._monitor._offsets:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self._monitor._offsets:
             raise AttributeError(
                 self._monitor._no_such("monitor", name, self._monitor.monitors)
             )
@@ -154,8 +169,11 @@ class Verdicts:
     def __len__(self) -> int:
         return len(self._monitor.monitors)
 
-    def __bool__(self) -> bool:
-        return True
+    def __contains__(self, one: object) -> bool:
+        return _contains(self, one, "its .alarms")
+
+    def _content(self) -> tuple[Any, ...]:
+        return self._monitor.monitors, self._raw
 
     @property
     def alarms(self) -> list[Verdict]:
@@ -166,13 +184,18 @@ class Verdicts:
         return f"Verdicts({', '.join(map(repr, self))})"
 
 
-class EpisodeVerdicts:
+class EpisodeVerdicts(Ambiguous):
     """What one monitor said at every step of an episode, as arrays of N steps.
+
+    Its truth value raises AmbiguousError: whether there is an alarm is `alarm.any()`.
 
     Attributes:
         name: of the monitor.
         robustness, lower, upper: float32; NaN where nothing is decided.
     """
+
+    __hash__ = None  # type: ignore[assignment]
+    _ask = "its .first_alarm, .alarm.any(), .satisfied[-1], .violated[-1], ..."
 
     def __init__(self, name: str, table: np.ndarray) -> None:
         self.name = name
@@ -220,20 +243,29 @@ class EpisodeVerdicts:
     def __len__(self) -> int:
         return len(self._status)
 
+    def _content(self) -> tuple[Any, ...]:
+        numbers = (self.robustness, self.lower, self.upper, self._status)
+        return self.name, *(column.tobytes() for column in numbers)
+
     def __repr__(self) -> str:
         first = self.first_alarm
         said = "no alarm" if first is None else f"first alarm at step {first}"
         return f"<{self.name}: {len(self)} steps, {said}>"
 
 
-class Episode:
+class Episode(Ambiguous):
     """What all monitors said of an episode: `episode.NAME` or `episode["NAME"]`.
+
+    Its truth value raises AmbiguousError: `len` of it is how many steps it has.
 
     Attributes:
         table: a structured array (N steps, M monitors) with the fields robustness, lower, upper
             and status.
         monitors: their names, in the order of its columns.
     """
+
+    __hash__ = None  # type: ignore[assignment]
+    _ask = "the .first_alarm, .alarm.any(), .violated[-1], ... of one of its monitors"
 
     def __init__(self, monitors: tuple[str, ...], table: np.ndarray) -> None:
         self.monitors = monitors
@@ -245,7 +277,9 @@ class Episode:
         return EpisodeVerdicts(name, self.table[:, self.monitors.index(name)])
 
     def __getattr__(self, name: str) -> EpisodeVerdicts:
-        if name.startswith("_") or name not in self.monitors:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        if name not in self.monitors:
             raise AttributeError(f"there is no monitor {name!r}")
         return self[name]
 
@@ -255,5 +289,20 @@ class Episode:
     def __len__(self) -> int:
         return len(self.table)
 
+    def __contains__(self, one: object) -> bool:
+        return _contains(self, one, "the .first_alarm or .alarm.any() of one of its monitors")
+
+    def _content(self) -> tuple[Any, ...]:
+        return self.monitors, self.table.tobytes()
+
     def __repr__(self) -> str:
         return f"Episode({', '.join(map(repr, self))})"
+
+
+def _contains(verdicts: Verdicts | Episode, one: object, ask: str) -> bool:
+    """`in` asks for a verdict: whether "violated", or a name, is in it means several things."""
+    if isinstance(one, (Verdict, EpisodeVerdicts)):
+        return any(one == other for other in verdicts)
+    raise AmbiguousError(
+        f"{one!r} in {verdicts._shown()} is ambiguous: ask for {ask}, or for a name in .monitors"
+    )

@@ -4,25 +4,32 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <fstream>
+#include <nlohmann/json.hpp>
 
+#include "diag/render.hpp"
 #include "driver/learn/calibrate.hpp"
+#include "driver/learn/fit.hpp"
+#include "parse/parse.hpp"
 
 namespace etlc::tests {
 
 void Files::add(const std::string& text) {
-    files_.push_back(std::make_unique<TemporaryPath>(fmt::format("{}.csv", files_.size()), text));
-    paths_.push_back(files_.back()->path());
+    paths_.push_back(fmt::format("{}{}.csv", folder_->path(), paths_.size()));
+    std::ofstream(paths_.back()) << text;
 }
 
 Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes,
-                      const std::string& before) {
+                      const std::string& before, const std::string& fitted) {
     const TemporaryPath thresholds("before.json", before);
+    const TemporaryPath fits("fits.npz", fitted);
     const TemporaryPath output("after.json");
     driver::CalibrateRequest request;
     request.data = episodes;
     request.calibration.jobs = 1;
     request.output = output.path();
     if (!before.empty()) request.thresholds = thresholds.path();
+    if (!fitted.empty()) request.fitted = fits.path();
     diag::Sink sink;
     testing::internal::CaptureStdout();
     const bool done = driver::calibrate(source::File("t.etl", spec), request, sink);
@@ -31,6 +38,45 @@ Calibrated calibrated(const std::string& spec, const std::vector<std::string>& e
     result.codes = error_codes(sink);
     if (done) result.thresholds = file_bytes(output.path());
     EXPECT_EQ(done, result.codes.empty());
+    return result;
+}
+
+std::string numbers(const std::string& thresholds) {
+    if (thresholds.empty()) return "";
+    const auto file = nlohmann::json::parse(thresholds);
+    std::string text;
+    for (const char* kind : {"predicates", "monitors"})
+        for (const auto& [name, entry] : file[kind].items())
+            text += name + entry["epsilon"].dump() + entry["scores"].dump() + entry["n"].dump() +
+                    entry["k"].dump() + "\n";
+    return text;
+}
+
+std::string fitted(const std::string& spec, const std::vector<std::string>& episodes) {
+    const TemporaryPath output("fits.npz");
+    driver::FitRequest request;
+    request.data = episodes;
+    request.fit.jobs = 1;
+    request.output = output.path();
+    diag::Sink sink;
+    testing::internal::CaptureStdout();
+    const bool done = driver::fit(source::File("t.etl", spec), request, sink);
+    testing::internal::GetCapturedStdout();
+    return done ? file_bytes(output.path()) : "";
+}
+
+Checked checked(const std::string& spec, const std::string& thresholds, const std::string& fitted) {
+    const TemporaryPath path("t.json", thresholds);
+    const TemporaryPath fits("fits.npz", fitted);
+    check::Options options;
+    options.thresholds_path = path.path();
+    options.fitted_path = fits.path();
+    diag::Sink sink;
+    const source::File file("t.etl", spec);
+    Checked result;
+    result.model = check::check(parse::parse(file, sink), file, options, sink);
+    result.codes = error_codes(sink);
+    result.text = diag::render_text(file, sink);
     return result;
 }
 

@@ -4,9 +4,11 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "check/check.hpp"
 #include "diag/diag.hpp"
 #include "npy_bytes.hpp"
 
@@ -23,7 +25,7 @@ public:
     const std::vector<std::string>& paths() const { return paths_; }
 
 private:
-    std::vector<std::unique_ptr<TemporaryPath>> files_;
+    std::unique_ptr<TemporaryPath> folder_ = std::make_unique<TemporaryPath>("episode");
     std::vector<std::string> paths_;
 };
 
@@ -33,9 +35,25 @@ struct Calibrated {
     std::string thresholds;  ///< the file; empty where there were errors
 };
 
-/// `before`: the thresholds file of the predicates, empty where they are calibrated now.
+/// `before`: the thresholds file of the predicates, empty where they are calibrated now. `fitted`:
+/// the file of what is fitted.
 Calibrated calibrated(const std::string& spec, const std::vector<std::string>& episodes,
-                      const std::string& before = "");
+                      const std::string& before = "", const std::string& fitted = "");
+
+/// The numbers in a thresholds file, without what it says of the spec.
+std::string numbers(const std::string& thresholds);
+
+/// The file that `etlc fit` makes; empty where there were errors.
+std::string fitted(const std::string& spec, const std::vector<std::string>& episodes);
+
+/// A spec with these files beside it, as every command reads it.
+struct Checked {
+    std::optional<check::Model> model;  ///< nothing: it is refused
+    std::vector<std::string> codes;
+    std::string text;  ///< of the errors and their notes
+};
+Checked checked(const std::string& spec, const std::string& thresholds,
+                const std::string& fitted = "");
 
 /// Codes of the errors, each once.
 std::vector<std::string> error_codes(const diag::Sink& sink);

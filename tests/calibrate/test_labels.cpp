@@ -54,7 +54,7 @@ TEST_F(Labels, MessagesWhereTheyAreLacking) {
     EXPECT_EQ(labels(wanted, csv_episode("x,v\n1,1\n"), 0), "no column 'px'; did you mean 'x'?");
     EXPECT_EQ(labels(wanted, csv_episode("v,px\n1,1\n"), 0), "no column 'x'; did you mean 'px'?");
     EXPECT_EQ(labels(wanted, csv_episode("x,v,px,truth.p\n1,1,1,2\n"), 0),
-              "column 'truth.p' holds '2', expected 0 or 1");
+              "column 'truth.p' holds '2', expected 0 or 1, True or False");
     wanted.predicates = {1};
     EXPECT_EQ(
         labels(wanted, csv_episode("x,v\n1,1\n"), 1),

@@ -119,6 +119,22 @@ def some_rows_are_read(made):
                 assert (cell is None) == (value is None) and same(value, cell), (key, name, i)
 
 
+def pages_of_nulls_are_read():
+    """Some writers pack nothing where there is nothing, and give it no dictionary."""
+    for codec, dictionary, version, bare in itertools.product(
+            (parquet.NONE, parquet.SNAPPY, parquet.ZSTD), (False, True), (1, 2), (False, True)):
+        made = {name: (kind, [None if row // 20 % 2 else value for row, value in enumerate(values)])
+                for name, (kind, values) in columns().items()}
+        made |= {f"no {name}": (kind, [None] * ROWS) for name, (kind, _) in made.items()}
+        parquet.write("t.parquet", made, codec=codec, dictionary=dictionary, version=version,
+                      page_rows=20, bare=bare)
+        rows = read("t.parquet", list(made))[1]
+        for place, (name, (_, values)) in enumerate(made.items()):
+            for wanted, row in zip(values, rows, strict=True):
+                assert (row[place] is None) == (wanted is None) and same(wanted, row[place]), \
+                    (codec, dictionary, version, bare, name, wanted, row[place])
+
+
 def rows_may_span_pages():
     for page in (1, 5, 64):
         made = columns()
@@ -254,6 +270,7 @@ with tempfile.TemporaryDirectory() as box:
     os.chdir(box)
     random.seed(3)
     forms_are_read()
+    pages_of_nulls_are_read()
     rows_may_span_pages()
     structs_are_read()
     structs_that_are_not_read_are_named()

@@ -148,13 +148,16 @@ def levels(rows, leaf):
 
 
 class Writer:
+    """`bare`: where a column has no value there is no dictionary, and where a page has none there
+    are no bytes of values, not even packed ones."""
+
     def __init__(self, codec=SNAPPY, dictionary=False, version=1, page_rows=1000, group_rows=10**6,
                  checksums=False, encoding=None, claims=None, codec_said=None, bad_place=False,
-                 cut_anywhere=False):
+                 cut_anywhere=False, bare=False):
         self.codec, self.dictionary, self.version = codec, dictionary, version
         self.page_rows, self.group_rows, self.checksums = page_rows, group_rows, checksums
         self.encoding, self.claims, self.codec_said = encoding, claims, codec_said
-        self.bad_place, self.cut_anywhere = bad_place, cut_anywhere
+        self.bad_place, self.cut_anywhere, self.bare = bad_place, cut_anywhere, bare
         self.out = b"PAR1"
 
     def page(self, head, raw, body):
@@ -181,6 +184,7 @@ class Writer:
         kind, begin, dictionary, dictionary_at = leaf.kind, len(self.out), None, None
         if self.dictionary and kind != BOOL:
             dictionary = sorted(set(levels(rows, leaf)[2]))
+        if dictionary or dictionary is not None and not self.bare:
             raw = plain(kind, dictionary)
             dictionary_at = begin
             self.page({1: I32(2), 7: {1: I32(len(dictionary)), 2: I32(PLAIN)}}, raw,
@@ -195,7 +199,7 @@ class Writer:
                 places = [dictionary.index(value) for value in there]
                 if self.bad_place:
                     places = [2**width - 1 for _ in places]
-                values = bytes([width]) + hybrid(places, width)
+                values = b"" if self.bare and not there else bytes([width]) + hybrid(places, width)
             elif kind == BOOL and self.version == 2:
                 encoding, runs = RLE, hybrid([int(value) for value in there], 1)
                 values = struct.pack("<I", len(runs)) + runs
@@ -214,7 +218,8 @@ class Writer:
                 self.page({1: I32(3), 8: {1: claimed, 2: I32(definitions.count(0)),
                                           3: I32(self.page_rows), 4: said, 5: I32(len(parts[1])),
                                           6: I32(len(parts[0])), 7: self.codec != NONE}},
-                          raw + values, raw + packed(self.codec, values))
+                          raw + values,
+                          raw + (packed(self.codec, values) if values or not self.bare else b""))
         codec = self.codec if self.codec_said is None else self.codec_said
         about = {1: I32(kind), 2: [I32(PLAIN)], 3: leaf.path, 4: I32(codec), 5: count,
                  6: len(self.out) - begin, 7: len(self.out) - begin, 9: data_at}

@@ -95,6 +95,12 @@ LACKING_21 = (
      "promises 50 episodes, meta/episodes.jsonl lists 3 episodes", (0, 1, 2)),
     (lambda: write("set/meta/tasks.jsonl", '{"task_index": 0, "task": "pick the cube"}\n'),
      "meta/tasks.jsonl does not list 'place it in the bin'", (0, 1, 2)),
+    (lambda: change("set/meta/info.json", lambda info: info.update(total_episodes=float("nan"))),
+     "meta/info.json has 'null' for total_episodes, expected a number", (0, 1, 2)),
+    (lambda: rewrite_lines(lambda n, line: line.update(stats={"NaN": [float("nan"), -float("inf")],
+                                                              "\\": "\"NaN"})), None, (0, 1, 2)),
+    (lambda: (os.remove(ROWS), os.mkfifo(ROWS)), "episode_000001.parquet: is a pipe", (0, 2)),
+    (lambda: (os.remove(VIDEO), os.mkfifo(VIDEO)), "episode_000001.mp4: is a pipe", (0, 2)),
     (lambda: write("set/meta/tasks.jsonl", '{"task_index": 0, "task": "pick the cube"}\n'),
      "promises 2 tasks, meta/tasks.jsonl lists 1 task", (0, 1, 2)),
     (lambda: os.remove("set/meta/tasks.jsonl"), "meta/tasks.jsonl: no such file", (0, 1, 2)),
@@ -104,6 +110,13 @@ LACKING_21 = (
      "'data/chunk-000/episode_000007.parquet', of which the metadata say nothing", (0, 1, 2)),
     (lambda: rewrite_rows(1, lambda own: own["timestamp"][1].__setitem__(5, 0.45)),
      "row 5 is at 0.45 s, expected it at 0.5 s", (0, 2)),
+    (lambda: rewrite_rows(1, lambda own: own.update(
+        timestamp=(parquet.FLOAT, [0.3 + t for t in own["timestamp"][1]]))),
+     "episode_000001.parquet: row 0 is at 0.3 s, expected it at 0 s", (0, 2)),
+    (lambda: rewrite_rows(1, lambda own: own["timestamp"][1].__setitem__(5, None)),
+     "episode_000001.parquet: row 5 is at null s, expected it at 0.5 s", (0, 2)),
+    (lambda: rewrite_rows(1, lambda own: own["frame_index"][1].__setitem__(5, None)),
+     "episode_000001.parquet: row 5 has the frame_index null", (0, 2)),
     (lambda: rewrite_rows(1, lambda own: own["frame_index"][1].__setitem__(5, 6)),
      "row 5 has the frame_index 6", (0, 2)),
     (lambda: rewrite_rows(1, lambda own: own["episode_index"][1].__setitem__(5, 0)),
@@ -120,6 +133,38 @@ LACKING_30 = (
         lambda table: table[f"videos/{TOP}/from_timestamp"][1].__setitem__(1, 0.95)),
      "it begins at 0.95 s", (0, 2)))
 
+
+def move(episode, by):
+    """Its window in the video, by so many seconds."""
+    def change(table):
+        for name in ("from_timestamp", "to_timestamp"):
+            table[f"videos/{TOP}/{name}"][1][episode] += by
+    return lambda: rewrite_table(change)
+
+
+def place(begins, ends):
+    def change(table):
+        table[f"videos/{TOP}/from_timestamp"][1][:] = begins
+        table[f"videos/{TOP}/to_timestamp"][1][:] = ends
+    return lambda: rewrite_table(change)
+
+
+# Of a video whose windows contradict each other nothing is known: a change, the words of the error
+# where any episode is asked for.
+NEIGHBOURS = (
+    (move(1, -0.3), "episode 0 (9 rows, from 0 to 0.9 s) and episode 1 (8 rows, from 0.6 to 1.4 s) "
+                    "overlap"),
+    (move(2, 0.2), "episode 1 (8 rows, from 0.9 to 1.7 s) and episode 2 (7 rows, from 1.9 to 2.6 s)"
+                   " leave a hole between them"),
+    (place([0.1, 1.0, 1.8], [1.0, 1.8, 2.5]),
+     "episode 0 (9 rows, from 0.1 to 1 s) is its first, expected one that begins at 0 s"),
+    (place([0.8, 0.0, 1.7], [1.7, 0.8, 2.4]),
+     "are not in the order of their numbers"),
+    (lambda: change("set/meta/info.json", lambda info: info.update(
+        video_path="videos/chunk-{chunk_index:03d}/file-{file_index:03d}.mp4")) or shutil.copytree(
+            f"set/videos/{TOP}/chunk-000", "set/videos/chunk-000"),
+     f"it is the video of two cameras, '{TOP}' and '{WRIST}'"))
+
 # What is an error: a change, the code, the words.
 INFO = "set/meta/info.json"
 ERRORS_21 = (
@@ -131,6 +176,14 @@ ERRORS_21 = (
      "leads out of its folder"),
     (lambda: change(INFO, lambda info: info.update(video_path="{videos_key}")), "E0850",
      "of which '{videos_key}' is not known"),
+    (lambda: change(INFO, lambda info: info.update(
+        video_path="videos/chunk-000/{video_key}/episode_000001.mp4")), "E0854",
+     "episode 0 (9 rows, from 0 to 0.9 s) and episode 1 (8 rows, from 0 to 0.8 s) overlap"),
+    (lambda: change(INFO, lambda info: info.update(fps=float("nan"))), "E0850", "(fps)"),
+    (lambda: (os.remove(INFO), os.mkfifo(INFO)), "E0850", "info.json: is a pipe, expected a file"),
+    (lambda: (os.remove("set/meta/episodes.jsonl"), os.mkfifo("set/meta/episodes.jsonl")), "E0850",
+     "episodes.jsonl: is a pipe, expected a file"),
+    (lambda: (os.remove(INFO), os.symlink("/dev/zero", INFO)), "E0850", "is a device, expected a"),
     (lambda: change(INFO, lambda info: info["features"][TOP].update(dtype="image")), "E0851",
      f"has no column '{TOP}.bytes', expected '{TOP}' as a struct of bytes and path"),
     (lambda: os.remove("set/meta/episodes.jsonl"), "E0850", "episodes.jsonl: no such file"),
@@ -164,6 +217,12 @@ def check(base, lacking, errors):
             said = embed("seen.etl", "--data", "set", "--camera", TOP, status=0)
         assert words is None and said == "" or words in said and "[W0850]" in said, (words, said)
         assert sorted(os.listdir("out")) == [f"set-{n:06}.npz" for n in left], (words, said)
+    for make, words in NEIGHBOURS if base == "v30" else ():
+        begin(make)
+        for data in ("set", "set:0", "set:2"):
+            said = embed("seen.etl", "--data", data, "--camera", TOP, status=1)
+            assert "[W0850]" in said and "[E0854]" in said and words in said, (words, said)
+            assert "file-000.mp4" in said and not os.path.exists("out"), said
     for make, code, words in errors:
         begin(make)
         said = embed("seen.etl", "--data", "set", "--camera", TOP, status=1)
@@ -195,6 +254,25 @@ def check_calls(base):
             (said("--data", base, "--map", "q=timestamp", spec="plain.etl", rate=4), "E0853",
              "has 10 rows a second, expected a multiple of the 4 steps")):
         assert f"[{code}]" in found and words in found, (code, words, found)
+    write("plain.etl", PLAIN.format(10, "f32", "q"))
+    os.mkdir("empty")
+    for path, words in (
+            (f"{base}:-1", f"':-1' chooses no episodes of the data set: '{base}:3' is episode 3, "
+                           f"'{base}:0:50' are the episodes from 0 up to, but not with, 50"),
+            (f"{base}:0-2", f"':0-2' chooses no episodes of the data set: '{base}:3'"),
+            (f"{base}:0:2:1", f"':0:2:1' chooses no episodes of the data set: '{base}:3'"),
+            (f"{base}:", f"':' chooses no episodes of the data set: '{base}:3'"),
+            (f"{base}:2:2", "'2:2' ends before it begins"),
+            ("v211", "did you mean the data set 'v21'?"), ("v211:0:2", "the data set 'v21'?"),
+            ("empty:0", "'empty' has no meta/info.json and is no data set"),
+            *((path, "`hf download --repo-type dataset lerobot/pusht --local-dir FOLDER`")
+              for path in ("lerobot/pusht", "lerobot/pusht:0:2", "hf://datasets/lerobot/pusht",
+                           "https://huggingface.co/datasets/lerobot/pusht"))):
+        for call in (["embed", "seen.etl", "--data", path, "-o", "out", "--encoder-cmd", "true"],
+                     ["run", "plain.etl", "--trace", path, "--map", "q=timestamp"],
+                     ["evaluate", "plain.etl", "--data", path, "--map", "q=timestamp"]):
+            done = subprocess.run([ETLC, *call], capture_output=True, text=True)
+            assert done.returncode == 1 and words in done.stderr, (call, words, done.stderr)
     for path, rate, code, words in ((f"{base}:1", 5, "E0853", "makes episodes of one row in 2"),
                                     (f"{base}:3", 10, "E0854", "is not an episode of the data set"),
                                     (base, 10, "E0854", f"name one, '{base}:000000'")):

@@ -83,9 +83,8 @@ class Convolutional:
 
 class Transformer:
     """Patches of an image, two blocks of attention and a hidden layer, and the mean of the tokens:
-    a vision transformer (Dosovitskiy et al. 2021) of operators that OpenCV 4.6 has. What exporters
-    write as LayerNormalization and Gelu are nodes of arithmetic here, and weights have the shape of
-    the tokens, which OpenCV 4.6 needs."""
+    a vision transformer (Dosovitskiy et al. 2021) as older exporters write it. LayerNormalization
+    and Gelu are nodes of arithmetic."""
 
     rows = columns = 16
     patch, patches, dimension, heads, blocks = 4, 16, 24, 2, 2

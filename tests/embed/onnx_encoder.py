@@ -1,5 +1,6 @@
 """onnx_encoder.py ROWS COLUMNS MEAN DEVIATION: an encoder command that runs ETLC_MODEL, node by
-node, in float32 numpy. The last two are numbers with commas between them."""
+node, in float32 numpy. The last two are numbers with commas between them. Tests import what runs
+it, too, for other kinds of numbers."""
 import math
 import os
 import struct
@@ -9,17 +10,19 @@ import numpy as np
 import onnx
 from onnx import numpy_helper
 
-ROWS, COLUMNS = int(sys.argv[1]), int(sys.argv[2])
-MEAN, DEVIATION = (np.array(word.split(","), np.float32) for word in sys.argv[3:5])
-GRAPH = onnx.load(os.environ["ETLC_MODEL"]).graph
-WEIGHTS = {weight.name: numpy_helper.to_array(weight) for weight in GRAPH.initializer}
 
-
-def conv(x, kernel, bias=0.0, strides=(1, 1), pads=(0, 0, 0, 0), **_):
+def conv(x, kernel, bias=0.0, strides=(1, 1), pads=(0, 0, 0, 0), group=1, **_):
     x = np.pad(x, ((0, 0), (0, 0), (pads[0], pads[2]), (pads[1], pads[3])))
     windows = np.lib.stride_tricks.sliding_window_view(x, kernel.shape[2:], axis=(2, 3))
     windows = windows[:, :, :: strides[0], :: strides[1]]
-    return np.einsum("nchwkl,ockl->nohw", windows, kernel) + np.reshape(bias, (1, -1, 1, 1))
+    parts = [np.einsum("nchwkl,ockl->nohw", *both) for both in
+             zip(np.split(windows, group, 1), np.split(kernel, group, 0))]
+    return np.concatenate(parts, 1) + np.reshape(bias, (1, -1, 1, 1))
+
+
+def batch_norm(x, *weights, epsilon):
+    scale, shift, mean, variance = (w.reshape(1, -1, 1, 1) for w in weights)
+    return (x - mean) / np.sqrt(variance + epsilon) * scale + shift
 
 
 def softmax(x, axis=-1):
@@ -37,22 +40,31 @@ OPERATORS = {
     "Where": np.where, "Expand": lambda x, shape: x * np.ones(shape, np.float32),
     "Concat": lambda *xs, axis: np.concatenate(xs, axis), "LayerNormalization": layer_norm,
     "Sqrt": np.sqrt, "Relu": lambda x: np.maximum(x, 0), "Softmax": softmax, "Conv": conv,
-    "Erf": np.vectorize(math.erf, otypes=[np.float32]),
+    "Erf": lambda x: np.vectorize(math.erf)(x).astype(x.dtype),
     "Transpose": lambda x, perm: x.transpose(perm),
     "Reshape": lambda x, shape: x.reshape(shape),
     "Flatten": lambda x: x.reshape(len(x), -1),
     "Gemm": lambda x, w, transB: x @ w.T,
+    "BatchNormalization": batch_norm, "Clip": np.clip, "Pow": np.power,
+    "GlobalAveragePool": lambda x: x.mean((2, 3), keepdims=True),
+    "Sigmoid": lambda x: 1 / (1 + np.exp(-x)),
+    "Gather": lambda x, at, axis: np.take(x, at, axis),
+    "Slice": lambda x, begin, end, axis: x[(slice(None),) * axis[0] + (slice(begin[0], end[0]),)],
     "ReduceMean": lambda x, axes, keepdims: x.mean(tuple(axes), keepdims=bool(keepdims)),
 }
 
 
-def run(image):
-    values = {**WEIGHTS, GRAPH.input[0].name: image}
-    for node in GRAPH.node:
+def run(graph, image):
+    """In the kind of numbers of the image."""
+    values = {graph.input[0].name: image}
+    for weight in graph.initializer:
+        array = numpy_helper.to_array(weight)
+        values[weight.name] = array.astype(image.dtype) if array.dtype.kind == "f" else array
+    for node in graph.node:
         attributes = {a.name: onnx.helper.get_attribute_value(a) for a in node.attribute}
         values[node.output[0]] = OPERATORS[node.op_type](*(values[name] for name in node.input),
                                                          **attributes)
-    return values[GRAPH.output[0].name].astype("<f4")
+    return values[graph.output[0].name]
 
 
 def weights_of(there, here):
@@ -65,14 +77,24 @@ def weights_of(there, here):
     return result
 
 
-frames, embeddings, begun = sys.stdin.buffer, sys.stdout.buffer, False
-while head := frames.read(8):
-    height, width = struct.unpack("<II", head)
-    pixels = np.frombuffer(frames.read(height * width * 3), np.uint8).reshape(height, width, 3)
-    image = np.einsum("rh,hwc,vw->rvc", weights_of(height, ROWS), pixels.astype(np.float32),
-                      weights_of(width, COLUMNS))
-    z = run(((image / 255 - MEAN) / DEVIATION).transpose(2, 0, 1)[None].astype(np.float32))
-    if not begun:
-        embeddings.write(struct.pack("<I", z.size))
-    begun = True
-    embeddings.write(z.tobytes())
+def main():
+    rows, columns = int(sys.argv[1]), int(sys.argv[2])
+    mean, deviation = (np.array(word.split(","), np.float32) for word in sys.argv[3:5])
+    graph = onnx.load(os.environ["ETLC_MODEL"]).graph
+    frames, embeddings, begun = sys.stdin.buffer, sys.stdout.buffer, False
+    while head := frames.read(8):
+        height, width = struct.unpack("<II", head)
+        pixels = np.frombuffer(frames.read(height * width * 3), np.uint8)
+        image = np.einsum("rh,hwc,vw->rvc", weights_of(height, rows),
+                          pixels.reshape(height, width, 3).astype(np.float32),
+                          weights_of(width, columns))
+        image = ((image / 255 - mean) / deviation).transpose(2, 0, 1)[None]
+        z = run(graph, image.astype(np.float32)).astype("<f4")
+        if not begun:
+            embeddings.write(struct.pack("<I", z.size))
+        begun = True
+        embeddings.write(z.tobytes())
+
+
+if __name__ == "__main__":
+    main()

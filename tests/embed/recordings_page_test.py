@@ -1,8 +1,7 @@
 #!/usr/bin/env python3
 """recordings_page_test.py ETLC RECORDINGS.MD: the spec of that page and its three commands, as they
 stand there, go from images and videos to verdicts that say when the robot is where the labels say
-it is. A table beside a recording that does not fit it, and a node that OpenCV does
-not run, are refused."""
+it is. A table beside a recording that does not fit it is refused."""
 import os
 import pathlib
 import re
@@ -18,17 +17,18 @@ from PIL import Image
 ETLC = os.path.abspath(sys.argv[1])
 PAGE = pathlib.Path(sys.argv[2]).read_text()
 SPEC = re.search(r"```\n(spec look;.*?)```", PAGE, re.DOTALL).group(1)
+KEEPING = re.search(r"```python\n(import zipfile.*?)```", PAGE, re.DOTALL).group(1)
 COMMANDS = re.findall(r"^    (etlc .*)$", PAGE, re.MULTILINE)
 SIDE, DIMENSION, PATCH, FRAMES, DEMOS = 224, 384, 32, 20, 12
 random = np.random.default_rng(11)
 
 
-def make_network(**of_convolution):
+def make_network():
     """A convolution, its mean over the image, and a linear map."""
     weights = {"w": random.normal(0, 0.02, (8, 3, PATCH, PATCH)),
                "m": random.normal(0, 0.5, (DIMENSION, 8))}
     graph = helper.make_graph(
-        [helper.make_node("Conv", ["x", "w"], ["a"], "first", **of_convolution),
+        [helper.make_node("Conv", ["x", "w"], ["a"], strides=[PATCH, PATCH]),
          helper.make_node("GlobalAveragePool", ["a"], ["b"]),
          helper.make_node("Flatten", ["b"], ["c"]),
          helper.make_node("Gemm", ["c", "m"], ["z"], transB=1)], "net",
@@ -63,8 +63,7 @@ def video(path, at_bay):
 
 
 def main():
-    patches = {"kernel_shape": [PATCH, PATCH], "strides": [PATCH, PATCH]}
-    make_network(**patches)
+    make_network()
     pathlib.Path("look.etl").write_text(SPEC)
     os.mkdir("bay")
     os.mkdir("demos")
@@ -88,6 +87,16 @@ def main():
     assert labels[:-1].tolist() == [step >= 4 for step in range(FRAMES - 1)], labels
     assert np.isnan(labels[-1]), "an empty cell is missing"
 
+    # What numpy writes does not say which encoder made it, unless it is done as the page has it.
+    unmarked = "changed.npz: warning: does not say which encoder made its embeddings"
+    with np.load("episodes/ep1.npz") as episode:
+        np.savez("changed.npz", **episode)
+    assert unmarked in call(ETLC, "run", "look.etl", "--trace", "changed.npz", "--summary")
+    call(ETLC, "run", "look.etl", "--trace", "changed.npz", "--summary", "-Werror", status=1)
+    exec(KEEPING)  # pylint: disable=exec-used
+    kept = call(ETLC, "run", "look.etl", "--trace", "changed.npz", "--summary", "-Werror")
+    assert kept == call(ETLC, "run", "look.etl", "--trace", "episodes/ep1.npz", "--summary"), kept
+
     for table, fault in (("truth.at_bay\n1\n0\n", "'truth.at_bay' has 2 steps, 'z' has 20"),
                          ("z[0]\n" + "1\n" * FRAMES, "has a column 'z', which 'net' makes"),
                          ("truth.at_bay\nyes\n", "E08"), ("q[0],q[7]\n1,2\n", "E08")):
@@ -96,9 +105,6 @@ def main():
         refused = call("bash", "-c", COMMANDS[0], status=1)
         assert "demos/ep4.csv" in refused and fault in refused, refused
         assert pathlib.Path("episodes/ep4.npz").read_bytes() == before, "an episode was replaced"
-    make_network(strides=[PATCH, PATCH])  # without its size, which ONNX allows and OpenCV needs
-    refused = call("bash", "-c", COMMANDS[0], status=1)
-    assert "Conv" in refused and "--encoder-cmd" in refused and "E1012" in refused, refused
 
 
 with tempfile.TemporaryDirectory() as folder:

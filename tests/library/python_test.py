@@ -12,6 +12,7 @@ import sys
 import tempfile
 import threading
 import unittest
+import warnings
 import zlib
 from pathlib import Path
 
@@ -38,6 +39,16 @@ monitor returns = G (is_low -> F[0 s, 0.2 s] docked);
 restartable monitor visits = F docked;
 sliding monitor calm = G[0, 2] small;
 """
+
+#: To a run: there are none of these.
+NO_OTHERS = dict.fromkeys(("charge", "stop", "half", "byte"))
+
+
+def quiet(call):
+    """What it gives, without its warnings."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", etlc.EtlcWarning)
+        return call()
 
 
 def samples(**others):
@@ -193,7 +204,8 @@ class Stepping(unittest.TestCase):
     def test_what_float32_cannot_hold_is_missing(self):
         dock = etlc.Monitor(text=DOCK)
         dock.step(**samples(z=np.array([1e300, 0, 0]), charge=1e300))
-        dock.run(z=np.full((1, 3), -1e300), charge=np.array([np.float64(1e300)]))
+        with self.assertWarnsRegex(etlc.EtlcWarning, "every sample of 'z' is missing"):
+            dock.run(z=np.full((1, 3), -1e300), charge=np.array([np.float64(1e300)]))
         self.assertEqual(dock.sample_counts("z")["missing"], 1)
         self.assertEqual(dock.sample_counts("charge")["missing"], 1)
 
@@ -377,6 +389,72 @@ class Explaining(unittest.TestCase):
         with self.assertRaisesRegex(etlc.UndecidedError, "'calm' has no verdict yet"):
             etlc.Monitor(text=DOCK, history=1).step(**samples()).calm.why
 
+    def test_what_would_turn_it_does(self):
+        """Applied to the samples, where == and != decide; where nothing is named, nothing does."""
+        random = np.random.default_rng(5)
+        grid = [np.float32(n / 2) for n in range(7)]
+        beside = [np.nextafter(n, np.float32(end)) for n in grid for end in (-np.inf, np.inf)]
+        numbers = [float(n) for n in (*grid, *beside, -9.0, 9.0)]
+
+        def formula(depth):
+            if depth == 0:
+                name = random.choice(["x", "y", "b"])
+                if name == "b":
+                    return "b"
+                compared = random.choice(["==", "!=", "==", "!=", "<=", ">"])
+                return f"{name} {compared} {random.choice(grid)}"
+            left, right = (formula(random.integers(0, depth)) for _ in range(2))
+            return random.choice([
+                f"({left} && {right})", f"({left} || {right})", f"({left} -> {right})",
+                f"({left} <-> {right})", f"!({left})", f"(F[0, 1] {left})", f"(G[0, 2] {left})",
+                f"({left} U[0, 1] {right})", f"(O[0, 1] {left})",
+            ])  # fmt: skip
+
+        turned = 0
+        for _ in range(150):
+            text = ("spec t; input x : f32 in [0, 3]; input y : f32; input b : bool;"
+                    f"sliding monitor m = {formula(3)};")  # fmt: skip
+            try:
+                monitor = quiet(lambda: etlc.Monitor(text=text, history=20))
+            except etlc.SpecError:
+                continue  # it looks back over what looks ahead without bounds
+            steps = monitor.horizon + 1
+            rows = {
+                "x": random.choice(grid, steps), "y": random.choice(grid, steps),
+                "b": random.random(steps) < 0.5,
+            }  # fmt: skip
+            status = self.said_of(monitor, rows)
+            change = monitor.explain("m").data["change"]
+            if change is None or change["name"] == "b":
+                for name, step in [(name, step) for name in "xy" for step in range(steps)]:
+                    for other in numbers:
+                        if name == "y" or 0 <= other <= 3:
+                            found = self.said_of(monitor, self.altered(rows, name, step, other))
+                            self.assertEqual(found, status, (text, rows, name, step, other))
+            if change is None:
+                for step in range(steps):
+                    other = not rows["b"][step]
+                    found = self.said_of(monitor, self.altered(rows, "b", step, other))
+                    self.assertEqual(found, status, (text, rows, step))
+                continue
+            turned += 1
+            changed = self.altered(rows, change["name"][0], change["step"], change["instead"])
+            found = self.said_of(monitor, changed)
+            self.assertEqual(found, change["status"], (text, rows, change))
+            self.assertNotEqual(found, status, (text, rows, change))
+        self.assertGreater(turned, 60)
+
+    def altered(self, rows, name, step, value):
+        column = rows[name].copy()
+        column[step] = value
+        return {**rows, name: column}
+
+    def said_of(self, monitor, rows):
+        monitor.reset()
+        for row in zip(*rows.values()):
+            last = monitor.step(**dict(zip(rows, row)))
+        return last.m.status
+
 
 class Recording(unittest.TestCase):
     def alarm(self, dock):
@@ -479,7 +557,7 @@ class Refusing(unittest.TestCase):
             (lambda: dock.observe("at_bay", 1.0, True), "is not adaptive"),
             (lambda: dock.let("docked"), "no let 'docked'"),
             (lambda: dock.sample_counts("zz"), "did you mean 'z'"),
-            (lambda: dock.run(z=np.zeros((1, 3), "f4"))["nobody"], "no monitor 'nobody'"),
+            (lambda: dock.run(NO_OTHERS, z=np.zeros((1, 3)))["nobody"], "no monitor 'nobody'"),
             (lambda: etlc.Monitor(text=DOCK, values="truth"), "values is 'truth'"),
             (lambda: etlc.Monitor(text=DOCK, targets_as="f64"), "targets_as is 'f64'"),
             (lambda: etlc.Monitor(text=DOCK, history=-1), "history is -1"),
@@ -519,7 +597,7 @@ class Refusing(unittest.TestCase):
         def runs():
             while not seen.is_set():
                 try:
-                    dock.run(z=z)
+                    dock.run(NO_OTHERS, z=z)
                 except etlc.BusyError:
                     pass
                 except BaseException as error:
@@ -540,11 +618,11 @@ class Refusing(unittest.TestCase):
 
     def test_many_monitors_in_threads(self):
         z = np.random.default_rng(2).normal(size=(2000, 3)).astype("f4")
-        expected = etlc.Monitor(text=DOCK).run(z=z).table
+        expected = etlc.Monitor(text=DOCK).run(NO_OTHERS, z=z).table
         found = [None] * 4
 
         def runs(n):
-            found[n] = etlc.Monitor(text=DOCK).run(z=z).table
+            found[n] = etlc.Monitor(text=DOCK).run(NO_OTHERS, z=z).table
 
         threads = [threading.Thread(target=runs, args=(n,)) for n in range(4)]
         for thread in threads:

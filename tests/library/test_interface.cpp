@@ -31,6 +31,17 @@ TEST(Interface, DescribesTheSpec) {
     EXPECT_NE(std::string(spec.warnings).find("unread"), std::string::npos) << spec.warnings;
 }
 
+TEST(Interface, HasTheWarningsOfWhatItOpens) {
+    const etlc_options options = options_of(kDock);
+    etlc_session session = 0;
+    ASSERT_EQ(etlc_open(&options, &session), ETLC_OK);
+    EXPECT_STREQ(etlc_message(), "");
+    EXPECT_NE(std::string(etlc_message_json()).find("\"code\": \"W0201\""), std::string::npos)
+        << etlc_message_json();
+    EXPECT_EQ(etlc_close(session), ETLC_OK);
+    EXPECT_STREQ(etlc_message_json(), "{\"diagnostics\": []}\n");
+}
+
 TEST(Interface, DescribesInputs) {
     const Opened dock(options_of(kDock));
     const struct {

@@ -19,7 +19,7 @@ DOCK = """spec dock;
 rate 20 Hz;
 const limit = 0.25;
 const patience = 0.5 s;
-input z    : f32[2] hold 3;  // the camera
+input z    : f32[2] hold 3 steps;  // the camera
 input grip : f32 in [0, 1];
 input stop : bool;
 target bay = [[1, 0], [0, 1]];
@@ -329,7 +329,7 @@ def actions():
             ("20 hz", "20 Hz", "Change 'hz' to 'Hz'")]:
         if title is not None:
             assert mended(good.replace(right, wrong), title) == good, title
-    assert mended(good.replace("hold 3;", "hold 3"), "Insert ';'") == good
+    assert mended(good.replace("hold 3 steps;", "hold 3 steps"), "Insert ';'") == good
     assert mended(good.replace("min l2", "min l22"), "Change 'l22' to 'l2'") == good
     # A name that C++ cannot bear, everywhere.
     assert mended(good.replace("closed", "int"), "Change 'int' to 'int_predicate'") == \

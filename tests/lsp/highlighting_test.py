@@ -32,6 +32,7 @@ PHRASES = {
     "durations": "rate 20 Hz, durations up;", "up": "rate 20 Hz, durations up;",
     "down": "rate 20 Hz, durations down;", "nearest": "rate 20 Hz, durations nearest;",
     "Hz": "rate 20 Hz;", "us": "period 5 us;", "ms": "period 5ms;", "s": "let a = F[0, n s] p;",
+    "steps": "let a = F[0, 2 steps] p;", "step": "input z : f32[2] hold 1 step;",
     "l2": "predicate p = min l2(z, t) < 1;", "l2sq": "predicate p = min l2sq(z, t) < 1;",
     "l1": "predicate p = l1(z, t) < 1;", "linf": "predicate p = linf(z, t) < 1;",
     "cosine": "predicate p = cosine(z, t) < 1;", "angular": "predicate p = angular(z, t) < 1;",

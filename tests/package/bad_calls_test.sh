@@ -57,11 +57,30 @@ refused "RETARGETABLE goes without EXPLAIN, RECORDER, INLINE_TARGETS and VALUES 
 refused "there is a monitor a.hpp already" "etlc_add_monitor(robot SPEC specs/a.etl)
 etlc_add_monitor(robot SPEC other/a.etl)"
 
-echo "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a::b STANDALONE)" >"$box/call.cmake"
-if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" -DCALL="$box/call.cmake" \
-    >"$box/log" 2>&1; then
-    echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
-fi
+# Names that Make, Ninja and CMake do not all read alike are refused, of each file.
+for sign in ';' "\\" "'" '"' '&' '#' '$' '%' '*' '<' '|' ':' '=' '[' ']' '?' '^' '`'; do
+    touch "$box/specs/a${sign}b.etl"
+    case $sign in
+        ';' | "\\" | '"' | '$') written="\\$sign" ;;
+        *) written=$sign ;;
+    esac
+    refused "a name with $sign in it, which not all build tools read alike: rename the file" \
+        "etlc_add_monitor(robot SPEC \"specs/a${written}b.etl\")"
+    [ "$sign" = % ] || refused "THRESHOLDS th${sign}.json: a name with $sign in it" \
+        "etlc_add_monitor(robot SPEC specs/a.etl THRESHOLDS \"th${written}.json\")"
+done
+
+# accepted CALL
+accepted() {
+    echo "$1" >"$box/call.cmake"
+    if ! "$cmake" -S "$box" -B "$box/build" -DCMAKE_CXX_COMPILER="$cxx" \
+        -DCALL="$box/call.cmake" >"$box/log" 2>&1; then
+        echo "FAILED: refused a right call:"; cat "$box/log"; failures=1
+    fi
+}
+accepted "etlc_add_monitor(robot SPEC specs/a.etl NAMESPACE a::b STANDALONE)"
+touch "$box/specs/a b,(1)+@!~{ä}.etl"
+accepted "etlc_add_monitor(robot SPEC \"specs/a b,(1)+@!~{ä}.etl\")"
 
 # not_compiled WORDS ERRORS FLAG... : the program on standard input must not compile, with these
 # words, and as many errors where ERRORS is a number.

@@ -28,8 +28,21 @@ find "$pages" -name '*.md' | while read -r page; do
 done >"$box/dead"
 [ ! -s "$box/dead" ] || fail "installed pages: $(cat "$box/dead")"
 
+# The Python package below a prefix finds the library and the command below it, and no others.
+if /usr/bin/python3 -c 'import numpy' 2>"$box/log"; then
+    mv "$box/prefix" "$box/moved"
+    said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
+        PYTHONPATH="$box/moved/lib/python3/dist-packages" /usr/bin/python3 -c 'import etlc
+monitor = etlc.Monitor(text="spec t; input x : f32; monitor m = F x > 1;")
+print(monitor.monitors, etlc._library.library._name, etlc.commands.command_path())')
+    expect "$said" "('m',) $(echo "$box"/moved/lib*/libetlc.so.1) $box/moved/bin/etlc"
+    mv "$box/moved" "$box/prefix"
+fi
+
 cp -r "$here/consumer" "$box/consumer"
 cp "$box/consumer/specs/near.npy" "$box/consumer/specs/goal.npy"
+odd="an odd (name)+"
+cp "$box/consumer/specs/guard.etl" "$box/consumer/specs/$odd.etl"
 
 "$cmake" -S "$box/consumer" -B "$box/build" -G "$generator" -DCMAKE_CXX_COMPILER="$cxx" \
     -DCMAKE_PREFIX_PATH="$box/prefix" \
@@ -58,8 +71,10 @@ if grep -F "$box" "$reach"; then fail "the header names a folder of the machine 
 stamp() { stat -c %y "$1"; }
 [ ! -s "$box/build/etlc/robot/reach.targets.bin" ] || fail "small targets are in a file"
 reach_made=$(stamp "$reach") guard_made=$(stamp "$guard")
+odd_made=$(stamp "$box/build/etlc/robot/$odd.hpp")
 compile
 expect "$(stamp "$reach")" "$reach_made"
+expect "$(stamp "$box/build/etlc/robot/$odd.hpp")" "$odd_made"
 
 change cp "$box/consumer/specs/far.npy" "$box/consumer/specs/goal.npy"
 compile

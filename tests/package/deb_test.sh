@@ -15,12 +15,12 @@ depends=$(dpkg-deb -f "$deb" Depends)
 for library in libc6 libstdc++6 libfmt9 libhdf5-103 libzip4; do
     [[ $depends == *"$library"* ]] || fail "it does not depend on $library: $depends"
 done
-for library in opencv avcodec openmpi; do
+for library in avcodec libpng libjpeg openmpi; do
     [[ $depends != *"$library"* ]] || fail "etlc itself depends on $library: $depends"
 done
 dpkg-deb -x "$deb" "$box/root"
 # Each helper that is built is in a package of its own, with the libraries that it needs.
-for helper in embed=libopencv-dnn mpi=libopenmpi; do
+for helper in embed=libavcodec mpi=libopenmpi; do
     name=etlc-${helper%=*} library=${helper#*=}
     [ ! -e "$box/root/usr/libexec/etlc/$name" ] || fail "etlc holds $name"
     [ -e "$build_dir/$name" ] || continue
@@ -55,9 +55,9 @@ verdicts=$("$box/root/usr/bin/etlc" run "$box/t.etl" --trace "$data/trace.h5") |
 [ "$(tail -1 <<<"$verdicts")" = "6,m,0.25,0.25,inf,satisfied,1,0" ] ||
     fail "the verdicts on an .h5 trace: $verdicts"
 
-# Python finds the package, and the package the library.
-said=$(LD_LIBRARY_PATH=$box/root/usr/lib PATH=$box/root/usr/bin:$PATH \
-    PYTHONPATH=$box/root/usr/lib/python3/dist-packages PYTHONDONTWRITEBYTECODE=1 \
+# Python finds the package, and the package the library and the command, wherever it is unpacked.
+said=$(env -u LD_LIBRARY_PATH -u ETLC_LIBRARY -u ETLC_COMMAND PYTHONDONTWRITEBYTECODE=1 \
+    PYTHONPATH=$box/root/usr/lib/python3/dist-packages \
     /usr/bin/python3 -c 'import etlc, sys
 print(etlc.__version__, etlc.Monitor(sys.argv[1]).monitors, etlc.commands.command_path())
 ' "$box/t.etl") || fail "import etlc"

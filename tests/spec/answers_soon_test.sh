@@ -2,7 +2,8 @@
 # answers_soon_test.sh ETLC SECONDS KILOBYTES: etlc answers specs of 10 KB soon, with a header or
 # with an error, within SECONDS of processor time and KILOBYTES of memory (0: any), in texts of
 # reasonable length. Each spec below would take hours or all memory in a compiler that walks
-# formulas as trees, or that builds state machines of any size.
+# formulas as trees, or that builds state machines of any size. It explains their verdicts as soon,
+# on a trace where each of thousands of samples may be what turns them.
 set -euo pipefail
 etlc=$1
 seconds=$2
@@ -95,4 +96,35 @@ echo "monitor m = F G[1073741823,2147483646] ((F p0) U (G p1));" | answers 1 lon
 times 120 "monitor m@i = F[0, @i] p@m; sliding monitor s@i = H[0, @i] b;" | answers 0 monitors
 { echo "monitor m = "; times 120 "((x > 0) + ((b && ("; } | answers 1 broken
 times 850 "let a = b; " | answers 1 repeated
+# ---- explanations: after 2000 steps
+
+awk 'BEGIN {
+  print "x,y,b"
+  for (i = 0; i < 2000; ++i)
+    printf "%.3f,%.3f,%d\n", i * 37 % 97 / 97, i * 53 % 89 / 89, i * 7 % 3 % 2
+}' >trace.csv
+
+# explained NAME: the verdict of the monitor on standard input
+explained() {
+  { echo "spec s; input x, y : f32; input b : bool;"; cat; } >"$1.etl"
+  (
+    ulimit -t "$seconds"
+    exec "$etlc" explain "$1.etl" --trace trace.csv --step 1999 >"$1.why" 2>"$1.err"
+  ) || fail "$1: $(head -c 500 "$1.err")"
+  grep -q "^the smallest change" "$1.why" || fail "$1: $(cat "$1.why")"
+}
+
+{ echo "monitor m = G ("; times 20 "x > 0.5 <-> y > 0.5 <-> "; echo "true);"; } | explained iffs
+{ echo "monitor m = G ("; times 20 "b <-> y == 0 <-> b <-> y == 0 <-> "; echo "true);"; } |
+  explained iffs_of_bools
+{ echo "monitor m = G ("; times 20 "x > 0.5 -> y > 0.5 -> "; echo "true);"; } |
+  explained implications
+{ echo "let a0 = x > 0.5;"; times 12 "let a@j = y > 0.5 <-> O[0, @j] (x > 0.3 <-> a@i);"; echo \
+  "monitor m = G (a12 || !a12);"; } | explained iffs_of_pasts
+{ echo "monitor m = G ("; times 40 "(x <= 1) S ("; echo "x <= 1"; times 40 ")"; echo ");"; } |
+  explained sinces
+{ echo "monitor m = F[0, 5] ("; times 40 "x > 0.5 U[0, 3] ("; echo "y > 0.5"; times 40 ")"; echo \
+  ");"; } | explained untils
+{ echo "monitor m = G ("; times 40 "y <= 1 && X ("; echo "x > -1"; times 40 ")"; echo ");"; } |
+  explained nexts
 echo "answers_soon_test: ok"

@@ -1,5 +1,5 @@
-# What cases of `etlc embed` share, without OpenCV, FFmpeg or Python: images and videos of one pixel
-# a file, and encoders that always give the same. Sourced in an empty folder.
+# What cases of `etlc embed` share, without FFmpeg, ONNX Runtime or Python: images and videos of one
+# pixel a file, and encoders that always give the same. Sourced in an empty folder.
 
 dimension='\002\000\000\000'
 row='\000\000\200\077\000\000\000\100' # 1, 2
@@ -12,6 +12,7 @@ decodes() {
 case \$1 in
 images) shift; for file; do printf '\\001\\000\\000\\000\\001\\000\\000\\000abc'; done ;;
 video) printf '\\001\\000\\000\\000\\001\\000\\000\\000abc' ;;
+onnxruntime) echo "\${VERSION:-1.30.0}"; echo /a/library; exit 0 ;;
 encode) n=\$((\$(wc -c) / 11)); printf '$dimension'
     while [ \$n -gt 0 ]; do printf '$row'; n=\$((n - 1)); done ;;
 esac

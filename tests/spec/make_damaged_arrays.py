@@ -94,7 +94,7 @@ FITTED = """{
 }
 """
 for name, description in (
-    ("E0673_unknown_fitted_format", FITTED % (2, "3")),
+    ("E0673_unknown_fitted_format", FITTED % (3, "3")),
     ("E0674_invalid_fitted", FITTED % (1, '"three"')),
 ):
     write(name + ".fitted.npz", zipped([("fitted.json", description), ("g.npy", npy())]))
@@ -109,12 +109,16 @@ EMBEDDED = """{
       "settings": "mean [0, 0, 0], deviation [1, 1, 1]",
       "kind": "network",
       "dimension": 2,
-      "fingerprint": "0000000000000000"
+      "fingerprint": "%s"
     }
   },
   "entries": {},
   "etlc": "0.2.0"
 }
 """
-for name, version in (("E1006_unknown_embedded_format", 2), ("E1007_invalid_embedded", 1)):
-    write(name + ".embedded.npz", zipped([("embedded.json", EMBEDDED % version)]))
+for name, version, fingerprint in (
+    ("E1004_of_earlier_etlc", 1, "ac1f36bbbdff9014"),
+    ("E1006_unknown_embedded_format", 2, "0" * 16),
+    ("E1007_invalid_embedded", 1, "0" * 16),
+):
+    write(name + ".embedded.npz", zipped([("embedded.json", EMBEDDED % (version, fingerprint))]))

@@ -31,10 +31,17 @@ refuses "--targets-as: found 'f8', expected f32, f16 or i8; did you mean 'i8'?" 
 expected="ast, graph, plan, hpp, params, dot or report"
 refuses "--emit: found 'hp', expected $expected; did you mean 'hpp'?" \
     t.etl --emit hp
-refuses "--runtime: found 'onnx', expected opencv or onnxruntime" embed t.etl --runtime onnx
-refuses "--runtime excludes --encoder-cmd" embed t.etl --runtime opencv --encoder-cmd cat
+refuses "--onnxruntime excludes --encoder-cmd" embed t.etl --onnxruntime a.so --encoder-cmd cat
 refuses "--diagnostics: found 'xml', expected text or json" t.etl --check --diagnostics xml
 refuses "-W: found 'all', expected error" t.etl --check -Wall
+# A command that is misspelt is no spec.
+refuses "there is no command 'rn'; did you mean 'run'?" rn t.etl --trace t.csv
+refuses "there is no command 'rn'; did you mean 'run'?" rn
+refuses "there is no command 'help'; did you mean '--help'?" help
+refuses "there is no command 'evalute'; did you mean 'evaluate'?" evalute t.etl --data t.csv
+refuses "there is no command 'simulate'; the commands are run, embed, fit, calibrate, evaluate, \
+crossvalidate, lsp, merge, explain, incident, report; etlc SPEC.etl compiles a spec" \
+    simulate t.etl
 for option in --max-state --max-code --max-work --inline-targets; do
     for number in -1 1e3 0x10 ' 8' 1.5 99999999999999999999 ten; do
         refuses "$option: found '$number', expected a whole number from 0" \

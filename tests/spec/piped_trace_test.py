@@ -1,6 +1,7 @@
 #!/usr/bin/env python3
 """piped_trace_test.py ETLC: `etlc run --trace -` gives the verdicts of a step when its row has
-come, and in the end what it gives for the same file."""
+come, and in the end what it gives for the same file. Pipes that are named are read where one
+trace is; elsewhere they, and devices, are refused, and nothing waits for them."""
 import os
 import pathlib
 import subprocess
@@ -55,7 +56,31 @@ def main():
     assert "cannot be standard input" in refused("x\n1\n", "--svg", "t.svg", status=2)
 
 
+def named_pipes():
+    os.mkfifo("p.csv")
+    with subprocess.Popen(["sh", "-c", "cat t.csv > p.csv"]):
+        piped = subprocess.run([ETLC, "run", "t.etl", "--trace", "p.csv"], capture_output=True)
+    whole = subprocess.run([ETLC, "run", "t.etl", "--trace", "t.csv"], capture_output=True)
+    assert piped.stdout == whole.stdout and piped.returncode == 0, piped
+    for ending in ("npz", "h5", "mp4"):
+        os.mkfifo(f"p.{ending}")
+        os.symlink("/dev/zero", f"zero.{ending}")
+    os.symlink("/dev/zero", "zero.csv")
+    calls = [["evaluate", "t.etl", "--data"], ["embed", "t.etl", "-o", "out", "--data"],
+             ["run", "t.etl", "--trace"]]
+    for words in calls:
+        for path in ("p.npz", "p.h5", "p.mp4", "p.csv", "zero.npz", "zero.h5", "zero.csv", "."):
+            if path == "p.csv" and "run" in words:
+                continue
+            done = subprocess.run([ETLC, *words, path], capture_output=True, text=True, timeout=60)
+            place = f"{path}:" if path != "." else ": error"  # what is in the folder, too
+            assert done.returncode == 1 and place in done.stderr, (words, path, done)
+            if "run" not in words and (path != "." or "evaluate" in words):
+                assert "expected a file" in done.stderr, (words, path, done)
+
+
 with tempfile.TemporaryDirectory() as folder:
     os.chdir(folder)
     main()
+    named_pipes()
     os.chdir("/")

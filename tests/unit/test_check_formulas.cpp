@@ -312,7 +312,7 @@ std::string with_constants(const std::string& text, bool named) {
 
 TEST(Constants, StandForTheirNumbers) {
     const std::string text =
-        "rate %r Hz; input z : f32[%D] hold %n; input b : i8[%D] scale %k;"
+        "rate %r Hz; input z : f32[%D] hold %n steps; input b : i8[%D] scale %k;"
         "input x : f32 in [-%n, %n]; target s = [[%k, -%k], [%n, %D]];"
         "predicate near = kth(%D) mahalanobis([%n, %D])(z, s) <= %k;"
         "predicate far = min l2(b, s) >= calibrated(conformal, alpha = %k);"

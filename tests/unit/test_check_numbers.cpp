@@ -221,5 +221,61 @@ TEST(Duration, IntervalsOfASpec) {
     EXPECT_EQ(checked.model->step_seconds, 0.01);
 }
 
+// ---- steps on purpose
+
+std::string with_rate(const std::string& rest) {
+    return Checked("spec t; rate 30 Hz; input p, q : bool; " + rest).codes();
+}
+
+TEST(BareBounds, AreWarnedOfOnceWhereNothingSaysSteps) {
+    for (const char* formula :
+         {"F[0, 2] p", "G[1, 2] p", "p U[0, 2] q", "p R[2, inf] q", "G O[0, 1] p", "G H[0, 2] p",
+          "G (p S[0, 2] q)", "G held[3] p", "F[0, 2 s] p && F[0, 2] q"})
+        EXPECT_EQ(with_rate(std::string("monitor m = ") + formula + " || F (p && q);"), "W0506")
+            << formula;
+    EXPECT_EQ(with_rate("monitor m = G[0, 2] p; monitor n = F[3, 9] q;"), "W0506");
+    EXPECT_EQ(with_rate("const n = 2; monitor m = F[0, n] (p && q);"), "W0506");
+    EXPECT_EQ(with_rate("input x : f32; predicate a = x > 1; "
+                        "truth a = H[0, 2] p; monitor m = G (q -> a);"),
+              "W0506");
+}
+
+TEST(BareBounds, AreRightOnPurposeAndWithoutARate) {
+    for (const char* rest :
+         {"monitor m = F[0, 2 steps] p || G[0, 5] q;", "monitor m = G held[1 step] (p && q);",
+          "const n = 2 steps; monitor m = F[0, n] (p && q);",
+          "const n = 2; monitor m = F[0, n steps] (p && q);",
+          "const n = 2; monitor m = F[0, n s] (p && q);",
+          "input x : f32 hold 3; monitor m = F[0, 2 s] (p && q && x > 1);",
+          "monitor m = F[0, inf] (p && q);", "monitor m = G (p -> F[0, 1 min] q);"})
+        EXPECT_EQ(with_rate(rest), "") << rest;
+    EXPECT_EQ(Checked("spec t; input p : bool; monitor m = F[0, 2] p;").codes(), "");
+}
+
+TEST(Steps, AreAUnitOfBoundsHoldsAndConstants) {
+    const Checked checked(
+        "spec t; rate 10 Hz; const n = 3 steps; const d = 0.3 s; input p : bool hold 2 steps; "
+        "input q : bool hold 500 ms; input r : bool hold n; input o : bool hold d; "
+        "monitor m = F[1 step, n] (p && q && r && o);",
+        {.settings = {{"n", "4", "steps"}}});
+    ASSERT_EQ(checked.codes(), "") << checked.diagnostics();
+    EXPECT_EQ(checked.formula("m"), "F[1, 4] (p && q && r && o)");
+    std::vector<std::uint32_t> holds;
+    for (const Input& input : checked.model->inputs) holds.push_back(input.hold);
+    EXPECT_EQ(holds, (std::vector<std::uint32_t>{2, 5, 4, 3}));
+}
+
+TEST(Steps, AreNoTime) {
+    EXPECT_EQ(with_rate("monitor m = F[1 step, 2 s] (p && q);"), "E0504");
+    EXPECT_EQ(with_rate("monitor m = F[0, 1.5 steps] (p && q);"), "E0506");
+    EXPECT_EQ(with_rate("const n = 2 steps; predicate a = n > 1; monitor m = G (a && p && q);"),
+              "E0209");
+    EXPECT_EQ(with_rate("input x : f32 hold 20 ms; monitor m = G (p && q && x > 1);"), "E0505");
+    EXPECT_EQ(
+        Checked("spec t; const n = 2 steps; period n; input p : bool; monitor m = F p;").codes(),
+        "E0209");
+    EXPECT_EQ(Checked("spec t; input x : f32 hold 1 s; monitor m = F x > 1;").codes(), "E0503");
+}
+
 }  // namespace
 }  // namespace etlc::check

@@ -8,6 +8,7 @@
 
 #include <csignal>
 #include <filesystem>
+#include <fstream>
 #include <optional>
 
 #include "data/files/atomic_file.hpp"
@@ -147,6 +148,32 @@ TEST(AtomicWrite, AKilledWriterLeavesNothing) {
     ::waitpid(writer, nullptr, 0);
     EXPECT_EQ(file_bytes(file.path()), "old");
     EXPECT_EQ(files_beside(file.path()), 1U);
+}
+
+/// The name of a temporary file of a process that has ended.
+std::string name_of_ended() {
+    const pid_t ended = ::fork();
+    if (ended == 0) ::_exit(0);
+    ::waitpid(ended, nullptr, 0);
+    return ".etlc-" + std::to_string(ended) + "-0.part";
+}
+
+TEST(AtomicWrite, WhatKilledWritersLeftGoesWithTheNextCall) {
+    const TemporaryPath folder("");
+    const auto put = [&](const std::string& name) {
+        std::ofstream(folder.path() + name) << "x";
+        return folder.path() + name;
+    };
+    const std::string left = put(name_of_ended());
+    const std::string held = put(name_of_ended());  // in another container, by one of its processes
+    const Descriptor holds(::open(held.c_str(), O_RDONLY | O_CLOEXEC));
+    ASSERT_EQ(::flock(*holds, LOCK_EX), 0);
+    const std::string at_work = put(".etlc-" + std::to_string(::getpid()) + "-7.part");
+    const std::string others = put("x" + name_of_ended());
+    EXPECT_FALSE(write_file_atomically(folder.path() + "out", "new", Code::unreadable_trace));
+    EXPECT_FALSE(std::filesystem::exists(left));
+    for (const std::string& kept : {held, at_work, others, folder.path() + "out"})
+        EXPECT_TRUE(std::filesystem::exists(kept)) << kept;
 }
 
 /// Files of a folder, of which the last one cannot take its name: it is a folder by then.

@@ -7,6 +7,7 @@
 #include <filesystem>
 
 #include "data/arrays/array.hpp"
+#include "data/files/bytes.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/quote.hpp"
@@ -44,6 +45,22 @@ TEST(File, SaysWhyItCannotRead) {
         ::chmod(file.path().c_str(), 0);
         EXPECT_EQ(message(file.path()), "permission denied");
     }
+}
+
+TEST(File, StreamsAreReadOnlyWhereTheyAreMeantToBe) {
+    const TemporaryPath pipe("pipe");
+    ASSERT_EQ(::mkfifo(pipe.path().c_str(), 0600), 0);
+    const auto refused = read_file(pipe.path(), 9, Code::unreadable_trace);  // and does not wait
+    ASSERT_FALSE(refused);
+    EXPECT_EQ(refused.failure().message, "is a pipe, expected a file");
+    EXPECT_EQ(open_file(pipe.path()).failure().message, "is a pipe, expected a file");
+    EXPECT_EQ(hash_of_file(pipe.path(), Code::unreadable_trace).failure().message,
+              "is a pipe, expected a file");
+    EXPECT_EQ(why_unreadable("/dev/zero"), "is a device, expected a file");
+    EXPECT_EQ(why_unreadable("/dev/zero", Streams::taken), std::nullopt);
+    const auto empty = read_file("/dev/null", 9, Code::unreadable_trace, Streams::taken);
+    ASSERT_TRUE(empty);
+    EXPECT_EQ(*empty, "");
 }
 
 TEST(File, InFileIsADiagnosticWithItsPlace) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <random>
 
 #include "data/traces/overlap.hpp"
@@ -12,11 +13,11 @@ namespace {
 
 using Numbers = std::vector<float>;
 
-InputContent content_of(const Numbers& samples, bool is_vector) {
-    ContentReader reader(is_vector);
+InputContent content_of(const Numbers& samples, bool tells_alone) {
+    ContentReader reader(tells_alone);
     for (const float sample : samples) {
         const auto bits = std::bit_cast<std::uint32_t>(sample);
-        reader.add(&bits, 1);
+        reader.add(&bits, 1, sample == sample);
     }
     return reader.content();
 }
@@ -101,6 +102,30 @@ TEST(Overlap, FramesCountOnce) {
     const Numbers still(500, 0.25F);
     EXPECT_FALSE(found(episode(joined(still, random_numbers(30, 1))),
                        episode(joined(still, random_numbers(30, 2)))));
+}
+
+TEST(Overlap, OfShortEpisodesTwoFramesAreEnough) {
+    const Numbers a = random_numbers(7, 1);
+    const Numbers others = random_numbers(7, 2);
+    for (std::size_t n = 2; n <= 7; ++n)
+        for (std::size_t shared = 0; shared <= n; ++shared) {
+            const Numbers b = joined(piece(a, 0, shared), piece(others, 0, n - shared));
+            const bool expected = shared >= 2 && 2 * shared > n;
+            EXPECT_EQ(found(episode(piece(a, 0, n)), episode(b)).has_value(), expected)
+                << n << ' ' << shared;
+        }
+    // Frames that are missing are not shared.
+    const Numbers missing(20, NAN);
+    EXPECT_FALSE(found(episode(joined(missing, piece(a, 0, 3))),
+                       episode(joined(missing, piece(others, 0, 3)))));
+    EXPECT_TRUE(
+        found(episode(joined(missing, piece(a, 0, 3))), episode(joined(piece(a, 0, 3), missing))));
+    // Where another input has more to say, a few frames of this one say nothing.
+    const auto both = [](const Numbers& z, const Numbers& w) {
+        return EpisodeContent{{"z", content_of(z, true)}, {"w", content_of(w, true)}};
+    };
+    EXPECT_TRUE(found(both(random_numbers(50, 3), piece(a, 0, 2)),
+                      both(random_numbers(50, 3), piece(others, 0, 2))));
 }
 
 TEST(Overlap, ScalarsTellByRuns) {

@@ -16,13 +16,17 @@ namespace {
 using diag::Code;
 
 const std::string kDescription = R"text({
-  "format": 1,
+  "format": 2,
   "spec": "dock",
   "entries": {
     "Q": {
       "declaration": "fitted(pca, of = z, where = true, r = 1)",
       "of": "z",
       "truth": "true",
+      "reads": {
+        "input z": "f32[3]",
+        "where": "true"
+      },
       "array": "Q",
       "offset": "Q-offset",
       "frames": 900
@@ -95,6 +99,7 @@ TEST(Fitted, ReadsArraysAndWhereTheyComeFrom) {
     EXPECT_EQ(file.spec, "dock");
     ASSERT_EQ(file.entries.size(), 3U);
     const Entry& q = file.entries.at("Q");
+    EXPECT_EQ(q.reads.at("where"), "true");
     EXPECT_EQ(q.rows, 1U);
     EXPECT_EQ(q.columns, 3U);
     EXPECT_EQ(q.matrix, (std::vector<float>{1, 0.1F, -0.0F}));
@@ -158,7 +163,7 @@ TEST(Fitted, FaultsNameTheKeyWhatIsThereAndWhatIsExpected) {
         EXPECT_EQ(failure.message, one.message);
         EXPECT_EQ(failure.code, Code::invalid_fitted);
     }
-    EXPECT_EQ(failure_of(R"("format": 1)", R"("format": 2)").code, Code::unknown_fitted_format);
+    EXPECT_EQ(failure_of(R"("format": 2)", R"("format": 3)").code, Code::unknown_fitted_format);
     EXPECT_EQ(failure_of("}\n", "").code, Code::malformed_fitted);
     EXPECT_EQ(failure_of(R"("array": "anchors")", R"("array": "anchor")").message,
               "has no array 'anchor'; it holds 'Q', 'Q-offset', 'anchors', 'metric-1' and "

@@ -277,10 +277,10 @@ TEST(Expressions, EveryKindOfWeights) {
 
 TEST(ContextualWords, AreNamesWhereTheyCannotBeKeywords) {
     for (const std::string word :
-         {"in",     "hold",    "scale", "f32",       "f16",         "i8",    "bool",
-          "Hz",     "us",      "ms",    "s",         "min",         "max",   "mean",
-          "kth",    "l2",      "l2sq",  "l1",        "linf",        "abs",   "sqrt",
-          "cosine", "angular", "f1",    "conformal", "mahalanobis", "alpha", "x"}) {
+         {"in",      "hold", "scale",     "f32",         "f16",   "i8",  "bool", "steps",
+          "step",    "Hz",   "us",        "ms",          "s",     "min", "max",  "mean",
+          "kth",     "l2",   "l2sq",      "l1",          "linf",  "abs", "sqrt", "cosine",
+          "angular", "f1",   "conformal", "mahalanobis", "alpha", "x"}) {
         EXPECT_EQ(tree_of_declaration("input " + word + " : f32 in [0, 1] hold 2;"),
                   "(input " + word + " :f32 (range 0 1) (hold 2))");
         EXPECT_EQ(tree_of_formula(word), word);

@@ -141,10 +141,10 @@ TEST(Words, UnknownKeywordsWithTheNearest) {
            "E0106 2:11 expected a unit of time (us, ms, s or min) after '20', found 'mss'\n",
            "did you mean 'ms'?");
     expect("let f = F[0, 2 mins] a;",
-           "E0106 2:16 expected a unit of time (us, ms, s or min) after '2', found 'mins'\n",
+           "E0106 2:16 expected a unit (us, ms, s, min or steps) after '2', found 'mins'\n",
            "did you mean 'min'?");
     expect("const n = 3 mss;",
-           "E0106 2:13 expected a unit of time (us, ms, s or min) after '3', found 'mss'\n",
+           "E0106 2:13 expected a unit (us, ms, s, min or steps) after '3', found 'mss'\n",
            "did you mean 'ms'?");
     expect("let f = F[0, 5 a;", "E0104 2:16 expected ']' after '5', found 'a'\n",
            "an interval is written [a, b]");

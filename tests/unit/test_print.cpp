@@ -184,7 +184,7 @@ private:
     void maybe_interval(ast::Formula& f) {
         if (below(2) == 0) return;
         const auto bound = [this] {
-            const std::string unit = pick({"", "us", "ms", "s", "min", "inf"});
+            const std::string unit = pick({"", "us", "ms", "s", "min", "steps", "inf"});
             const std::string constant = name();
             if (below(4) == 0)
                 return ast::Bound{{constant, {}, constant}, unit == "inf" ? "" : unit, {}};

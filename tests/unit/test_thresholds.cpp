@@ -17,7 +17,7 @@ using diag::Code;
 using tests::patched;
 
 const std::string kWhole = R"({
-  "format": 1,
+  "format": 2,
   "spec": "dubins",
   "predicates": {
     "at_a": {
@@ -31,6 +31,10 @@ const std::string kWhole = R"({
       "truth": "l2([px, py], corner) < 0.25",
       "targets": {
         "goal_a": "b08b72ea4df23cb1"
+      },
+      "reads": {
+        "input z": "f32[2]",
+        "target goal_a": "1 x 2, #b08b72ea4df23cb1"
       }
     },
     "held": {
@@ -57,6 +61,9 @@ const std::string kWhole = R"({
       "targets": {
         "corner": "0123456789abcdef",
         "goal_a": "b08b72ea4df23cb1"
+      },
+      "reads": {
+        "monitor reach": "sliding, horizon 2"
       },
       "against": "missed_success",
       "episodes": [
@@ -93,6 +100,9 @@ TEST(Thresholds, ReadsWhatIsThere) {
     ASSERT_EQ(file->predicates.size(), 2U);
     const Entry& at_a = file->predicates.at("at_a");
     EXPECT_EQ(at_a.method, "conformal");
+    EXPECT_EQ(at_a.reads.at("input z"), "f32[2]");
+    EXPECT_TRUE(file->predicates.at("held").reads.empty());
+    EXPECT_EQ(file->monitors.at("reach").reads.size(), 1U);
     EXPECT_EQ(at_a.alpha, "0.10");
     EXPECT_EQ(at_a.epsilon, 0.31F - 0x1p-25F);
     EXPECT_EQ(at_a.n, 3U);
@@ -113,6 +123,8 @@ TEST(Thresholds, WritingWhatWasReadChangesNothing) {
     const auto file = parse(kWhole, "x");
     ASSERT_TRUE(file);
     EXPECT_EQ(write(*file), kWhole);
+    const std::string old = patched(kWhole, "\"format\": 2", "\"format\": 1");
+    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are told apart as they were
 }
 
 TEST(Thresholds, SmallestFile) {
@@ -225,13 +237,15 @@ std::vector<Broken> content() {
     const std::string at_a = "'predicates.at_a.";
     return {
         {"array", "[]", Code::invalid_thresholds, "the file is an array, expected an object"},
-        {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected 1"},
-        {"format 2", with("\"format\": 1", "\"format\": 2"), Code::unknown_thresholds_format,
-         "'format' is '2', expected 1, the one this version reads"},
-        {"format 2 with other keys", R"({"format": 2, "entries": []})",
+        {"nothing in it", "{}", Code::invalid_thresholds,
+         "key 'format' is missing, expected a number from 1 to 2"},
+        {"format 3", with("\"format\": 2", "\"format\": 3"), Code::unknown_thresholds_format,
+         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+        {"format 3 with other keys", R"({"format": 3, "entries": []})",
          Code::unknown_thresholds_format,
-         "'format' is '2', expected 1, the one this version reads"},
-        broken("\"format\": 1", "\"format\": \"1\"", "'format' is the text '1', expected 1"),
+         "'format' is '3', expected a number from 1 to 2, those this version reads"},
+        broken("\"format\": 2", "\"format\": \"2\"",
+               "'format' is the text '2', expected a number from 1 to 2"),
         broken("\"spec\": \"dubins\"", "\"spec\": null", "'spec' is null, expected a text"),
         broken("\"spec\"", "\"spek\"", "unknown key 'spek'; did you mean 'spec'?"),
         broken("\"etlc\"", "\"spec\"", "key 'spec' stands twice in one object"),
@@ -284,6 +298,8 @@ std::vector<Broken> content() {
                "'predicates.held.truth' is an array, expected a text"),
         broken("\"targets\": {}", "\"targets\": \"b08b72ea4df23cb1\"",
                "'predicates.held.targets' is the text 'b08b72ea4df23cb1', expected an object"),
+        broken("\"sliding, horizon 2\"", "[]",
+               "'monitors.reach.reads.monitor reach' is an array, expected a text"),
         broken("b08b72ea4df23cb1", "B08B72EA4DF23CB1",
                at_a + "targets.goal_a' is the text 'B08B72EA4DF23CB1', expected a content hash of "
                       "16 hex digits"),

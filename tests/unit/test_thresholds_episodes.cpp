@@ -66,7 +66,7 @@ TEST(ThresholdsOfEpisodes, FaultsComeInTheOrderOfTheKeysNotOfTheFile) {
               "'episodes[0]' is '1', expected a content hash of 16 hex digits");
     EXPECT_EQ(message(R"("recordings": {"x": {}}, )" + episodes + R"("spek": 1)"),
               "unknown key 'spek'; did you mean 'spec'?");
-    EXPECT_EQ(parse(R"({"recordings": {"x": {}}, "format": 2})", "x").failure().code,
+    EXPECT_EQ(parse(R"({"recordings": {"x": {}}, "format": 3})", "x").failure().code,
               Code::unknown_thresholds_format);
     EXPECT_NE(message(R"("recordings": {"x": {}}, ?)").find("is no JSON"), std::string::npos);
 }

@@ -189,7 +189,7 @@ std::string word(const Input& d) {
     if (d.type.scale) items.push_back(list("scale", {d.type.scale->text}));
     if (d.encoder) items.push_back(list("by", {d.encoder->text}));
     if (d.range) items.push_back(list("range", {d.range->low.text, d.range->high.text}));
-    if (d.hold) items.push_back(list("hold", {d.hold->text}));
+    if (d.hold) items.push_back(list("hold", {d.hold->number.text + d.hold->unit}));
     return list("input", items);
 }
 

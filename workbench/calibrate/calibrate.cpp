@@ -12,6 +12,7 @@
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::calibrate {
 
@@ -87,7 +88,7 @@ private:
 thresholds::Entry entry_of(const check::Model& model, Index predicate, const Evidence& evidence,
                            const Fitted& fitted) {
     check::Provenance provenance = check::provenance(model, predicate);
-    const bool arrays_only = evidence.from_array == evidence.demonstrations;
+    const check::Labelling labelling{evidence.demonstrations, {{predicate, evidence.from_array}}};
     thresholds::Entry entry;
     entry.method = check::method_name(model.predicates[predicate].threshold.origin);
     entry.alpha = model.predicates[predicate].threshold.alpha;
@@ -96,9 +97,10 @@ thresholds::Entry entry_of(const check::Model& model, Index predicate, const Evi
     entry.k = fitted.k;
     entry.scores = fitted.scores;
     entry.predicate = std::move(provenance.predicate);
-    entry.truth = arrays_only ? "array" : std::move(provenance.truth);
+    entry.truth = check::labels(provenance.truth, predicate, labelling);
     entry.targets = std::move(provenance.targets);
-    if (!arrays_only) entry.targets.merge(provenance.truth_targets);
+    entry.targets.merge(provenance.truth_targets);
+    entry.reads = std::move(provenance.reads);
     return entry;
 }
 
@@ -131,6 +133,7 @@ std::optional<Calibration> calibrate(const check::Model& model, const Request& r
                 evidence[i].add(demonstration.scores[i]);
         });
     if (!all_scored) return std::nullopt;
+    episodes::warn_of_unmarked(demonstrations, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, demonstrations, {}, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;

@@ -4,8 +4,8 @@
 
 #include <cmath>
 
-#include "data/files/file.hpp"
 #include "episodes/auroc.hpp"
+#include "episodes/label_doubts.hpp"
 
 namespace etlc::calibrate {
 
@@ -30,22 +30,19 @@ void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     const Fitted& fitted, diag::Sink& sink) {
     constexpr double kNearlyEvery = 0.95;
     const auto warn = [&](std::string message) -> diag::Diagnostic& {
-        // Of the data: of the spec nothing is wrong.
-        diag::Diagnostic found =
-            data::in_file({diag::Code::doubtful_threshold, std::move(message)}, "--data");
-        found.span = predicate.threshold.span;
-        return sink.report(std::move(found));
+        return episodes::warn_of_data(diag::Code::doubtful_threshold, std::move(message),
+                                      predicate.threshold.span, sink);
     };
     const auto ranked =
         episodes::auroc(evidence.labelled, evidence.demonstrations, episodes::Likely::smaller);
+    if (episodes::warn_of_labels(predicate, {evidence.positives, evidence.negatives}, ranked, sink))
+        return;
     if (ranked && ranked->interval && ranked->interval->low <= 0.5) {
         warn(fmt::format("what '{}' measures does not tell its labels apart: the area under the "
                          "ROC curve is {:.2f}, with a 95 % interval from {:.2f} to {:.2f}",
                          predicate.name, ranked->value, ranked->interval->low,
                          ranked->interval->high))
-            .note(ranked->interval->high < 0.5
-                      ? "0.5 is chance, and less says that the comparison is the wrong way round"
-                      : "0.5 is chance: look at the labels, the embedding and the targets");
+            .note("0.5 is chance: look at the labels, the embedding and the targets");
         return;
     }
     const double part = false_part(predicate, evidence, fitted);

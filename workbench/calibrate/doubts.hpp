@@ -1,6 +1,7 @@
 // Doubts about a threshold that has been fitted.
-// Takes: the scores of all labelled frames, and the threshold. Gives: warnings where the distance
-// does not tell the labels apart, or the threshold is so wide that nearly every frame is within.
+// Takes: the scores of all labelled frames, and the threshold. Gives: warnings where the labels are
+// doubtful, the distance does not tell them apart, or the threshold is so wide that nearly every
+// frame is within.
 // Keeps true: says nothing of what too few episodes leave open; changes no threshold.
 #pragma once
 

@@ -15,6 +15,7 @@
 #include "episodes/admission/admission.hpp"
 #include "episodes/folds.hpp"
 #include "episodes/parallel.hpp"
+#include "episodes/unmarked.hpp"
 #include "pipeline/compile.hpp"
 
 namespace etlc::calibrate {
@@ -82,8 +83,9 @@ void refuse(const check::Monitor& monitor, const Totals& totals, std::size_t epi
 }
 
 thresholds::Entry entry_of(const check::Model& model, const check::Monitor& monitor,
-                           const Fitted& fitted, const episodes::Identities& episodes) {
-    check::Provenance provenance = check::provenance(model, monitor);
+                           const Fitted& fitted, const episodes::Identities& episodes,
+                           const check::Labelling& labelling) {
+    check::Provenance provenance = check::provenance(model, monitor, labelling);
     thresholds::Entry entry;
     entry.method = "conformal";
     entry.alpha = monitor.calibration->threshold.alpha;
@@ -94,6 +96,7 @@ thresholds::Entry entry_of(const check::Model& model, const check::Monitor& moni
     entry.predicate = std::move(provenance.predicate);
     entry.truth = std::move(provenance.truth);
     entry.targets = std::move(provenance.targets);
+    entry.reads = std::move(provenance.reads);
     entry.against = check::word(monitor.calibration->against);
     episodes.for_each([&](std::size_t, const episodes::Recorded& episode) {
         entry.episodes.push_back(episodes::hash_of(episode));
@@ -173,6 +176,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
     episodes::Identities recorded;
     std::vector<MonitorScores> scored;
     std::uint64_t frames = 0;
+    check::Labelling labelling;
     const bool all_scored = episodes::over_shared_episodes<MonitorEpisode>(
         request.episodes, request, sink,
         [&] {
@@ -181,14 +185,18 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         [&](std::size_t, MonitorEpisode episode) {
             recorded.add(episode);
             frames += episode.frames;
+            ++labelling.episodes;
+            for (const Index predicate : episode.from_arrays) ++labelling.from_arrays[predicate];
             scored.push_back(std::move(episode.scores));
         });
     if (!all_scored) return std::nullopt;
+    episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, before, request.fitted, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
 
     Calibration result{std::move(before), {}};
+    result.file.format = thresholds::kFormat;
     result.file.spec = model.name;
     result.file.etlc = request.version;
     episodes::record(recorded, allowance, result.file);
@@ -205,7 +213,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         auto& fitted = std::get<Fitted>(fit);
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
-        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, recorded);
+        result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, recorded, labelling);
         result.report += monitor_report(model, monitor, totals, fitted, scored.size());
     }
     if (sink.has_errors()) return std::nullopt;

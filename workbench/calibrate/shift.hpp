@@ -42,6 +42,7 @@ using MonitorScores = std::vector<MonitorScore>;  ///< per calibrated monitor
 
 struct MonitorEpisode : episodes::Recorded {
     MonitorScores scores;
+    std::vector<Index> from_arrays;  ///< predicates whose labels are those of an array of its
 };
 
 template <class Archive>
@@ -51,7 +52,7 @@ void fields(Archive& archive, MonitorScore& score) {
 
 template <class Archive>
 void fields(Archive& archive, MonitorEpisode& episode) {
-    archive(static_cast<episodes::Recorded&>(episode), episode.scores);
+    archive(static_cast<episodes::Recorded&>(episode), episode.scores, episode.from_arrays);
 }
 
 /// Shifts for the calibrated monitors, added to `before`, the file that has the thresholds of the

@@ -60,7 +60,10 @@ diag::Result<MonitorEpisode> MonitorScorer::score(const std::string& path) {
     const auto done =
         episodes::replay(*recording, {&truths_, &highest_, &lowest_}, note_step, note_step);
     if (!done) return done.failure();
-    return MonitorEpisode{recording->recorded(), std::move(scores)};
+    MonitorEpisode result{recording->recorded(), std::move(scores), {}};
+    for (const Index predicate : wanted_.predicates)
+        if (recording->from_array(predicate)) result.from_arrays.push_back(predicate);
+    return result;
 }
 
 void MonitorScorer::note(std::vector<MonitorScore>& scores) const {

@@ -12,6 +12,7 @@
 #include "driver/codes/explain_code.hpp"
 #include "driver/manual/manual.hpp"
 #include "driver/options/commands.hpp"
+#include "driver/options/mistakes.hpp"
 #include "driver/options/parse.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
@@ -188,6 +189,8 @@ int execute(int argc, char** argv) {
         return driver::explain_code_command(argv[2]);
     if (word == "--completion" && argc == 3) return driver::completion_command(argv[2]);
     if (word == "--man" && argc == 2) return driver::manual_command();
+    if (const std::string mistake = driver::mistake_in_command(argc, argv); !mistake.empty())
+        return driver::complain("etlc", mistake);
     return execute(Command::compile, argc, argv);
 }
 

@@ -25,8 +25,9 @@ struct Request {
 };
 
 /// The encoders as they are now, without any embedding: their models and settings, those of a .json
-/// beside a model among them, which the model's encoders get too.
-std::optional<embedded::File> describe_encoders(check::Model& model, const Request& request,
+/// beside a model among them, which the model's encoders get too, and what runs them, which the
+/// request gets.
+std::optional<embedded::File> describe_encoders(check::Model& model, Request& request,
                                                 diag::Sink& sink);
 
 /// Fills the file in with the embeddings of all that the spec names. False where it cannot.

@@ -21,10 +21,9 @@ using diag::Code;
 using diag::Failure;
 
 std::vector<std::string> network_arguments(const check::Encoder& encoder,
-                                           const std::string& model_path, Runtime runtime) {
-    std::vector<std::string> arguments = {"encode", model_path};
-    if (runtime == Runtime::onnxruntime)
-        arguments.insert(arguments.end(), {"--runtime", "onnxruntime"});
+                                           const std::string& model_path,
+                                           const std::string& onnxruntime) {
+    std::vector<std::string> arguments = {"encode", model_path, "--onnxruntime", onnxruntime};
     const auto add = [&](std::string_view option, const std::vector<float>& values) {
         if (values.empty()) return;
         arguments.emplace_back(option);
@@ -38,10 +37,31 @@ std::vector<std::string> network_arguments(const check::Encoder& encoder,
 
 }  // namespace
 
-std::string kind_of(const Running& running) {
-    using namespace embedded;
-    if (!running.command.empty()) return std::string(kCommand);
-    return std::string(running.runtime == Runtime::opencv ? kNetwork : kNetworkByOnnxRuntime);
+std::optional<Failure> settle(Running& running) {
+    if (!running.command.empty()) {
+        running.kind = embedded::kCommand;
+        return std::nullopt;
+    }
+    std::vector<std::string> words = {"onnxruntime"};
+    if (!running.onnxruntime.empty())
+        words.insert(words.end(), {"--onnxruntime", running.onnxruntime});
+    // Where packages lie stands in the environment.
+    const auto child = data::Child::start(data::embedder_path(), words,
+                                          {.max_silence_seconds = running.max_silence_seconds,
+                                           .whole_environment = true,
+                                           .heard = true});
+    if (!child) return data::no_embedder();
+    std::string lines;
+    for (char c = 0; !child->at_end() && child->read(&c, 1);) lines += c;
+    if (child->exit_status() == data::frames::kNoRuntime)
+        return Failure{Code::no_embedder, child->last_words()};
+    const std::size_t end = lines.find('\n');
+    if (child->exit_status() != 0 || end == std::string::npos || lines.back() != '\n')
+        return Failure{Code::no_embedder,
+                       fmt::format("is not run: what loads ONNX Runtime {}", child->ending())};
+    running.kind = std::string(embedded::kOnnxRuntime) + lines.substr(0, end);
+    running.onnxruntime = lines.substr(end + 1, lines.size() - end - 2);
+    return std::nullopt;
 }
 
 diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& encoder,
@@ -51,9 +71,9 @@ diag::Result<std::unique_ptr<Encoder>> Encoder::start(const check::Encoder& enco
         .max_silence_seconds = running.max_silence_seconds, .fed = true, .heard = true};
     std::unique_ptr<data::Child> child;
     if (running.command.empty()) {
-        child =
-            data::Child::start(data::embedder_path(),
-                               network_arguments(encoder, model_path, running.runtime), options);
+        child = data::Child::start(data::embedder_path(),
+                                   network_arguments(encoder, model_path, running.onnxruntime),
+                                   options);
         if (!child) return data::no_embedder();
     } else {
         options.whole_environment = true;
@@ -161,7 +181,7 @@ Failure Encoder::stopped() {
     const std::string words = child_->last_words();
     if (!is_command_ && child_->exit_status() == data::frames::kRefused)
         return {Code::encoder_refused, words};
-    if (!is_command_ && child_->exit_status() == data::frames::kNotBuilt)
+    if (!is_command_ && child_->exit_status() == data::frames::kNoRuntime)
         return {Code::no_embedder, words};
     return {Code::encoder_failed,
             fmt::format("'{}' {}, after {}{}", name_, ending, diag::counted(taken_, "embedding"),

@@ -19,14 +19,12 @@
 
 namespace etlc::embed {
 
-/// The libraries by which etlc-embed runs a model.
-enum class Runtime { opencv, onnxruntime };
-
 /// How encoders are run.
 struct Running {
     std::string command;  ///< of --encoder-cmd; empty: etlc-embed runs the model
     int max_silence_seconds = 600;
-    Runtime runtime = Runtime::opencv;
+    std::string onnxruntime;  ///< of --onnxruntime; empty: etlc-embed looks for it
+    std::string kind;         ///< what fingerprints say of it, once `settle` has found out
 };
 
 /// What went wrong, with the frames or with the encoder.
@@ -36,8 +34,8 @@ struct Trouble {
     std::uint64_t frame = 0;  ///< of the frames: which one
 };
 
-/// What the fingerprint of an encoder that is run like this says of it.
-std::string kind_of(const Running& running);
+/// Finds the library that runs networks, where no command does.
+std::optional<diag::Failure> settle(Running& running);
 
 class Encoder {
 public:

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
+#include "data/datasets/dataset.hpp"
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
 #include "data/frames/images.hpp"
@@ -78,7 +79,9 @@ public:
         }
         if (is_arrays(path) && !data::why_unreadable(data::trace_file(path)))
             return recordings_in_arrays(path, search_);
-        if (!data::why_unreadable(path)) return std::vector<Recording>{video(path, search_.rate)};
+        const auto why = data::why_unreadable(path);
+        if (!why) return std::vector<Recording>{video(path, search_.rate)};
+        if (fs::exists(path, error)) return Failure{Code::unreadable_video, *why};
         return matching(path);
     }
 
@@ -117,7 +120,9 @@ private:
         for (const std::string& match : matches.value_or(std::vector<std::string>{}))
             if (auto found = at(match)) add(all, std::move(*found));
         if (!all.empty()) return all;
-        return Failure{Code::unreadable_video, fmt::format("no such recording, {}", kExpected)};
+        return Failure{
+            Code::unreadable_video,
+            data::with_dataset_meant(fmt::format("no such recording, {}", kExpected), pattern)};
     }
 
     static void add(std::vector<Recording>& all, std::vector<Recording> more) {

@@ -123,21 +123,29 @@ private:
 
 }  // namespace
 
-std::optional<embedded::File> describe_encoders(check::Model& model, const Request& request,
+std::optional<embedded::File> describe_encoders(check::Model& model, Request& request,
                                                 diag::Sink& sink) {
     embedded::File file;
     file.spec = model.name;
     file.etlc = request.version;
     for (check::Encoder& encoder : model.encoders) {
-        std::string place;
-        auto described =
-            check::describe(encoder, data::beside(model.file.path(), encoder.model), place);
-        if (!described) {
-            sink.report(data::in_file(described.failure(), place))
+        const std::string path = data::beside(model.file.path(), encoder.model);
+        const auto fail = [&](const diag::Failure& failure, const std::string& place) {
+            sink.report(data::in_file(failure, place))
                 .note(encoder.span, fmt::format("'{}' is declared here", encoder.name));
+        };
+        std::string place;
+        auto described = check::describe(encoder, path, place);
+        if (!described) {
+            fail(described.failure(), place);
             continue;
         }
-        described->kind = kind_of(request.running);
+        if (request.running.kind.empty())
+            if (const auto failure = settle(request.running)) {
+                fail(*failure, path);
+                return std::nullopt;
+            }
+        described->kind = request.running.kind;
         described->dimension = encoder.dimension;
         encoder.fingerprint = embedded::fingerprint(*described);
         file.encoders[encoder.name] = std::move(*described);

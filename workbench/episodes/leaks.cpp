@@ -33,9 +33,22 @@ double length(const float* v, std::size_t n) {
 }
 
 /// The rows as they were before they were projected.
+Index declared(const check::Model& model, const Distance& distance) {
+    const Index source = model.targets[distance.target].source;
+    return source == check::kNone ? distance.target : source;
+}
+
 const check::Target& declared_target(const check::Model& model, const Distance& distance) {
-    const check::Target& target = model.targets[distance.target];
-    return target.source == check::kNone ? target : model.targets[target.source];
+    return model.targets[declared(model, distance)];
+}
+
+/// The point in whose space the rows were declared.
+Index declared_space(const check::Model& model, const Distance& distance) {
+    const Index space = declared_target(model, distance).space;
+    if (space != check::kNone) return space;
+    Index at = distance.point;
+    while (model.points[at].is_projected()) at = model.points[at].inner;
+    return at;
 }
 
 /// What the point is made of, however it is projected.
@@ -47,12 +60,19 @@ bool is_embedding(const check::Model& model, const Distance& distance) {
     return model.inputs[inputs_of(model, distance)[0]].is_embedding();
 }
 
+/// False where a projection that leads to it is not fitted yet.
+bool is_there(const check::Model& model, Index point) {
+    Index at = point;
+    while (model.points[at].is_projected() &&
+           !model.projections[model.points[at].projection].matrix.empty())
+        at = model.points[at].inner;
+    return !model.points[at].is_projected();
+}
+
 /// A vector of scalars may well come to lie where somebody has written a target down: a robot stops
 /// at the origin. Rows of a file are looked for all the same, for they may have been recorded.
 bool may_be_recorded(const check::Model& model, const Distance& distance) {
-    const check::Target& target = declared_target(model, distance);
-    if (target.space != check::kNone) return false;  // rows that no sample is compared with
-    return is_embedding(model, distance) || !target.path.empty();
+    return is_embedding(model, distance) || !declared_target(model, distance).path.empty();
 }
 
 /// The numbers of a vector of scalars; empty where one is missing.
@@ -93,7 +113,10 @@ double rounding_of_length(const Input& input, const std::vector<float>& z, doubl
 Leaks::Leaks(const check::Model& model, const std::vector<Index>& predicates) : model_(model) {
     for (const Index predicate : predicates)
         check::for_each_distance(model.predicates[predicate].expression, [&](Index distance) {
-            if (may_be_recorded(model, model.distances[distance])) watch(predicate, distance);
+            if (!may_be_recorded(model, model.distances[distance])) return;
+            if (declared_target(model, model.distances[distance]).space == check::kNone)
+                watch(predicate, distance);
+            watch_near(predicate, distance);
         });
 }
 
@@ -119,6 +142,36 @@ void Leaks::watch(Index predicate, Index index) {
     watched_.push_back(std::move(watched));
 }
 
+/// Where the rows were declared, and where the distance measures: there frames count too that only
+/// the projection makes alike.
+void Leaks::watch_near(Index predicate, Index index) {
+    const Distance& distance = model_.distances[index];
+    const auto add = [&](Index point, Index target) {
+        if (model_.targets[target].values.empty() || !is_there(model_, point)) return;
+        NearRows rows(model_, index, point, target);
+        const bool known =
+            std::any_of(watched_near_.begin(), watched_near_.end(),
+                        [&](const WatchedNear& other) { return other.rows.same_as(rows); });
+        if (!known) watched_near_.push_back({predicate, index, std::move(rows)});
+    };
+    const Index space = declared_space(model_, distance);
+    add(space, declared(model_, distance));
+    if (space != distance.point) add(distance.point, distance.target);
+}
+
+void Leaks::find_near(const std::vector<plan::Sample>& samples, std::uint64_t frame,
+                      std::vector<NearLeak>& near) const {
+    near.resize(watched_near_.size());
+    for (std::size_t i = 0; i < watched_near_.size(); ++i) {
+        const WatchedNear& watched = watched_near_[i];
+        const NearRows::Found found = watched.rows.find(samples);
+        near[i].close.add(found.close);
+        near[i].wide.add(found.wide);
+        if (found.row && !near[i].first)
+            near[i].first = Leak{watched.predicate, watched.distance, *found.row, frame};
+    }
+}
+
 std::optional<Leak> Leaks::find(const std::vector<plan::Sample>& samples,
                                 std::uint64_t frame) const {
     for (const Watched& watched : watched_) {
@@ -139,7 +192,8 @@ std::optional<std::uint32_t> Leaks::row_of(const Watched& watched,
     const bool embedding = is_embedding(model_, distance);
     const auto vector = embedding ? std::vector<float>{} : gathered(model_, distance, samples);
     const std::vector<float>& z = embedding ? sample.values : vector;
-    if (!sample.present || z.empty()) return std::nullopt;
+    const bool finite = std::all_of(z.begin(), z.end(), [](float x) { return std::isfinite(x); });
+    if (!sample.present || z.empty() || !finite) return std::nullopt;
     const double size = watched.by_direction ? length(z.data(), z.size()) : 1;
     Rounded rounded{model_.inputs[first]};
     if (watched.by_direction) rounded.relative = rounding_of_length(rounded.input, z, size);

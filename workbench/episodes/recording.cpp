@@ -9,6 +9,7 @@
 #include "data/datasets/trace.hpp"
 #include "data/quote.hpp"
 #include "embedded/embedded.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::episodes {
 
@@ -65,21 +66,21 @@ Failure no_label(const check::Model& model, Index predicate, const Failure& abse
             absent.line, absent.column};
 }
 
-/// That an input's embeddings are by another encoder than the spec's, where the episode says so.
-std::optional<Failure> other_encoder(const Wanted& wanted, const std::string& path,
-                                     const data::NamesInFile& names) {
+/// Whether it does not say which encoder made the embeddings. Failures: that it was another than
+/// the spec's.
+diag::Result<bool> read_encoders(const Wanted& wanted, const std::string& path,
+                                 const data::NamesInFile& names) {
     const check::Model& model = *wanted.model;
-    if (model.encoders.empty()) return std::nullopt;
+    if (model.encoders.empty()) return false;
     const auto marks = embedded::read_marks(path);
     if (!marks) return marks.failure();
     for (const Index index : wanted.inputs) {
         const check::Input& input = model.inputs[index];
-        const auto renamed = names.find(input.name);
-        auto failure = check::other_encoder(
-            model, input, renamed == names.end() ? input.name : renamed->second, *marks);
-        if (failure) return failure;
+        const auto failure =
+            check::other_encoder(model, input, data::name_in_file(input.name, names), *marks);
+        if (failure) return *failure;
     }
-    return std::nullopt;
+    return is_unmarked(model, wanted.inputs, names, *marks);
 }
 
 }  // namespace
@@ -125,12 +126,15 @@ diag::Result<std::vector<Index>> labelled_in(const check::Model& model, const st
 
 diag::Result<Recording> Recording::open(const Wanted& wanted, const std::string& path,
                                         const data::NamesInFile& names) {
-    if (auto failure = other_encoder(wanted, path, names)) return *failure;
+    const auto is_unmarked = read_encoders(wanted, path, names);
+    if (!is_unmarked) return is_unmarked.failure();
     if (auto failure = data::check_rate(path, wanted.model->step_seconds)) return *failure;
     auto recording = open(wanted, [&](const std::vector<Channel>& channels) {
         return data::open_trace(path, data::renamed(channels, names));
     });
-    if (recording) recording->path_ = path;
+    if (!recording) return recording;
+    recording->path_ = path;
+    recording->is_unmarked_ = *is_unmarked;
     return recording;
 }
 
@@ -142,13 +146,7 @@ diag::Result<Recording> Recording::open(const Wanted& wanted, const Opener& open
     for (const Index input : wanted.inputs) required[input] = true;
 
     // What only truths read may be absent where arrays stand in for them.
-    std::vector<data::HashedInput> identity;
-    for (const Index input : wanted.identity)
-        identity.push_back(
-            {static_cast<std::size_t>(std::lower_bound(inputs.begin(), inputs.end(), input) -
-                                      inputs.begin()),
-             model.inputs[input].name, model.inputs[input].is_embedding()});
-    Recording result(wanted, std::move(identity));
+    Recording result(wanted);
     auto trace = open(channels_of(wanted, inputs, required));
     if (!trace) return trace.failure();
     result.trace_ = std::move(*trace);
@@ -197,7 +195,8 @@ diag::Result<bool> Recording::next() {
     const auto narrowed = narrow();
     if (!narrowed) return narrowed;
     if (leaks_ != nullptr && !leak_) leak_ = leaks_->find(samples_, frames_);
-    hash_.add(sample_);
+    if (leaks_ != nullptr) leaks_->find_near(samples_, frames_, near_);
+    seen_.add(samples_);
     for (std::size_t c = 0; c < channel_inputs_.size(); ++c) {
         std::vector<double>& recorded = frame_[channel_inputs_[c]];
         std::swap(recorded, sample_.values[c]);

@@ -18,6 +18,7 @@
 #include "data/traces/trace.hpp"
 #include "episodes/frames.hpp"
 #include "episodes/leaks.hpp"
+#include "episodes/seen.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"
 
@@ -37,12 +38,15 @@ struct Recorded {
     std::string hash;  ///< 16 hex digits
     data::EpisodeContent content;
     std::uint64_t frames = 0;
-    std::optional<Leak> leak;  ///< the first one
+    std::optional<Leak> leak;    ///< the first one
+    std::vector<NearLeak> near;  ///< which LeakEvidence judges
+    bool is_unmarked = false;    ///< it does not say which encoder made its embeddings
 };
 
 template <class Archive>
 void fields(Archive& archive, Recorded& recorded) {
-    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak);
+    archive(recorded.path, recorded.hash, recorded.content, recorded.frames, recorded.leak,
+            recorded.near, recorded.is_unmarked);
 }
 
 /// Its hash as a number, as files of thresholds and of fitted things have it.
@@ -93,7 +97,10 @@ public:
     /// Number of frames where the file tells it beforehand, else 0.
     std::uint64_t length() const { return trace_->length(); }
     /// Of the frames so far; hash and content over the inputs of `identity`.
-    Recorded recorded() const { return {path_, hash_.text(), hash_.content(), frames_, leak_}; }
+    Recorded recorded() const {
+        return {path_, seen_.hash().text(), seen_.hash().content(), frames_, leak_,
+                near_, is_unmarked_};
+    }
 
 private:
     struct Source {
@@ -102,15 +109,16 @@ private:
         Index formula = check::kNone;
     };
 
-    Recording(const Wanted& wanted, std::vector<data::HashedInput> identity)
-        : model_(wanted.model), leaks_(wanted.leaks), hash_(std::move(identity)) {}
+    explicit Recording(const Wanted& wanted)
+        : model_(wanted.model), leaks_(wanted.leaks), seen_(*wanted.model, wanted.identity) {}
 
     diag::Result<bool> narrow();
 
     const check::Model* model_;
     const Leaks* leaks_;
     std::string path_;
-    data::EpisodeHash hash_;
+    bool is_unmarked_ = false;
+    Seen seen_;
     std::unique_ptr<data::Trace> trace_;
     std::vector<Index> channel_inputs_;  ///< per channel of an input, that input
     std::vector<bool> narrowed_;         ///< per such channel: its samples are wanted
@@ -121,6 +129,7 @@ private:
     Frame frame_;
     std::uint64_t frames_ = 0;
     std::optional<Leak> leak_;
+    std::vector<NearLeak> near_;
 };
 
 }  // namespace etlc::episodes

@@ -36,9 +36,14 @@ void Counts::add(const Counts& other, std::uint64_t times) {
 
 Rates rates(const Counts& c) {
     const std::uint64_t hits = c.true_positives;
-    return {share(2 * hits, hits + c.false_positives + c.positives()),
-            share(hits, hits + c.false_positives), share(hits, c.positives()),
-            share(hits + c.true_negatives, c.total())};
+    Rates result{share(2 * hits, hits + c.false_positives + c.positives()),
+                 share(hits, hits + c.false_positives),
+                 share(hits, c.positives()),
+                 share(hits + c.true_negatives, c.total()),
+                 {}};
+    const auto always_true = share(2 * c.positives(), c.positives() + c.total());
+    if (result.f1 && always_true) result.gain = *result.f1 - *always_true;
+    return result;
 }
 
 std::vector<Rates> rates(const std::vector<Counts>& episodes, const episodes::Weights& weights) {

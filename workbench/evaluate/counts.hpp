@@ -48,6 +48,7 @@ struct Rates {
     std::optional<double> precision;  ///< TP / (TP + FP)
     std::optional<double> recall;     ///< TP / positives
     std::optional<double> agreement;  ///< (TP + TN) / total
+    std::optional<double> gain;       ///< F1, less that of saying true every time
 };
 
 Rates rates(const Counts& counts);

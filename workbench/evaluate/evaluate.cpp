@@ -8,6 +8,8 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/admission/leak_evidence.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::evaluate {
 
@@ -16,15 +18,18 @@ namespace {
 /// At distance 0 a frame is easier to tell than any that is not a target.
 void warn_of_leaks(const check::Model& model, const Judgement& judgement, const Request& request,
                    diag::Sink& sink) {
+    const episodes::LeakEvidence evidence(judgement.episodes);
     std::optional<std::size_t> first;
+    std::optional<episodes::Leak> leak;
     std::uint64_t leaked = 0;
     judgement.for_each(judgement.episodes, [&](std::size_t e, const episodes::Recorded& episode) {
-        if (!episode.leak) return;
+        const auto found = evidence.of(episode);
+        if (!found) return;
+        if (!first) leak = found;
         if (!first) first = e;
         ++leaked;
     });
     if (!first) return;
-    const auto leak = judgement.episodes[judgement.place[*first]].leak;
     auto& warning =
         sink.report(data::in_file({diag::Code::target_in_evaluation, episodes::text(model, *leak)},
                                   request.episodes[*first]));
@@ -147,6 +152,7 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
         }
     }
     if (sink.has_errors()) return std::nullopt;
+    episodes::warn_of_unmarked(result.episodes, sink);
     warn_of_leaks(first, result, request, sink);
     return result;
 }

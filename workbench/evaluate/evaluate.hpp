@@ -103,6 +103,7 @@ struct Score {
     Figure precision;
     Figure recall;
     Figure agreement;
+    Figure gain;                     ///< of F1 over that of saying true every time
     std::optional<Counts> duration;  ///< what the duration alone gets right: evaluate/duration.hpp
 };
 
@@ -155,6 +156,10 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
                                diag::Sink& sink);
 
 Evaluation summarise(const Judgement& judgement);
+
+/// Warns of labels that are all alike or the wrong way round, and of what is no better than saying
+/// true every time. `model`: of the spec.
+void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink);
 
 /// Specs on the same episodes.
 struct SideBySide {

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <functional>
 
+#include "episodes/admission/leak_evidence.hpp"
 #include "episodes/admission/overlaps.hpp"
 #include "episodes/auroc.hpp"
 #include "evaluate/evaluate.hpp"
@@ -32,6 +33,7 @@ Score score(const Bootstrap& bootstrap, const std::vector<Counts>& each,
                  figure(&Rates::precision),
                  figure(&Rates::recall),
                  figure(&Rates::agreement),
+                 figure(&Rates::gain),
                  {}};
     for (const Counts& counts : each) result.counts.add(counts);
     result.duration = judged_by_duration(truths);
@@ -179,9 +181,10 @@ Evaluation summarise(const Judgement& judgement) {
     const auto alike = episodes::overlaps(judgement.folds.empty() ? judgement.episodes : in_order);
     result.repeated = alike.repeated;
     result.overlapping = alike.overlapping;
+    const episodes::LeakEvidence evidence(judgement.episodes);
     judgement.for_each(judgement.episodes, [&](std::size_t, const episodes::Recorded& episode) {
         result.frames += episode.frames;
-        result.leaked += episode.leak ? 1 : 0;
+        result.leaked += evidence.of(episode) ? 1 : 0;
     });
     const Bootstrap bootstrap(judgement.episodes.size());
     for (std::size_t i = 0; i < judgement.predicates.size(); ++i)

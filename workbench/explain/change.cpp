@@ -1,5 +1,6 @@
 // The smallest change of one measurement that turns a verdict: where some literal of it changes
-// sides, found by bisection over the floats in between, and tried in order of size.
+// sides, tried in order of size. That of an order is found by bisection over the floats in between,
+// that of == and != is at the threshold or beside it.
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -17,7 +18,7 @@ using etlmon::Key;
 
 class Search {
 public:
-    Search(const Subject& subject, const Judged& judged)
+    Search(const Subject& subject, Judged& judged)
         : subject_(subject), judged_(judged), status_(judged.status) {}
 
     std::optional<Change> among(const std::vector<Sample>& samples) {
@@ -33,10 +34,10 @@ public:
         std::stable_sort(candidates_.begin(), candidates_.end(),
                          [](const Candidate& a, const Candidate& b) { return a.size < b.size; });
         for (const Candidate& candidate : candidates_) {
+            if (!turns(candidate.altered)) continue;
             const Judged then = judge(subject_, candidate.altered);
-            if (turned(then))
-                return Change{candidate.sample, candidate.altered.measured, then.status,
-                              then.reading == Reading::for_good};
+            return Change{candidate.sample, candidate.altered.measured, then.status,
+                          then.reading == Reading::for_good};
         }
         return std::nullopt;
     }
@@ -48,9 +49,10 @@ private:
         Altered altered;
     };
 
-    bool turned(const Judged& then) const {
-        return then.status != status_ ||
-               (judged_.reading == Reading::for_good && then.reading == Reading::so_far);
+    /// Whether the status is no longer there: so far, or for good, as it was.
+    bool turns(const Altered& altered) {
+        const Sourced root = judged_.values.at_with(altered, subject_.root, subject_.position);
+        return !subject_.supports(status_, root.key);
     }
 
     /// The atoms that one distance or expression, or one bool, decides.
@@ -69,7 +71,8 @@ private:
         return result;
     }
 
-    /// Where a literal that supports the status no longer does.
+    /// Where a literal that supports the status no longer does. One of == or != may begin to on the
+    /// way, so all of its points are tried.
     void add_candidates(Sample sample, const std::vector<Index>& atoms, Support& support) {
         const Observations& observed = subject_.observations;
         const float measured = observed.measured(sample);
@@ -77,14 +80,35 @@ private:
             add({kInfinity, sample, {sample.step, atoms, measured != 0 ? 0.0F : 1.0F}}, support);
             return;
         }
-        for (const Index atom : atoms)
+        std::set<float> tried;
+        const auto try_with = [&](float other) {
+            if (other == measured || !tried.insert(other).second) return;
+            const double size = static_cast<double>(other) - static_cast<double>(measured);
+            add({std::abs(size), sample, {sample.step, atoms, other}}, support);
+        };
+        for (const Index atom : atoms) {
+            if (observed.predicate(atom).equality()) {
+                for (const float other : points_of_equality(atom)) try_with(other);
+                continue;
+            }
             for (const NodeId literal : support.literals({atom, sample.step}))
                 for (const bool up : {false, true})
                     if (const auto other = turning_point(literal, atom, measured, up))
-                        add({std::abs(static_cast<double>(*other) - static_cast<double>(measured)),
-                             sample,
-                             {sample.step, atoms, *other}},
-                            support);
+                        try_with(*other);
+        }
+    }
+
+    /// The threshold, where == holds alone, and the floats beside it, as far as the expression can
+    /// have them.
+    std::vector<float> points_of_equality(Index atom) const {
+        constexpr float kEnd = std::numeric_limits<float>::infinity();
+        const check::Predicate& predicate = subject_.observations.predicate(atom);
+        const float threshold = predicate.threshold.value + 0.0F;  // 0 in place of -0
+        std::vector<float> points;
+        for (const float point :
+             {threshold, std::nextafter(threshold, -kEnd), std::nextafter(threshold, kEnd)})
+            if (std::isfinite(point) && predicate.delta.contains(point)) points.push_back(point);
+        return points;
     }
 
     /// Unless the status is there without the literals that then no longer support it.
@@ -123,7 +147,7 @@ private:
     static constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
     const Subject& subject_;
-    const Judged& judged_;
+    Judged& judged_;
     Status status_;
     std::vector<std::string> expressions_;  ///< per atom
     std::vector<Candidate> candidates_;
@@ -131,7 +155,7 @@ private:
 
 }  // namespace
 
-std::optional<Change> smallest_change(const Subject& subject, const Judged& judged,
+std::optional<Change> smallest_change(const Subject& subject, Judged& judged,
                                       const std::vector<Sample>& samples) {
     return Search(subject, judged).among(samples);
 }

@@ -161,7 +161,7 @@ Explanation explain(const ir::Program& program, const Observations& observations
                           question.position,
                           question.step,
                           monitor.calibration ? monitor.calibration->threshold.value : 0};
-    const Judged judged = judge(subject);
+    Judged judged = judge(subject);
     Explanation result;
     result.status = judged.status;
     if (judged.status == Status::unknown) {

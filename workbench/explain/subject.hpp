@@ -35,8 +35,8 @@ Judged judge(const Subject& subject, const std::optional<Altered>& altered = std
 End deciding_end(Status status);
 
 /// The smallest change of one measurement behind the samples that turns the verdict; a bool's only
-/// where no other does.
-std::optional<Change> smallest_change(const Subject& subject, const Judged& judged,
+/// where no other does. The values are altered meanwhile.
+std::optional<Change> smallest_change(const Subject& subject, Judged& judged,
                                       const std::vector<Sample>& samples);
 
 }  // namespace etlc::explain

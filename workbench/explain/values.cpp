@@ -83,7 +83,9 @@ std::vector<bool> closure(const ir::Graph& graph, const std::vector<NodeId>& roo
 Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
                const Observations& observations, std::uint64_t last, End end, Reading reading,
                const std::optional<Altered>& altered)
-    : atoms_(observations.atoms().size()),
+    : graph_(&graph),
+      observations_(&observations),
+      atoms_(observations.atoms().size()),
       seen_(last + 1),
       end_(end),
       reading_(reading),
@@ -92,7 +94,7 @@ Values::Values(const ir::Graph& graph, const std::vector<bool>& nodes,
         if (!nodes[id]) continue;
         const ir::Node& node = graph[id];
         switch (ir::info(node.op).arity) {
-            case ir::Arity::atom: values_[id] = literal(node, observations, altered); break;
+            case ir::Arity::atom: values_[id] = leaf(node, altered); break;
             case ir::Arity::many: values_[id] = combination(node); break;
             case ir::Arity::unary:
             case ir::Arity::binary: values_[id] = temporal(node); break;
@@ -108,33 +110,37 @@ std::optional<Sample> Values::source(Sourced value) const {
     return Sample{static_cast<Index>(sample % atoms_), sample / atoms_};
 }
 
-Column Values::literal(const ir::Node& node, const Observations& observations,
-                       const std::optional<Altered>& altered) const {
-    const std::size_t length = seen_ + (is_for_good() ? 1 : 0);
-    if (node.op == ir::Op::constant_true) return Column(length, kTrueItself);
-    if (node.op == ir::Op::constant_false) return Column(length, kFalseItself);
-    const Index atom = observations.atom(node.op == ir::Op::predicate, node.index);
-    const bool is_altered = altered && std::find(altered->atoms.begin(), altered->atoms.end(),
-                                                 atom) != altered->atoms.end();
-    Column result(length);
-    for (std::size_t step = 0; step < length; ++step) {
-        const etlmon::Value value = step == seen_ ? observations.range(atom)
-                                    : is_altered && altered->step == step
-                                        ? observations.value(atom, altered->measured)
-                                        : observations.value({atom, step});
-        const bool low = (end_ == End::low) != node.negated;
-        const Sourced found = sourced(low ? value.low : value.high, step * atoms_ + atom);
-        result[step] = node.negated ? -found : found;
-    }
+Sourced Values::constant_or_literal(const ir::Node& node, std::size_t step,
+                                    const std::optional<Altered>& altered) const {
+    if (node.op == ir::Op::constant_true) return kTrueItself;
+    if (node.op == ir::Op::constant_false) return kFalseItself;
+    const Index atom = observations_->atom(node.op == ir::Op::predicate, node.index);
+    const bool is_altered = altered && altered->step == step && altered->is_of(atom);
+    const etlmon::Value value = step == seen_ ? observations_->range(atom)
+                                : is_altered  ? observations_->value(atom, altered->measured)
+                                              : observations_->value({atom, step});
+    const bool low = (end_ == End::low) != node.negated;
+    const Sourced found = sourced(low ? value.low : value.high, step * atoms_ + atom);
+    return node.negated ? -found : found;
+}
+
+Column Values::leaf(const ir::Node& node, const std::optional<Altered>& altered) const {
+    Column result(seen_ + (is_for_good() ? 1 : 0));
+    for (std::size_t step = 0; step < result.size(); ++step)
+        result[step] = constant_or_literal(node, step, altered);
+    return result;
+}
+
+Sourced Values::combined(const ir::Node& node, std::size_t position) const {
+    const Choice choose{node.op == ir::Op::disjunction};
+    Sourced result = values_[node.operands.front()][position];
+    for (const NodeId operand : node.operands) result = choose(result, values_[operand][position]);
     return result;
 }
 
 Column Values::combination(const ir::Node& node) const {
-    const Choice choose{node.op == ir::Op::disjunction};
-    Column result = values_[node.operands.front()];
-    for (const NodeId operand : node.operands)
-        for (std::size_t t = 0; t < result.size(); ++t)
-            result[t] = choose(result[t], values_[operand][t]);
+    Column result(values_[node.operands.front()].size());
+    for (std::size_t t = 0; t < result.size(); ++t) result[t] = combined(node, t);
     return result;
 }
 
@@ -172,6 +178,50 @@ Sourced Values::unseen(const ir::Node& node) const {
     if (past && (moves || never_forgets))
         for (const Sourced& known : operand) result = choose(result, known);
     return result;
+}
+
+// ---- with other measurements --------------------------------------------------------------------
+
+Sourced Values::at_with(const Altered& altered, NodeId node, std::uint64_t position) {
+    changed_.resize(node + std::size_t{1});
+    for (NodeId id = 0; id <= node; ++id)
+        if (has(id)) alter(id, altered);
+    const Sourced result = at(node, position);
+    for (; !before_.empty(); before_.pop_back()) {
+        const Before& was = before_.back();
+        values_[was.node][was.position] = was.value;
+        changed_[was.node].clear();
+    }
+    return result;
+}
+
+void Values::set(NodeId node, std::size_t position, Sourced value) {
+    Sourced& now = values_[node][position];
+    if (now == value) return;
+    before_.push_back({node, position, now});
+    changed_[node].push_back(position);
+    now = value;
+}
+
+/// Its operands are altered.
+void Values::alter(NodeId id, const std::optional<Altered>& altered) {
+    const ir::Node& node = (*graph_)[id];
+    switch (ir::info(node.op).arity) {
+        case ir::Arity::atom:
+            return set(id, altered->step, constant_or_literal(node, altered->step, altered));
+        case ir::Arity::many:
+            for (const NodeId operand : node.operands)
+                for (const std::size_t position : changed_[operand])
+                    set(id, position, combined(node, position));
+            return;
+        case ir::Arity::unary:
+        case ir::Arity::binary: break;
+    }
+    if (std::all_of(node.operands.begin(), node.operands.end(),
+                    [&](NodeId operand) { return changed_[operand].empty(); }))
+        return;
+    const Column column = temporal(node);
+    for (std::size_t t = 0; t < column.size(); ++t) set(id, t, column[t]);
 }
 
 }  // namespace etlc::explain

@@ -5,6 +5,7 @@
 // written, since values are totally ordered and a min or a max is one of its operands.
 #pragma once
 
+#include <algorithm>
 #include <compare>
 #include <cstdint>
 #include <optional>
@@ -41,6 +42,10 @@ struct Altered {
     std::uint64_t step = 0;
     std::vector<Index> atoms;
     float measured = 0;
+
+    bool is_of(Index atom) const {
+        return std::find(atoms.begin(), atoms.end(), atom) != atoms.end();
+    }
 };
 
 class Values {
@@ -55,14 +60,31 @@ public:
     /// Nothing where a value is that of an empty window, of a constant, or of what is not yet seen.
     std::optional<Sample> source(Sourced value) const;
 
+    /// What the node would be with other measurements. Only what these change is evaluated again.
+    Sourced at_with(const Altered& altered, NodeId node, std::uint64_t position);
+
 private:
-    std::vector<Sourced> literal(const ir::Node& node, const Observations& observations,
-                                 const std::optional<Altered>& altered) const;
+    /// What a value was before a change that is taken back.
+    struct Before {
+        NodeId node = 0;
+        std::size_t position = 0;
+        Sourced value;
+    };
+
+    Sourced constant_or_literal(const ir::Node& node, std::size_t step,
+                                const std::optional<Altered>& altered) const;
+    std::vector<Sourced> leaf(const ir::Node& node, const std::optional<Altered>& altered) const;
+    Sourced combined(const ir::Node& node, std::size_t position) const;
     std::vector<Sourced> combination(const ir::Node& node) const;
     std::vector<Sourced> temporal(const ir::Node& node) const;
     Sourced unseen(const ir::Node& node) const;
     bool is_for_good() const { return reading_ == Reading::for_good; }
 
+    void set(NodeId node, std::size_t position, Sourced value);
+    void alter(NodeId node, const std::optional<Altered>& altered);
+
+    const ir::Graph* graph_;
+    const Observations* observations_;
     std::size_t atoms_;
     std::size_t seen_;  ///< positions of the prefix
     End end_;
@@ -70,6 +92,8 @@ private:
     /// [node][position]; empty: not evaluated. For good, the position after the prefix stands for
     /// all that may come: its values are the lowest, or highest, unseen ones.
     std::vector<std::vector<Sourced>> values_;
+    std::vector<std::vector<std::size_t>> changed_;  ///< [node]: the positions, while altered
+    std::vector<Before> before_;
 };
 
 /// These nodes and all below them.

@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "check/guarantees/provenance.hpp"
-#include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/label_doubts.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::fit {
 
@@ -27,16 +29,43 @@ void warn_of_constants(const check::Model& model, const Fitted& fitted, const So
                        diag::Sink& sink) {
     if (solution.constant == 0) return;
     const std::uint32_t all = model.points[fitted.point].dimension;
-    // Of the data: of the spec nothing is wrong.
-    diag::Diagnostic found = data::in_file(
-        {Code::constant_features,
-         fmt::format("{} of {} of {} {} the same at all frames that '{}' is fitted on",
-                     solution.constant, counted(all, "element"), model.points[fitted.point].text,
-                     solution.constant == 1 ? "is" : "are", fitted.name)},
-        "--data");
-    found.span = fitted.span;
-    sink.report(std::move(found))
+    episodes::warn_of_data(
+        Code::constant_features,
+        fmt::format("{} of {} of {} {} the same at all frames that '{}' is fitted on",
+                    solution.constant, counted(all, "element"), model.points[fitted.point].text,
+                    solution.constant == 1 ? "is" : "are", fitted.name),
+        fitted.span, sink)
         .note("what they would be elsewhere, nobody knows: look at how the embedding is made");
+}
+
+/// Whether `a` is less than `b` by more than the intervals of both explain. They are of the same
+/// episodes, so their errors mostly go together, and the difference is surer than this says.
+bool surely_less(const std::optional<episodes::Auroc>& a, const std::optional<episodes::Auroc>& b) {
+    if (!a || !b || !a->interval || !b->interval) return false;
+    return b->value - a->value >
+           std::hypot(a->interval->high - a->value, b->value - b->interval->low);
+}
+
+void warn_of_doubts(const check::Predicate& predicate, const Separation& separation,
+                    diag::Sink& sink) {
+    // On frames that were left out, what was fitted to noise is below 0.5 too.
+    constexpr double kBelowNoise = 0.25;
+    const std::optional<episodes::Auroc>& plain = separation.before;
+    const std::optional<episodes::Auroc>& fitted = separation.after;
+    const bool is_low = fitted && fitted->interval && fitted->interval->high < kBelowNoise;
+    if (episodes::warn_of_labels(predicate, separation.labels, is_low ? fitted : std::nullopt,
+                                 sink) ||
+        !surely_less(fitted, plain))
+        return;
+    episodes::warn_of_data(
+        Code::fit_makes_worse,
+        fmt::format("'{}' tells frames apart worse by what was fitted than by the plain distance: "
+                    "the area under the ROC curve is {:.2f}, and {:.2f} without a fit",
+                    predicate.name, fitted->value, plain->value),
+        predicate.threshold.span, sink)
+        .note(
+            "look at what 'where' chooses, and whether there are enough episodes for what is "
+            "fitted; or measure from the plain point");
 }
 
 /// False where something is refused.
@@ -52,28 +81,16 @@ bool report(const Filled& all, diag::Sink& sink) {
     return false;
 }
 
-/// Labels of a predicate in `where` that has a truth came from arrays in its place.
-bool chosen_by_arrays(const check::Model& model, const Fitted& fitted,
-                      const Collection& collection) {
-    if (fitted.where == check::kNone) return false;
-    const std::vector<Index> predicates = check::predicates_of(model, fitted.where);
-    return std::any_of(model.truths.begin(), model.truths.end(), [&](const check::Truth& truth) {
-        const auto among = [&](const std::vector<Index>& all) {
-            return std::find(all.begin(), all.end(), truth.predicate) != all.end();
-        };
-        return among(predicates) && among(collection.readings.from_arrays());
-    });
-}
-
 fitted::Entry entry_of(const check::Model& model, const Fitted& fitted, const Solution& solution,
                        const Collection& collection) {
-    check::FittedProvenance provenance = check::provenance(model, fitted);
-    if (chosen_by_arrays(model, fitted, collection)) provenance.truth = "array";
+    check::FittedProvenance provenance =
+        check::provenance(model, fitted, collection.readings.labelling());
     fitted::Entry entry;
     entry.name = fitted.name;
     entry.declaration = fitted.declaration;
     entry.of = std::move(provenance.of);
     entry.truth = std::move(provenance.truth);
+    entry.reads = std::move(provenance.reads);
     entry.rows = fitted.rows;
     entry.columns = fitted.columns;
     entry.matrix = solution.filling.matrix;
@@ -110,6 +127,7 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     if (!collection) return std::nullopt;
     const std::vector<episodes::Recorded>& read = collection->readings.episodes();
     const auto recorded = episodes::recorded(read);
+    episodes::warn_of_unmarked(recorded, sink);
     const thresholds::Allowance allowance =
         episodes::admit(model, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
@@ -120,6 +138,8 @@ std::optional<Fit> fit(const check::Model& model, const Request& request, diag::
     if (!report(all, sink)) return std::nullopt;
     const auto separations = separate(filled.without, solver, measured, request, sink);
     if (!separations) return std::nullopt;
+    for (const Separation& one : separations->all)
+        warn_of_doubts(model.predicates[one.predicate], one, sink);
 
     Fit result;
     result.file.spec = model.name;

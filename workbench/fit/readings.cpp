@@ -54,12 +54,10 @@ std::optional<Readings> Readings::read(episodes::Wanted wanted, const Request& r
         return std::make_unique<Reader>(*result.wanted_, request.names, room);
     });
     if (!all) return std::nullopt;
-    result.from_arrays_ = result.wanted_->predicates;
+    result.labelling_.episodes = all->size();
     for (const std::size_t e : episodes::by_content(episodes::recorded(*all))) {
         Read& one = (*all)[e];
-        std::erase_if(result.from_arrays_, [&](Index predicate) {
-            return !std::binary_search(one.from_arrays.begin(), one.from_arrays.end(), predicate);
-        });
+        for (const Index predicate : one.from_arrays) ++result.labelling_.from_arrays[predicate];
         result.index_.emplace(one.path, result.episodes_.size());
         result.kept_.push_back(std::move(one.kept));
         result.episodes_.push_back(std::move(static_cast<episodes::Recorded&>(one)));

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "check/guarantees/provenance.hpp"
 #include "diag/diag.hpp"
 #include "episodes/recording.hpp"
 #include "fit/kept.hpp"
@@ -27,8 +28,7 @@ public:
     const std::vector<episodes::Recorded>& episodes() const { return episodes_; }
     /// Of the same.
     std::vector<std::string> paths() const;
-    /// Predicates whose labels come from arrays in all episodes, ascending.
-    const std::vector<Index>& from_arrays() const { return from_arrays_; }
+    const check::Labelling& labelling() const { return labelling_; }
     std::size_t index_of(const std::string& path) const { return index_.at(path); }
     const episodes::Wanted& wanted() const { return *wanted_; }
 
@@ -42,7 +42,7 @@ private:
     std::vector<episodes::Recorded> episodes_;
     std::vector<std::shared_ptr<const Kept>> kept_;  ///< per episode; null: to be read again
     std::unordered_map<std::string, std::size_t> index_;
-    std::vector<Index> from_arrays_;
+    check::Labelling labelling_;
 };
 
 }  // namespace etlc::fit

@@ -215,8 +215,12 @@ std::optional<Separations> separate(const std::vector<Filled>& filled, const Sol
         Separation separation{predicates[i].predicate,
                               episodes::auroc(before, paths.size()),
                               episodes::auroc(after, paths.size()),
+                              {},
                               {}};
         separation.worst = worst(after);
+        for (const auto& group : after)
+            for (const RankedFrame& frame : group)
+                ++(frame.positive ? separation.labels.positives : separation.labels.negatives);
         result.all.push_back(std::move(separation));
     }
     return result;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "episodes/auroc.hpp"
+#include "episodes/label_doubts.hpp"
 #include "fit/collect.hpp"
 #include "fit/fill.hpp"
 
@@ -30,6 +31,7 @@ struct Separation {
     std::optional<episodes::Auroc> before;
     std::optional<episodes::Auroc> after;
     std::vector<WorstFrame> worst;  ///< worst first, one of an episode
+    episodes::Labels labels;        ///< of the frames that are measured after the fit
 };
 
 /// The predicates to ask about: their distance rests on something fitted, and they have labels.

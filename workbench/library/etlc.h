@@ -53,7 +53,8 @@ enum {
  * them. Empty where it did not fail. Good until this thread's next call. Never null. */
 ETLC_EXPORT const char *etlc_message(void);
 
-/* The diagnostics of that call as `etlc --diagnostics json` prints them: {"diagnostics": [...]}. */
+/* The diagnostics of that call as `etlc --diagnostics json` prints them: {"diagnostics": [...]}.
+ * After an etlc_open() that did not fail, its warnings. */
 ETLC_EXPORT const char *etlc_message_json(void);
 
 /* Of the library, as "0.5.0". */

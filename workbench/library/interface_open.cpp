@@ -156,8 +156,10 @@ etlc_status etlc_open(const etlc_options* options, etlc_session* session) {
                                              diag::render_json(file, sink));
             return ETLC_REFUSED;
         }
+        std::string warnings = diag::render_json(file, sink);
         *session = hold(std::move(opened));
         if (*session == 0) return refuse(ETLC_OUT_OF_MEMORY, "too many sessions are open");
+        Message::here().take_warnings(std::move(warnings));
         return ETLC_OK;
     });
 }

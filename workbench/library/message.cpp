@@ -32,6 +32,11 @@ void Message::take_diagnostics(std::string text, std::string json) noexcept {
     json_ = diagnostics_json_.c_str();
 }
 
+void Message::take_warnings(std::string json) noexcept {
+    diagnostics_json_ = std::move(json);
+    json_ = diagnostics_json_.c_str();
+}
+
 etlc_status Message::say_what_failed() noexcept {
     clear();
     try {

@@ -21,6 +21,8 @@ public:
     const char* json() const { return json_; }
     void clear() noexcept;
     void take_diagnostics(std::string text, std::string json) noexcept;
+    /// Of a call that did not fail.
+    void take_warnings(std::string json) noexcept;
 
     /// A line, cut off where it is longer than there is room for.
     template <class... Arguments>

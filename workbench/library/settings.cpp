@@ -40,12 +40,13 @@ std::string number_at_begin(std::string_view text) {
 }
 
 std::optional<check::Setting> parse(const std::string& word) {
-    constexpr std::array<std::string_view, 5> kUnits{"", "us", "ms", "s", "min"};
+    constexpr std::array<std::string_view, 6> kUnits{"", "us", "ms", "s", "min", "steps"};
     const std::size_t sign = word.find('=');
     if (sign == std::string::npos || sign == 0) return std::nullopt;
     check::Setting setting{word.substr(0, sign), number_at_begin(word.substr(sign + 1)), ""};
     setting.unit = word.substr(sign + 1 + setting.number.size());
     if (setting.unit.starts_with(' ')) setting.unit.erase(0, 1);
+    if (setting.unit == "step") setting.unit = "steps";
     const bool fits = std::find(kUnits.begin(), kUnits.end(), setting.unit) != kUnits.end();
     return setting.number.empty() || !fits ? std::nullopt : std::optional(std::move(setting));
 }

@@ -165,6 +165,12 @@ diag::Result<Archive> Archive::open(const ArchivePlace& place) {
 Failure Archive::missing(const std::string& key) const {
     if (keys_.empty())
         return {Code::no_such_array, fmt::format("holds no arrays, expected {}", in_quotes(key))};
+    const std::string whole = key.substr(0, key.rfind('['));
+    if (key.ends_with(']') && std::find(keys_.begin(), keys_.end(), whole) != keys_.end())
+        return {Code::no_such_array,
+                fmt::format("has no array {}, but {}, of which no single elements are taken: save "
+                            "the element as an array of its own",
+                            in_quotes(key), in_quotes(whole))};
     std::string message =
         fmt::format("has no array {}; it holds {}", in_quotes(key), listed(keys_));
     std::vector<std::string> candidates = keys_;

@@ -5,8 +5,6 @@
 
 #include "data/datasets/stored_images.hpp"
 #include "data/datasets/trace.hpp"
-#include "data/files/file.hpp"
-#include "data/files/lfs.hpp"
 #include "data/quote.hpp"
 
 namespace etlc::data {
@@ -14,9 +12,6 @@ namespace {
 
 using diag::Code;
 using diag::Failure;
-
-/// How far the begin of an episode may be from a frame of its video, in frames.
-constexpr double kTolerance = 0.1;
 
 /// As many frames as there are steps.
 class ClipFrames final : public FrameSource {
@@ -62,29 +57,7 @@ diag::Result<std::string> camera_of(const Dataset& set, const std::string& asked
                    fmt::format("has no camera {}, but {}", in_quotes(asked), listed(cameras))};
 }
 
-std::string camera_lack(const Dataset& set, const DatasetEpisode& episode,
-                        const std::string& camera) {
-    const auto found = episode.clips.find(camera);
-    if (found == episode.clips.end()) return "";  // its images are in the rows
-    const Clip& clip = found->second;
-    if (auto why = why_unreadable(set.path_of(clip.path)))
-        return fmt::format("{}: {}", clip.path, *why);
-    if (is_lfs_pointer(set.path_of(clip.path)))
-        return fmt::format("{}: {}", clip.path, kIsLfsPointer);
-    const double first = clip.begin * set.fps();
-    if (std::abs(first - std::round(first)) > kTolerance)
-        return fmt::format("it begins at {:.6g} s in {}, where no frame is at {:.6g} a second",
-                           clip.begin, clip.path, set.fps());
-    const double frames = std::round((clip.end - clip.begin) * set.fps());
-    if (!clip.is_whole && frames != static_cast<double>(episode.length))
-        return fmt::format("it has {}, and from {:.6g} to {:.6g} s in {}, {:.6g} frames",
-                           diag::counted(episode.length, "row"), clip.begin, clip.end, clip.path,
-                           frames);
-    return "";
-}
-
-diag::Result<std::unique_ptr<FrameSource>> open_clip(const Dataset& set,
-                                                     const DatasetEpisode& episode,
+diag::Result<std::unique_ptr<FrameSource>> open_clip(Dataset& set, const DatasetEpisode& episode,
                                                      const std::string& camera,
                                                      std::uint64_t stride) {
     const auto found = episode.clips.find(camera);
@@ -94,6 +67,12 @@ diag::Result<std::unique_ptr<FrameSource>> open_clip(const Dataset& set,
     if (!clip.is_whole) {
         choice.first = static_cast<std::uint64_t>(std::llround(clip.begin * set.fps()));
         choice.count = episode.length;
+    }
+    if (!clip.is_whole || stride > 1) {
+        const VideoParts& video = set.parts_of(clip.path);
+        choice.total = video.frames;
+        choice.total_of = fmt::format("of {}, the last of them {}",
+                                      diag::counted(video.parts.size(), "episode"), video.last);
     }
     auto frames = open_video(set.path_of(clip.path), choice);
     if (!frames) return frames;

@@ -23,7 +23,7 @@ struct Clip {
     std::string path;       ///< in the folder
     double begin = 0;       ///< seconds
     double end = 0;         ///< 0: it is not said
-    bool is_whole = false;  ///< the video has no other episode
+    bool is_whole = false;  ///< it is all of the video
 };
 
 struct DatasetEpisode {
@@ -32,6 +32,21 @@ struct DatasetEpisode {
     std::vector<std::string> tasks;
     std::string rows;                   ///< the file in the folder
     std::map<std::string, Clip> clips;  ///< by camera; without those whose images are in the rows
+};
+
+/// An episode in a video.
+struct VideoPart {
+    const DatasetEpisode* episode = nullptr;
+    const std::string* camera = nullptr;
+    const Clip* clip = nullptr;
+};
+
+/// The episodes in a video, in the order in which it shows them.
+struct VideoParts {
+    std::vector<VideoPart> parts;
+    std::string fault;  ///< why it is not known whose its frames are; empty: it is
+    std::optional<std::uint64_t> frames;  ///< that the video has to have
+    std::string last;                     ///< "episode 7 (6 rows, from 1.2 to 1.8 s)"
 };
 
 struct Feature {
@@ -61,19 +76,30 @@ public:
     /// Why the rows of an episode are not what the metadata say; empty: they are. Looks at the file
     /// that they are in.
     std::string lack(const DatasetEpisode& episode);
+    /// All episodes that the metadata put into a video, whichever is asked for.
+    const VideoParts& parts_of(const std::string& video);
 
 private:
     friend class DatasetReader;
 
+    /// Of an episode, what its file of rows holds.
+    struct Found {
+        std::uint64_t rows = 0;
+        std::string lack;
+    };
+
+    const Found& found(const DatasetEpisode& episode);
     void survey(const std::string& rows);
+    void judge(VideoParts& video);
 
     std::string folder_;
     double fps_ = 0;
     std::vector<Feature> features_;
     std::vector<DatasetEpisode> episodes_;
     std::vector<std::string> contradictions_;
-    std::mutex lock_;                                                    ///< of what follows
-    std::map<std::string, std::map<std::uint64_t, std::string>> lacks_;  ///< by file of rows
+    std::mutex lock_;                                              ///< of what follows
+    std::map<std::string, std::map<std::uint64_t, Found>> found_;  ///< by file of rows
+    std::map<std::string, VideoParts> parts_;                      ///< by video
 };
 
 /// Whether a folder is a data set.
@@ -87,6 +113,8 @@ struct DatasetPath {
 };
 /// Nothing where the path is not one of a data set.
 std::optional<DatasetPath> dataset_path(const std::string& path);
+/// Why a path leads to no recording, with the data set that may have been meant.
+std::string with_dataset_meant(const std::string& why, const std::string& path);
 /// "pusht:000003"
 std::string episode_path(const std::string& folder, std::uint64_t index);
 

@@ -1,4 +1,5 @@
-// Files of JSON values, one a line; lines of blanks are passed over.
+// JSON as Python writes it: NaN, Infinity and -Infinity are no JSON, and stand for null. Files of
+// values, one a line; lines of blanks are passed over.
 #pragma once
 
 #include <algorithm>
@@ -11,6 +12,9 @@
 
 namespace etlc::data {
 
+/// Discarded where it is no JSON.
+nlohmann::json parse_json(std::string_view text);
+
 /// Calls `visit(line, json)` for each, lines counted from 1; of one that is no JSON `json` is
 /// discarded. Ends with the first failure that it gives.
 template <class Visit>
@@ -22,8 +26,7 @@ std::optional<diag::Failure> for_each_json_line(std::string_view text, const Vis
         at = end + 1;
         ++line;
         if (words.find_first_not_of(" \t\r") == std::string_view::npos) continue;
-        std::optional<diag::Failure> failure =
-            visit(line, nlohmann::json::parse(words, nullptr, false));
+        std::optional<diag::Failure> failure = visit(line, parse_json(words));
         if (failure) return failure;
     }
     return std::nullopt;

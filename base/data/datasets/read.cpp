@@ -81,7 +81,7 @@ private:
     std::optional<Failure> read_info() {
         const auto bytes = read_file(set_->path_of(kInfo), kMaxInfoBytes, Code::unreadable_dataset);
         if (!bytes) return in_part(kInfo, bytes.failure());
-        info_ = Json::parse(*bytes, nullptr, false);
+        info_ = parse_json(*bytes);
         if (!info_.is_object()) return wrong(kInfo, "is not JSON, or no object");
         const auto version = text(info_, "codebase_version");
         if (!version) return wrong(kInfo, "does not say its codebase_version");
@@ -247,6 +247,11 @@ private:
         for (const DatasetEpisode& episode : set_->episodes_) rows += episode.length;
         const auto check = [&](const char* key, std::uint64_t found, const char* noun) {
             const auto promised = whole(info_, key);
+            if (!promised && info_.contains(key))
+                set_->contradictions_.push_back(fmt::format(
+                    "{} has {} for {}, expected a number", kInfo,
+                    in_quotes(info_[key].dump(-1, ' ', false, Json::error_handler_t::replace)),
+                    key));
             if (promised && *promised != found)
                 set_->contradictions_.push_back(fmt::format("{} promises {}, {} lists {}", kInfo,
                                                             diag::counted(*promised, noun), place_,

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "data/datasets/dataset.hpp"
 #include "data/parquet/table.hpp"
@@ -13,40 +14,31 @@ namespace {
 /// How far a row may be from its time, in steps: as far as float32 may round, and more.
 constexpr double kTolerance = 0.1;
 
-/// The rows of an episode, as they come.
-struct Seen {
-    std::uint64_t rows = 0;
-    double begin = 0;
-    std::string lack;
-
-    void find(const std::string& what) {
-        if (lack.empty()) lack = what;
-    }
-};
-
-void check_row(Seen& seen, const std::vector<Table::Cell>& cells, double fps) {
+/// Of a row, what is not as its place says.
+std::string fault_of_row(std::uint64_t row, const std::vector<Table::Column>& columns,
+                         const std::vector<Table::Cell>& cells, double fps) {
     const Table::Cell& frame = cells[1];
     const Table::Cell& time = cells[2];
-    if (!frame.is_null && frame.numbers[0] != static_cast<double>(seen.rows))
-        seen.find(fmt::format("row {} has the frame_index {}", seen.rows, frame.numbers[0]));
-    if (!time.is_null) {
-        if (seen.rows == 0) seen.begin = time.numbers[0];
-        const double place = seen.begin + static_cast<double>(seen.rows) / fps;
-        if (!(std::abs(time.numbers[0] - place) * fps <= kTolerance))
-            seen.find(fmt::format("row {} is at {:.6g} s, expected it at {:.6g} s", seen.rows,
-                                  time.numbers[0], place));
-    }
-    ++seen.rows;
+    const auto place = static_cast<double>(row);
+    if (columns[1].is_there && (frame.is_null || frame.numbers[0] != place))
+        return fmt::format("row {} has the frame_index {}", row,
+                           frame.is_null ? "null" : fmt::format("{}", frame.numbers[0]));
+    const double time_of_row =
+        time.is_null ? std::numeric_limits<double>::quiet_NaN() : time.numbers[0];
+    if (columns[2].is_there && !(std::abs(time_of_row * fps - place) <= kTolerance))
+        return fmt::format("row {} is at {} s, expected it at {:.6g} s", row,
+                           time.is_null ? "null" : fmt::format("{:.6g}", time_of_row), place / fps);
+    return "";
 }
 
 }  // namespace
 
 void Dataset::survey(const std::string& rows) {
-    std::map<std::uint64_t, std::string>& lacks = lacks_[rows];
-    std::map<std::uint64_t, Seen> seen;
+    std::map<std::uint64_t, Found>& found = found_[rows];
     const auto give_up = [&](const std::string& why) {
         for (const DatasetEpisode& episode : episodes_)
-            if (episode.rows == rows) lacks[episode.index] = fmt::format("{}: {}", rows, why);
+            if (episode.rows == rows)
+                found[episode.index] = {episode.length, fmt::format("{}: {}", rows, why)};
     };
     auto table = Table::open(path_of(rows), {"episode_index", "frame_index", "timestamp"});
     if (!table) return give_up(table.failure().message);
@@ -64,30 +56,34 @@ void Dataset::survey(const std::string& rows) {
         if (!*more) break;
         const double index = cells[0].is_null ? -1 : cells[0].numbers[0];
         if (!(index >= 0) || index > 1e15) return give_up("has a row of no episode");
-        Seen& one = seen[static_cast<std::uint64_t>(index)];
-        if (one.rows > 0 && last != index) one.find("its rows are apart from each other");
-        check_row(one, cells, fps_);
+        Found& one = found[static_cast<std::uint64_t>(index)];
+        if (one.lack.empty() && one.rows > 0 && last != index)
+            one.lack = "its rows are apart from each other";
+        if (one.lack.empty()) one.lack = fault_of_row(one.rows, columns, cells, fps_);
+        ++one.rows;
         last = index;
     }
     for (const DatasetEpisode& episode : episodes_) {
         if (episode.rows != rows) continue;
-        Seen& one = seen[episode.index];
+        Found& one = found[episode.index];
         if (one.rows != episode.length)
-            lacks[episode.index] = fmt::format("{} has {} of it, the metadata say {}", rows,
-                                               diag::counted(one.rows, "row"), episode.length);
+            one.lack = fmt::format("{} has {} of it, the metadata say {}", rows,
+                                   diag::counted(one.rows, "row"), episode.length);
         else if (!one.lack.empty())
-            lacks[episode.index] = fmt::format("{}: {}", rows, one.lack);
+            one.lack = fmt::format("{}: {}", rows, one.lack);
         else if (one.rows == 0)
-            lacks[episode.index] = "it has no row";
+            one.lack = "it has no row";
     }
+}
+
+const Dataset::Found& Dataset::found(const DatasetEpisode& episode) {
+    if (found_.find(episode.rows) == found_.end()) survey(episode.rows);
+    return found_[episode.rows][episode.index];
 }
 
 std::string Dataset::lack(const DatasetEpisode& episode) {
     const std::lock_guard guard(lock_);
-    if (lacks_.find(episode.rows) == lacks_.end()) survey(episode.rows);
-    const auto& lacks = lacks_[episode.rows];
-    const auto found = lacks.find(episode.index);
-    return found == lacks.end() ? "" : found->second;
+    return found(episode).lack;
 }
 
 }  // namespace etlc::data

@@ -133,6 +133,14 @@ std::optional<Failure> refused(const Dataset& set, const Channel& channel, const
     return std::nullopt;
 }
 
+std::optional<Failure> refuse_empty(const DatasetPath& path) {
+    if (path.first < path.end) return std::nullopt;
+    return Failure{Code::no_such_episode,
+                   fmt::format("'{}:{}' ends before it begins: {} are the episodes from 0 up to, "
+                               "but not with, 50",
+                               path.first, path.end, in_quotes(path.folder + ":0:50"))};
+}
+
 Failure in_rows(const DatasetEpisode& episode, Failure failure) {
     failure.message = fmt::format("{}: {}", episode.rows, failure.message);
     return failure;
@@ -145,6 +153,7 @@ diag::Result<SoundEpisode> find_episode(const std::string& path) {
     if (!which) return Failure{Code::unreadable_dataset, "is no episode of a data set"};
     auto set = Dataset::known(which->folder);
     if (!set) return set.failure();
+    if (auto failure = refuse_empty(*which)) return *failure;
     const bool is_one = which->end == which->first + 1;
     if (!is_one && (*set)->episodes().size() != 1)
         return Failure{
@@ -213,6 +222,7 @@ diag::Result<std::vector<std::string>> find_dataset_episodes(const DatasetPath& 
                                                              diag::Sink& sink) {
     const auto set = Dataset::known(path.folder);
     if (!set) return set.failure();
+    if (auto failure = refuse_empty(path)) return *failure;
     const auto warn = [&](const std::string& message) {
         diag::Diagnostic found{Code::dataset_lacks, message, {}, path.folder};
         sink.report(std::move(found));

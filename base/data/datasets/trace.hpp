@@ -32,12 +32,10 @@ diag::Result<std::uint64_t> rows_a_step(const Dataset& set, double rate);
 diag::Result<std::string> camera_of(const Dataset& set, const std::string& asked);
 
 /// Why a camera does not show the episode; empty: it does, as far as the metadata tell.
-std::string camera_lack(const Dataset& set, const DatasetEpisode& episode,
-                        const std::string& camera);
+std::string camera_lack(Dataset& set, const DatasetEpisode& episode, const std::string& camera);
 
 /// A frame a step: of every `stride`-th row, `steps` of them.
-diag::Result<std::unique_ptr<FrameSource>> open_clip(const Dataset& set,
-                                                     const DatasetEpisode& episode,
+diag::Result<std::unique_ptr<FrameSource>> open_clip(Dataset& set, const DatasetEpisode& episode,
                                                      const std::string& camera,
                                                      std::uint64_t stride);
 

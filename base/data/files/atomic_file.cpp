@@ -1,7 +1,9 @@
 #include "data/files/atomic_file.hpp"
 
+#include <dirent.h>
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <signal.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -10,6 +12,7 @@
 #include <climits>
 #include <cstdio>
 #include <filesystem>
+#include <memory>
 #include <utility>
 
 #include "data/files/file.hpp"
@@ -42,6 +45,48 @@ std::string temporary_name(unsigned number) {
     return fmt::format(".etlc-{}-{}.part", ::getpid(), number);
 }
 
+struct CloseFolder {
+    void operator()(DIR* folder) const { ::closedir(folder); }
+};
+
+/// The process of such a name; 0 of any other name.
+pid_t process_in(const std::string& name) {
+    int process = 0;
+    unsigned number = 0;
+    if (std::sscanf(name.c_str(), ".etlc-%d-%u.part", &process, &number) != 2) return 0;
+    return name == fmt::format(".etlc-{}-{}.part", process, number) ? process : 0;
+}
+
+/// Whoever writes a temporary file holds it, in whatever container: others can tell that it is in
+/// use.
+void hold(int file) {
+    static_cast<void>(::flock(file, LOCK_EX | LOCK_NB));
+}
+
+/// Whether the process is gone and nobody holds the file.
+bool is_left_over(int folder, const std::string& name) {
+    const pid_t process = process_in(name);
+    if (process <= 0 || ::kill(process, 0) == 0 || errno != ESRCH) return false;
+    const Descriptor file(uninterrupted([&] {
+        return ::openat(folder, name.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    }));
+    return file && ::flock(*file, LOCK_EX | LOCK_NB) == 0;
+}
+
+/// Removes what processes that were killed have left in a folder.
+void clear(int folder) {
+    const int copy =
+        uninterrupted([&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); });
+    if (copy < 0) return;
+    const std::unique_ptr<DIR, CloseFolder> entries(::fdopendir(copy));
+    if (!entries) {
+        ::close(copy);
+        return;
+    }
+    while (const dirent* const entry = ::readdir(entries.get()))
+        if (is_left_over(folder, entry->d_name)) ::unlinkat(folder, entry->d_name, 0);
+}
+
 /// "folder/", "folder" and the like: nothing that a file could be called.
 bool names_no_file(const fs::path& path) {
     return !path.has_filename() || path.filename() == "." || path.filename() == "..";
@@ -56,15 +101,17 @@ public:
         : folder_(uninterrupted(
               [&] { return ::openat(folder, ".", O_RDONLY | O_DIRECTORY | O_CLOEXEC); })) {
         for (int i = 0; folder_ && i < kMostTurns; ++i) {
-            if (::flock(*folder_, LOCK_EX | LOCK_NB) == 0 ||
-                (errno != EWOULDBLOCK && errno != EINTR))
-                return;
+            is_held_ = ::flock(*folder_, LOCK_EX | LOCK_NB) == 0;
+            if (is_held_ || (errno != EWOULDBLOCK && errno != EINTR)) return;
             ::usleep(kTurnMicroseconds);
         }
     }
 
+    bool is_held() const { return is_held_; }
+
 private:
     Descriptor folder_;
+    bool is_held_ = false;
 };
 
 }  // namespace
@@ -133,6 +180,7 @@ bool AtomicFile::open_temporary(mode_t mode) {
         std::string name = temporary_name(i);
         file_ = Descriptor(open(name.c_str(), O_CREAT | O_EXCL));
         if (file_) {
+            hold(*file_);
             state_ = State::temporary;
             temporary_ = std::move(name);
             return true;
@@ -174,6 +222,7 @@ bool AtomicFile::link_as(const char* name) {
 }
 
 bool AtomicFile::name_temporarily() {
+    hold(*file_);
     for (unsigned i = 0; i < kMostNames; ++i) {
         std::string name = temporary_name(i);
         if (link_as(name.c_str())) {
@@ -236,6 +285,7 @@ std::optional<Uncommitted> commit_all(const std::vector<AtomicFile*>& files) {
     };
     if (auto uncommitted = all(&AtomicFile::finish)) return uncommitted;
     const Turn turn(files.empty() ? -1 : *files.back()->folder_);
+    if (turn.is_held()) clear(*files.back()->folder_);
     if (auto uncommitted = all(&AtomicFile::place)) {
         while (n > 0) files[--n]->take_back();
         return uncommitted;

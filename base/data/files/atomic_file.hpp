@@ -5,9 +5,9 @@
 // before, and no other file. A process that is killed leaves none either: until it is complete a
 // file has no name, where the file system knows such files. There is a window of a few system calls
 // while names change hands, and there are file systems without nameless files: a kill then leaves
-// `.etlc-PROCESS-NUMBER.part`. A file that is replaced keeps its permissions, and its owner and
-// group where the system lets them be kept. Nothing waits for the disk: a machine that loses its
-// power loses what it had not yet stored.
+// `.etlc-PROCESS-NUMBER.part`, until the next call that writes into that folder. A file that is
+// replaced keeps its permissions, and its owner and group where the system lets them be kept.
+// Nothing waits for the disk: a machine that loses its power loses what it had not yet stored.
 #pragma once
 
 #include <sys/stat.h>

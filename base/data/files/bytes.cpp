@@ -75,8 +75,8 @@ std::unique_ptr<ByteSource> standard_input() {
     return std::make_unique<StandardInput>();
 }
 
-diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path) {
-    if (auto why = why_unreadable(path))
+diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path, Streams streams) {
+    if (auto why = why_unreadable(path, streams))
         return diag::Failure{diag::Code::unreadable_data_file, *why};
     std::FILE* file = std::fopen(path.c_str(), "rbe");
     if (file == nullptr)

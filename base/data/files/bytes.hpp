@@ -9,6 +9,7 @@
 #include <string>
 #include <string_view>
 
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 
 namespace etlc::data {
@@ -22,8 +23,9 @@ public:
     virtual std::uint64_t size() const = 0;
 };
 
-/// A regular file, or (size 0) anything else that can be read to its end.
-diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path);
+/// A regular file, or (size 0) a stream that can be read to its end.
+diag::Result<std::unique_ptr<ByteSource>> open_file(const std::string& path,
+                                                    Streams streams = Streams::refused);
 
 /// Standard input: of a pipe `read` gives what is there, so only 0 bytes are the end.
 std::unique_ptr<ByteSource> standard_input();

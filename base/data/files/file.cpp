@@ -34,16 +34,21 @@ std::string error_words(int error) {
     }
 }
 
-std::optional<std::string> why_unreadable(const std::string& path) {
+std::optional<std::string> why_unreadable(const std::string& path, Streams streams) {
     struct stat status {};
     if (::stat(path.c_str(), &status) != 0) return error_words(errno);
     if (S_ISDIR(status.st_mode)) return error_words(EISDIR);
+    if (streams == Streams::refused && !S_ISREG(status.st_mode))
+        return fmt::format("is a {}, expected a file", S_ISFIFO(status.st_mode)   ? "pipe"
+                                                       : S_ISSOCK(status.st_mode) ? "socket"
+                                                                                  : "device");
     if (::access(path.c_str(), R_OK) != 0) return error_words(errno);
     return {};
 }
 
-diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code) {
-    if (auto why = why_unreadable(path)) return diag::Failure{code, *why};
+diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code,
+                                    Streams streams) {
+    if (auto why = why_unreadable(path, streams)) return diag::Failure{code, *why};
     const std::unique_ptr<std::FILE, CloseFile> file(std::fopen(path.c_str(), "rbe"));
     if (!file) return diag::Failure{code, error_words(errno)};
     std::string bytes;

@@ -16,8 +16,17 @@ namespace etlc::data {
 /// An errno in the words of a message: "no such file", "permission denied".
 std::string error_words(int error);
 
-/// All bytes of a file, at most `limit`. Failures: missing, a directory, not readable, too large.
-diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code);
+/// Pipes and devices, of which nobody knows whether they ever end, or begin: only what a user names
+/// and what is read once may be one.
+enum class Streams : std::uint8_t { refused, taken };
+
+/// Why `path` cannot be read as a file ("no such file", "is a directory", ...), or nothing.
+std::optional<std::string> why_unreadable(const std::string& path,
+                                          Streams streams = Streams::refused);
+
+/// All bytes of a file, at most `limit`. Failures: why_unreadable, too large.
+diag::Result<std::string> read_file(const std::string& path, std::uint64_t limit, diag::Code code,
+                                    Streams streams = Streams::refused);
 
 diag::Failure out_of_memory();
 
@@ -31,9 +40,6 @@ auto within_memory(Read read) -> decltype(read()) {
     }
     return out_of_memory();
 }
-
-/// Why `path` cannot be read as a file ("no such file", "is a directory", ...), or nothing.
-std::optional<std::string> why_unreadable(const std::string& path);
 
 /// The finding as a diagnostic whose place is `path`, with line and column where they are known.
 diag::Diagnostic in_file(const diag::Failure& failure, const std::string& path);

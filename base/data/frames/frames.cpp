@@ -28,40 +28,49 @@ Failure stopped(Child& child, Code code) {
                               child.ending())};
 }
 
-diag::Result<bool> end_of(Child& child, Code code) {
+/// What a process writes frames of: the code of what it refuses; whose frames a video has to have.
+struct Decoded {
+    Code code;
+    std::string total_of;
+};
+
+diag::Result<bool> end_of(Child& child, const Decoded& decoded) {
     switch (child.exit_status()) {
         case 0: return false;
-        case frames::kRefused: return Failure{code, child.last_words()};
+        case frames::kRefused: return Failure{decoded.code, child.last_words()};
         case frames::kOutOfStep: return Failure{Code::video_out_of_step, child.last_words()};
         case frames::kNoSuchFrame: return Failure{Code::no_such_frame, child.last_words()};
-        default: return stopped(child, code);
+        case frames::kOtherCount:
+            return Failure{Code::video_out_of_step,
+                           fmt::format("{} {}", child.last_words(), decoded.total_of)};
+        default: return stopped(child, decoded.code);
     }
 }
 
-/// The next frame that it writes; false at the end. `code`: of what it refuses.
-diag::Result<bool> read_frame(Child& child, Code code, Frame& frame) {
+/// The next frame that it writes; false at the end.
+diag::Result<bool> read_frame(Child& child, const Decoded& decoded, Frame& frame) {
     std::array<char, 8> head{};
-    if (child.at_end()) return end_of(child, code);
-    if (!child.read(head.data(), head.size())) return stopped(child, code);
+    if (child.at_end()) return end_of(child, decoded);
+    if (!child.read(head.data(), head.size())) return stopped(child, decoded.code);
     frame.height = frames::number_at(head.data());
     frame.width = frames::number_at(head.data() + 4);
     const std::uint64_t pixels = std::uint64_t{frame.height} * frame.width;
-    if (pixels == 0 || pixels > frames::kMaxPixels) return stopped(child, code);
+    if (pixels == 0 || pixels > frames::kMaxPixels) return stopped(child, decoded.code);
     frame.rgb.resize(3 * pixels);
-    if (!child.read(frame.rgb.data(), frame.rgb.size())) return stopped(child, code);
+    if (!child.read(frame.rgb.data(), frame.rgb.size())) return stopped(child, decoded.code);
     return true;
 }
 
 class DecodedFrames final : public FrameSource {
 public:
-    DecodedFrames(std::unique_ptr<Child> child, Code code)
-        : child_(std::move(child)), code_(code) {}
+    DecodedFrames(std::unique_ptr<Child> child, Decoded decoded)
+        : child_(std::move(child)), decoded_(std::move(decoded)) {}
 
-    diag::Result<bool> next(Frame& frame) override { return read_frame(*child_, code_, frame); }
+    diag::Result<bool> next(Frame& frame) override { return read_frame(*child_, decoded_, frame); }
 
 private:
     std::unique_ptr<Child> child_;
-    Code code_;
+    Decoded decoded_;
 };
 
 }  // namespace
@@ -79,23 +88,23 @@ std::string embedder_path() {
 }
 
 Failure no_embedder() {
-    return {
-        Code::no_embedder,
-        fmt::format("{} cannot be run, which reads images and video and runs networks; etlc "
-                    "builds it where it finds OpenCV and FFmpeg (Debian: libopencv-dnn-dev, "
-                    "libopencv-imgcodecs-dev, libavformat-dev, libswscale-dev); of the packages of "
-                    "etlc, etlc-embed has it",
-                    in_quotes(embedder_path()))};
+    return {Code::no_embedder,
+            fmt::format("{} cannot be run, which reads images and video and runs networks; etlc "
+                        "builds it where it finds FFmpeg, libpng and libjpeg (Debian: "
+                        "libavformat-dev, libswscale-dev, libpng-dev, libjpeg62-turbo-dev); of the "
+                        "packages of etlc, etlc-embed has it",
+                        in_quotes(embedder_path()))};
 }
 
 namespace {
 
 diag::Result<std::unique_ptr<FrameSource>> start(const std::vector<std::string>& arguments,
-                                                 Code code) {
+                                                 Decoded decoded) {
     auto child = Child::start(embedder_path(), arguments,
                               {.max_silence_seconds = frames::kMaxSilenceSeconds, .heard = true});
     if (!child) return no_embedder();
-    return std::unique_ptr<FrameSource>(std::make_unique<DecodedFrames>(std::move(child), code));
+    return std::unique_ptr<FrameSource>(
+        std::make_unique<DecodedFrames>(std::move(child), std::move(decoded)));
 }
 
 }  // namespace
@@ -111,13 +120,14 @@ diag::Result<std::unique_ptr<FrameSource>> open_video(const std::string& path,
     if (choice.first > 0) add("--first", std::to_string(choice.first));
     if (choice.count < UINT64_MAX) add("--count", std::to_string(choice.count));
     if (choice.rate > 0) add("--rate", fmt::format("{}", choice.rate));
-    return start(arguments, Code::unreadable_video);
+    if (choice.total) add("--total", std::to_string(*choice.total));
+    return start(arguments, {Code::unreadable_video, choice.total_of});
 }
 
 diag::Result<std::unique_ptr<FrameSource>> open_images(const std::vector<std::string>& paths) {
     std::vector<std::string> arguments = {"images"};
     arguments.insert(arguments.end(), paths.begin(), paths.end());
-    return start(arguments, Code::unreadable_image);
+    return start(arguments, {Code::unreadable_image, {}});
 }
 
 ImageDecoder::ImageDecoder(std::unique_ptr<Child> child) : child_(std::move(child)) {}
@@ -139,7 +149,7 @@ std::optional<Failure> ImageDecoder::decode(std::string_view bytes, Frame& frame
     std::string head;
     frames::append(head, static_cast<std::uint32_t>(bytes.size()));
     if (child_->give(head)) static_cast<void>(child_->give(bytes));  // what it refuses, it says
-    const auto given = read_frame(*child_, kCode, frame);
+    const auto given = read_frame(*child_, {kCode, {}}, frame);
     if (!given) return given.failure();
     if (!*given) return stopped(*child_, kCode);
     return std::nullopt;

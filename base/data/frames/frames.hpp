@@ -38,6 +38,9 @@ struct FrameChoice {
     /// A frame a step of 1 / rate seconds, from the first on; the frames have to come at a whole
     /// multiple of the rate. 0: every frame.
     double rate = 0;
+    /// The frames that the video has to have, and whose they are: "of 2 episodes".
+    std::optional<std::uint64_t> total;
+    std::string total_of;
 };
 
 /// Whether the ending of a path is that of a video that is looked for in folders.

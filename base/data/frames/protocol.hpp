@@ -4,7 +4,8 @@
 // 32 bits each, then height x width x 3 bytes. Images, on the standard input of `etlc-embed given`:
 // of each how many bytes its file would have, 32 bits, then these. Embeddings, on the standard
 // output of encoders: once their dimension, 32 bits, then for every frame as many float32. All
-// numbers are little-endian. What went wrong is the last line on standard error.
+// numbers are little-endian. The version and the path of what runs networks, a line each, on the
+// standard output of `etlc-embed onnxruntime`. What went wrong is the last line on standard error.
 #pragma once
 
 #include <cstdint>
@@ -23,7 +24,8 @@ enum Exit : int {
     kRefused = 65,      ///< the image, video or model
     kOutOfStep = 66,    ///< frames that do not come at the rate
     kNoSuchFrame = 67,  ///< fewer frames than are wanted
-    kNotBuilt = 68      ///< a library is asked for that it was built without
+    kNoRuntime = 68,    ///< what runs networks is missing, or another library
+    kOtherCount = 69    ///< more or fewer frames than the video has to have
 };
 
 // Limits of what decodes. An honest file needs a small part of them.

@@ -196,7 +196,6 @@ void ChunkReader::begin_values(std::int64_t encoding, std::string_view bytes) {
     if (encoding == kPlain) {
         values_ = Values::plain;
     } else if (encoding == kPlainDictionary || encoding == kRleDictionary) {
-        if (!has_dictionary_) refuse("has places in a dictionary, and no dictionary");
         values_ = Values::places;
     } else if (encoding == kRle && column_.physical == Physical::boolean) {
         values_ = Values::runs_of_bools;
@@ -299,6 +298,7 @@ void ChunkReader::add_value(Cell* cell) {
             number = places_->next();
             break;
         case Values::places:
+            if (!has_dictionary_) refuse("has places in a dictionary, and no dictionary");
             if (!places_) {
                 const unsigned bits = plain_.byte("a page");
                 if (bits > 32) refuse("has places of " + std::to_string(bits) + " bits");

@@ -36,6 +36,7 @@ std::string unpacked(std::int64_t codec, std::string_view packed, std::uint64_t 
         refuse("has a page that claims " + std::to_string(size) + " bytes, at most " +
                std::to_string(kMaxPageBytes) + " are read");
     std::string bytes;
+    if (size == 0 && packed.empty()) return bytes;  // of nulls only, whatever the codec
     if (codec == kSnappy) {
         std::size_t found = 0;
         if (!snappy::GetUncompressedLength(packed.data(), packed.size(), &found)) damaged();

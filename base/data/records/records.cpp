@@ -5,7 +5,6 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
-#include <filesystem>
 #include <system_error>
 
 #include "data/files/file.hpp"
@@ -33,10 +32,6 @@ diag::Result<std::shared_ptr<Records>> Records::start(std::string_view program,
                                                       const Codes& codes, const std::string& path,
                                                       const std::vector<std::string>& arguments) {
     if (auto why = why_unreadable(path)) return Failure{codes.unreadable, *why};
-    std::error_code error;
-    if (!std::filesystem::is_regular_file(path, error))
-        return Failure{codes.unreadable,
-                       fmt::format("is not a regular file, as {} needs it", what)};
     const char* const named = std::getenv(variable);
     const std::string reader = named != nullptr ? named : helper_path(program);
     auto child =

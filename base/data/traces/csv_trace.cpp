@@ -108,6 +108,13 @@ private:
     std::map<std::string, Entry> columns_;
 };
 
+/// As programs write bools: Python and pandas True, others true or TRUE.
+std::optional<double> parse_bool(std::string_view text) {
+    if (text == "True" || text == "true" || text == "TRUE") return 1;
+    if (text == "False" || text == "false" || text == "FALSE") return 0;
+    return {};
+}
+
 class CsvTrace final : public Trace {
 public:
     CsvTrace(std::unique_ptr<CsvReader> rows, std::vector<Channel> channels,
@@ -149,7 +156,9 @@ private:
             return {};
         }
         const bool boolean = channels_[slot.channel].kind == Channel::Kind::boolean;
-        const auto value = parse_number(rows_->cell(slot.column));
+        const std::string_view cell = rows_->cell(slot.column);
+        auto value = parse_number(cell);
+        if (!value && boolean) value = parse_bool(cell);
         const bool sound =
             value && (!boolean || !std::isfinite(*value) || *value == 0 || *value == 1);
         if (!sound)
@@ -157,7 +166,7 @@ private:
                 Code::not_a_number,
                 fmt::format("column {} holds {}, expected {}",
                             in_quotes(column_name(channels_[slot.channel], slot.element)),
-                            in_quotes(rows_->cell(slot.column)), boolean ? "0 or 1" : "a number"),
+                            in_quotes(cell), boolean ? "0 or 1, True or False" : "a number"),
                 rows_->line(slot.column), rows_->column(slot.column)};
         sample.values[slot.channel][slot.element] = std::isfinite(*value) ? *value : kNaN;
         return {};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <filesystem>
 #include <set>
 #include <system_error>
@@ -44,8 +43,9 @@ diag::Result<std::vector<std::string>> in_folder(const std::string& folder) {
         return diag::Failure{Code::unreadable_trace,
                              fmt::format("cannot be read: {}", error.message())};
     if (files.empty())
-        return diag::Failure{Code::unreadable_trace,
-                             fmt::format("holds no episodes, {}", expected())};
+        return diag::Failure{
+            Code::unreadable_trace,
+            with_dataset_meant(fmt::format("holds no episodes, {}", expected()), folder)};
     return files;
 }
 
@@ -85,7 +85,7 @@ diag::Result<std::vector<std::string>> expand(const std::string& argument, diag:
     if (!why) return std::vector<std::string>{argument};
     if (argument.find_first_of(kPatternCharacters) != std::string::npos)
         return matching(argument, sink);
-    return diag::Failure{Code::unreadable_trace, *why};
+    return diag::Failure{Code::unreadable_trace, with_dataset_meant(*why, argument)};
 }
 
 }  // namespace
@@ -103,6 +103,12 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
         std::sort(files->begin(), files->end());
         for (const std::string& file : *files) {
             if (!seen.insert(fs::path(file).lexically_normal().string()).second) continue;
+            const std::string place = trace_file(file);
+            const auto why = is_directory(place) ? std::nullopt : why_unreadable(place);
+            if (why) {
+                sink.report(in_file({Code::unreadable_trace, *why}, file));
+                continue;
+            }
             if (groups.empty() || !is_hdf5(file)) {
                 episodes.push_back(file);
                 continue;
@@ -118,41 +124,31 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
 
 namespace {
 
-/// Of each number the bits as float32, in the order of bytes of a file; one pattern of bits for all
-/// that is none. Without branches, several at a time: a billion elements pass here.
-void narrow_to_bits(const double* __restrict numbers, std::size_t n,
-                    std::uint32_t* __restrict bits) {
-    constexpr std::uint32_t kNaN = 0x7fc00000;
-    constexpr std::uint32_t kMagnitude = 0x7fffffff;
-    constexpr std::uint32_t kInfinity = 0x7f800000;
-    for (std::size_t i = 0; i < n; ++i) {
-        const auto narrowed = std::bit_cast<std::uint32_t>(static_cast<float>(numbers[i]));
-        const std::uint32_t one = (narrowed & kMagnitude) > kInfinity ? kNaN : narrowed;
-        bits[i] = std::endian::native == std::endian::big ? __builtin_bswap32(one) : one;
+/// The bits of each number in the order of bytes of a file.
+void append_bits(const std::vector<float>& numbers, std::vector<std::uint32_t>& bits) {
+    for (const float number : numbers) {
+        const auto one = std::bit_cast<std::uint32_t>(number);
+        bits.push_back(std::endian::native == std::endian::big ? __builtin_bswap32(one) : one);
     }
 }
 
 }  // namespace
 
 EpisodeHash::EpisodeHash(std::vector<HashedInput> inputs) : inputs_(std::move(inputs)) {
-    for (const HashedInput& input : inputs_) readers_.emplace_back(input.is_vector);
+    for (const HashedInput& input : inputs_) readers_.emplace_back(input.tells_alone);
 }
 
-void EpisodeHash::add(const Sample& sample) {
-    std::size_t size = 0;
-    for (const HashedInput& input : inputs_) size += sample.values[input.channel].size();
-    bits_.resize(size);
-    std::uint32_t* bits = bits_.data();
+void EpisodeHash::add(const std::vector<std::vector<float>>& samples) {
+    constexpr float kMissing = std::bit_cast<float>(std::uint32_t{0x7fc00000});  // NaN
+    bits_.clear();
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
-        const std::size_t channel = inputs_[i].channel;
-        const std::vector<double>& values = sample.values[channel];
-        if (!sample.present[channel]) missing_.assign(values.size(), NAN);
-        narrow_to_bits(sample.present[channel] ? values.data() : missing_.data(), values.size(),
-                       bits);
-        readers_[i].add(bits, values.size());
-        bits += values.size();
+        const std::size_t begin = bits_.size();
+        const bool present = !samples[i].empty();
+        append_bits(present ? samples[i] : std::vector<float>(inputs_[i].dimension, kMissing),
+                    bits_);
+        readers_[i].add(bits_.data() + begin, bits_.size() - begin, present);
     }
-    hash_ = xxh64({reinterpret_cast<const char*>(bits_.data()), 4 * size}, hash_);
+    hash_ = xxh64({reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size()}, hash_);
     ++steps_;
 }
 

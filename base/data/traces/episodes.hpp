@@ -28,20 +28,20 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
 
 /// An input whose samples tell episodes apart.
 struct HashedInput {
-    std::size_t channel = 0;
-    std::string name;  ///< in the spec
-    bool is_vector = false;
+    std::string name;             ///< what it is compared under
+    std::uint32_t dimension = 1;  ///< numbers of a sample
+    bool tells_alone = false;     ///< one sample is evidence; else a run of them is
 };
 
 /// The content of an episode, read along: 64 bits as 16 hex digits, the same on every machine and
-/// for the same float32 values in any file format. Order and lengths count; names, the file and the
-/// channels left out do not.
+/// for the same float32 values in any file format. Order and lengths count; names and the file do
+/// not.
 class EpisodeHash {
 public:
     explicit EpisodeHash(std::vector<HashedInput> inputs);
 
-    /// The next step.
-    void add(const Sample& sample);
+    /// The next step: of each input the sample, finite and no negative zero; empty: missing.
+    void add(const std::vector<std::vector<float>>& samples);
     /// Of the steps so far.
     std::string text() const;
     /// The same of each input.
@@ -51,7 +51,6 @@ private:
     std::vector<HashedInput> inputs_;
     std::vector<ContentReader> readers_;  ///< per input
     std::vector<std::uint32_t> bits_;     ///< of one step
-    std::vector<double> missing_;         ///< in place of a sample that is not there
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
 };

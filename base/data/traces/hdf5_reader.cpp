@@ -163,9 +163,13 @@ void refuse_foreign_data(const Channel& channel) {
 void open_channel(hid_t group, Channel& channel) {
     channel.dataset = open_object(group, channel.name);
     if (!channel.present()) {
-        if (!channel.optional)
-            fail(Cause::channel, "no dataset " + channel.quoted() + listed(group));
-        return;
+        if (channel.optional) return;
+        const std::string whole = channel.name.substr(0, channel.name.rfind('['));
+        if (channel.name.ends_with("]") && !whole.empty() && open_object(group, whole) >= 0)
+            fail(Cause::channel, "no dataset " + channel.quoted() + ", but '" + whole +
+                                     "', of which no single elements are taken: save the element "
+                                     "as a dataset of its own");
+        fail(Cause::channel, "no dataset " + channel.quoted() + listed(group));
     }
     if (H5Iget_type(channel.dataset) != H5I_DATASET)
         fail(Cause::channel, channel.quoted() + " is no dataset");

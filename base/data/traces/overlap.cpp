@@ -45,29 +45,41 @@ bool equal_in_common(const EpisodeContent& a, const EpisodeContent& b) {
     return any;
 }
 
-/// In the input in which it is least, of those that tell.
+bool is_complete(const Sketch& sketch) {
+    return sketch.size() < kAtLeastKept;
+}
+
+/// In the input in which it is least, of those that tell: such as have enough units or, where none
+/// has, a few.
 std::optional<double> share_in_common(const EpisodeContent& a, const EpisodeContent& b) {
     std::optional<double> least;
+    std::optional<double> of_few;
+    const auto take = [](std::optional<double>& all, std::optional<double> here) {
+        if (here) all = std::min(all.value_or(1), *here);
+    };
     for (const auto& [name, content] : a) {
         const auto other = b.find(name);
         if (other == b.end()) continue;
-        const auto here = share(content.sketch, other->second.sketch);
-        if (here) least = std::min(least.value_or(1), *here);
+        const Sketch& there = other->second.sketch;
+        take(least, share(content.sketch, there));
+        if (is_complete(content.sketch) && is_complete(there))
+            take(of_few, share(content.sketch, there, kFewestInCommon));
     }
-    return least;
+    return least ? least : of_few;
 }
 
 }  // namespace
 
-void ContentReader::add(const std::uint32_t* bits, std::size_t n) {
+void ContentReader::add(const std::uint32_t* bits, std::size_t n, bool present) {
     const std::uint64_t sample = xxh64(bytes_of(bits, n));
     std::array<char, 8> bytes{};
     for (unsigned i = 0; i < bytes.size(); ++i) bytes[i] = static_cast<char>(sample >> (8 * i));
     hash_ = xxh64({bytes.data(), bytes.size()}, hash_);
-    if (!is_vector_) run_[steps_ % kRun] = bits[0];
+    if (!tells_alone_)
+        run_[steps_ % kRun] = n == 1 ? bits[0] : static_cast<std::uint32_t>(sample >> 32U);
     ++steps_;
-    if (is_vector_) {
-        add_unit(sample);
+    if (tells_alone_) {
+        if (present) add_unit(sample);
     } else if (steps_ >= kRun && run_tells()) {
         std::array<std::uint32_t, kRun> in_order{};
         for (std::size_t i = 0; i < kRun; ++i) in_order[i] = run_[(steps_ + i) % kRun];
@@ -97,15 +109,17 @@ InputContent ContentReader::content() const {
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
     result.sketch = units_;
     sift(result.sketch);
+    // A few runs are mostly the same samples over again.
+    if (!tells_alone_ && result.sketch.size() < kLeastUnits) result.sketch.clear();
     return result;
 }
 
-std::optional<double> share(const Sketch& a, const Sketch& b) {
+std::optional<double> share(const Sketch& a, const Sketch& b, std::size_t least_units) {
     const std::uint32_t end = std::min(complete_to(a), complete_to(b));
     const auto of_a = std::upper_bound(a.begin(), a.end(), end);
     const auto of_b = std::upper_bound(b.begin(), b.end(), end);
     const auto least = static_cast<std::size_t>(std::min(of_a - a.begin(), of_b - b.begin()));
-    if (least < kLeastUnits) return std::nullopt;
+    if (least < least_units) return std::nullopt;
     std::size_t common = 0;
     for (auto x = a.begin(), y = b.begin(); x != of_a && y != of_b;) {
         common += *x == *y ? 1 : 0;
@@ -156,9 +170,12 @@ std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
         if (equal) return Overlap{*equal, 1, true};
         std::unordered_map<std::uint32_t, std::uint32_t> in_common;
         const EpisodesByKey& units = by_unit_.at(name);
+        const std::uint32_t fewest = fewest_in_common(of_input.sketch);
         for (const std::uint32_t unit : of_input.sketch)
             units.for_each(unit, [&](std::uint32_t episode) {
-                if (++in_common[episode] == kFewestInCommon) perhaps.insert(episode);
+                const Sketch& there = all_[episode].at(name).sketch;
+                if (++in_common[episode] == std::min(fewest, fewest_in_common(there)))
+                    perhaps.insert(episode);
             });
     }
     for (const std::uint32_t episode : perhaps) {

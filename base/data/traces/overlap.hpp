@@ -1,9 +1,9 @@
 // What of an episode tells whether another is the same recording, or a part of it.
 // Takes: the samples of each input, a step after the other. Gives: per input a hash of all of them,
 // and a sketch: a sample of the hashes of what it holds, by which shares of equal content are
-// estimated. Keeps true: for the same float32 values it is the same on every machine and in every
-// file format; inputs that only one of two episodes has do not count. It is for episodes that are
-// given twice by mistake, and no defence against one that was made to pass.
+// estimated. Keeps true: for the same float32 values it is the same on every machine; what an
+// episode has under a name that the other has not does not count. It is for episodes that are given
+// twice by mistake, and no defence against one that was made to pass.
 #pragma once
 
 #include <array>
@@ -18,15 +18,21 @@
 namespace etlc::data {
 
 /// Of the different units of an input, 32 bits of the hash of each, ascending: the 64 least, and
-/// all that are less than 2^28. A unit is a sample of an embedding; of a scalar it is a run of 16
-/// samples in which at least 8 differ, since single numbers, and runs in which little happens, are
-/// alike in recordings that have nothing to do with each other.
+/// all that are less than 2^28. A unit is a sample of an embedding that is not missing; of a
+/// scalar, and of an embedding of few bits, it is a run of 16 samples in which at least 8 differ,
+/// since single numbers, and runs in which little happens, are alike in recordings that have
+/// nothing to do with each other.
 using Sketch = std::vector<std::uint32_t>;
 
-/// Fewer units are no evidence.
+/// Fewer units of an input are evidence only where no input has as many.
 inline constexpr std::size_t kLeastUnits = 8;
-/// More than half of kLeastUnits: what shares fewer in every input does not overlap.
-inline constexpr std::uint32_t kFewestInCommon = kLeastUnits / 2 + 1;
+/// A single unit in common is none: many episodes begin alike.
+inline constexpr std::uint32_t kFewestInCommon = 2;
+
+/// Two that have fewer units in common than the lesser of this of both do not overlap.
+inline std::uint32_t fewest_in_common(const Sketch& sketch) {
+    return sketch.size() < kLeastUnits ? kFewestInCommon : kLeastUnits / 2 + 1;
+}
 
 struct InputContent {
     std::string hash;  ///< of all samples in order, 16 hex digits
@@ -44,10 +50,11 @@ using EpisodeContent = std::map<std::string, InputContent>;
 /// Reads an input's samples along.
 class ContentReader {
 public:
-    explicit ContentReader(bool is_vector) : is_vector_(is_vector) {}
+    /// `tells_alone`: a unit is one sample; else a run of them.
+    explicit ContentReader(bool tells_alone) : tells_alone_(tells_alone) {}
 
     /// The next sample, as the bits of float32: `EpisodeHash` says which.
-    void add(const std::uint32_t* bits, std::size_t n);
+    void add(const std::uint32_t* bits, std::size_t n, bool present);
     InputContent content() const;
 
 private:
@@ -56,13 +63,14 @@ private:
     void add_unit(std::uint64_t hash);
     bool run_tells() const;
 
-    bool is_vector_;
+    bool tells_alone_;
     std::uint64_t steps_ = 0;
     std::uint64_t hash_ = 0;
-    std::array<std::uint32_t, kRun> run_{};  ///< the last samples of a scalar, by step modulo kRun
-    std::vector<std::uint32_t> units_;       ///< of which there may be some twice
-    std::uint32_t greatest_ = UINT32_MAX;    ///< units above it are not kept
-    std::size_t room_ = 2048;                ///< units before they are sifted
+    /// The last samples, by step modulo kRun: a number, or the hash of several.
+    std::array<std::uint32_t, kRun> run_{};
+    std::vector<std::uint32_t> units_;     ///< of which there may be some twice
+    std::uint32_t greatest_ = UINT32_MAX;  ///< units above it are not kept
+    std::size_t room_ = 2048;              ///< units before they are sifted
 };
 
 /// How much of the smaller of two episodes is in the other.
@@ -106,7 +114,8 @@ class Recordings {
 public:
     void add(const EpisodeContent& content);
     /// One that is equal; else the first with which more than half of the smaller of both is
-    /// shared, in every input that both have and that has enough units.
+    /// shared, in every input that both have and that has enough units; where none has, in every
+    /// input that has two and of which nothing was left out.
     std::optional<Overlap> find(const EpisodeContent& content) const;
 
 private:
@@ -116,7 +125,7 @@ private:
     std::map<std::string, EpisodesByKey> by_unit_;
 };
 
-/// Of the smaller sketch; nothing where it has too few units.
-std::optional<double> share(const Sketch& a, const Sketch& b);
+/// Of the smaller sketch; nothing where it has fewer than `least` units.
+std::optional<double> share(const Sketch& a, const Sketch& b, std::size_t least = kLeastUnits);
 
 }  // namespace etlc::data

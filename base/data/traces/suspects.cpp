@@ -1,10 +1,12 @@
 // Two episodes are compared where one of them is asked about and the other known, or both are asked
 // about and those are looked for among each other. `Recordings` finds one by the other only where
-// they have an input of the same hash, or an input with kFewestInCommon units in common: it looks
-// at no others. In the first case each is in the other's group of that hash. In the second let
-// `few` be how many of these units only few episodes have: they are counted for each pair. The
-// others, which both have, are no more than either has of such units. So few + the lesser of these
-// counts is kFewestInCommon at least, or few is 0 and both counts are: both episodes are suspects.
+// they have an input of the same hash, or an input with enough units in common, which is 2 where
+// one of them has few units and 5 where none has: it looks at no others. In the first case each is
+// in the other's group of that hash. In the second let `few` be how many of these units only few
+// episodes have: they are counted for each pair. The others, which both have, are no more than
+// either has of such units. So few + the lesser of these counts is enough, or few is 0 and both
+// counts are: both episodes are suspects, where 2 count as enough as soon as some episode that has
+// few units has them.
 // That Recordings finds the same among the suspects as among all follows: what it finds is decided
 // by order, and they keep theirs.
 #include "data/traces/suspects.hpp"
@@ -39,24 +41,31 @@ constexpr std::size_t kFew = 8;  ///< episodes, 28 pairs of them
 /// Units of one input that episodes have in common.
 class InCommon {
 public:
-    explicit InCommon(std::size_t episodes) : widely_(episodes) {}
+    /// `is_short`: whose units are few; they outlive it.
+    explicit InCommon(const std::vector<bool>& is_short)
+        : is_short_(is_short), widely_(is_short.size()) {}
 
     /// Two have one that few have.
     void add_pair(std::uint32_t a, std::uint32_t b) { pairs_.add({a, b}); }
     /// One has one that many have.
     void add_wide(std::uint32_t episode) {
-        if (widely_[episode] < kFewestInCommon) ++widely_[episode];
+        if (widely_[episode] < kEnough) ++widely_[episode];
     }
 
     void find(std::vector<bool>& suspects) {
+        bool any_short = false;
         for (std::size_t e = 0; e < widely_.size(); ++e)
-            if (widely_[e] == kFewestInCommon) suspects[e] = true;
+            any_short = any_short || (is_short_[e] && widely_[e] >= kFewestInCommon);
+        for (std::size_t e = 0; e < widely_.size(); ++e)
+            if (widely_[e] >= (any_short ? kFewestInCommon : kEnough)) suspects[e] = true;
         Pair last{};
         std::uint32_t few = 0;
         pairs_.for_each([&](const Pair& pair) {
             few = pair.a == last.a && pair.b == last.b ? few + 1 : 1;
             last = pair;
-            if (few + std::min(widely_[pair.a], widely_[pair.b]) < kFewestInCommon) return;
+            const bool of_short = is_short_[pair.a] || is_short_[pair.b];
+            const std::uint32_t enough = of_short ? kFewestInCommon : kEnough;
+            if (few + std::min(widely_[pair.a], widely_[pair.b]) < enough) return;
             suspects[pair.a] = true;
             suspects[pair.b] = true;
         });
@@ -68,6 +77,9 @@ private:
         std::uint32_t b;
         bool operator<(const Pair& other) const { return a != other.a ? a < other.a : b < other.b; }
     };
+    static constexpr std::uint32_t kEnough = kLeastUnits / 2 + 1;
+
+    const std::vector<bool>& is_short_;
     std::vector<std::uint8_t> widely_;  ///< units that many have, up to enough
     Sorted<Pair> pairs_;
 };
@@ -77,10 +89,13 @@ private:
 void Suspects::add(const EpisodeContent& content, bool is_known) {
     const auto episode = static_cast<std::uint32_t>(is_known_.size());
     is_known_.push_back(is_known);
+    is_short_.push_back(false);
     for (const auto& [name, of_input] : content) {
         const auto next = static_cast<std::uint32_t>(inputs_.size());
         const std::uint32_t input = inputs_.try_emplace(name, next).first->second;
         hashes_.add({xxh64(of_input.hash), input, episode});
+        const std::size_t units = of_input.sketch.size();
+        if (units >= kFewestInCommon && units < kLeastUnits) is_short_.back() = true;
         for (const std::uint32_t unit : of_input.sketch) units_.add({unit, input, episode});
     }
 }
@@ -112,7 +127,7 @@ std::vector<bool> Suspects::find() {
     for_each_group(units_, is_same, [&](const Key& unit, const std::vector<std::uint32_t>& same) {
         if (!in_common || unit.input != input) {
             conclude();
-            in_common.emplace(found.size());
+            in_common.emplace(is_short_);
             input = unit.input;
         }
         if (same.size() > kFew)

@@ -49,6 +49,7 @@ private:
 
     bool each_other_;
     std::vector<bool> is_known_;
+    std::vector<bool> is_short_;                   ///< has few units in some input
     std::map<std::string, std::uint32_t> inputs_;  ///< by name, their numbers
     Sorted<Key> hashes_;
     Sorted<Key> units_;

@@ -23,7 +23,7 @@ std::size_t group_mark(const std::string& path) {
 using Opened = diag::Result<std::unique_ptr<Trace>>;
 
 Opened open_csv(const std::string& path, const std::vector<Channel>& channels) {
-    auto source = open_file(path);
+    auto source = open_file(path, Streams::taken);
     if (!source) return of_trace(source.failure());
     return open_csv_trace(std::move(*source), channels);
 }
@@ -57,10 +57,13 @@ const Format* format_of(const std::string& file) {
 }  // namespace
 
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names) {
-    for (Channel& channel : channels)
-        if (const auto found = names.find(channel.name); found != names.end())
-            channel.name = found->second;
+    for (Channel& channel : channels) channel.name = name_in_file(channel.name, names);
     return channels;
+}
+
+const std::string& name_in_file(const std::string& name, const NamesInFile& names) {
+    const auto found = names.find(name);
+    return found == names.end() ? name : found->second;
 }
 
 bool is_trace(const std::string& path) {
@@ -98,8 +101,9 @@ diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
     if (path == kStandardInput) return open_csv_trace(standard_input(), channels);
     if (dataset_path(path)) return open_dataset_trace(path, channels);
     if (const Format* format = format_of(trace_file(path))) return format->open(path, channels);
-    return diag::Failure{diag::Code::unknown_trace_format,
-                         "unknown kind of trace, expected " + trace_endings()};
+    return diag::Failure{
+        diag::Code::unknown_trace_format,
+        with_dataset_meant("unknown kind of trace, expected " + trace_endings(), path)};
 }
 
 }  // namespace etlc::data

@@ -51,6 +51,7 @@ public:
 /// Names in the file, by the names of the channels, where they differ: `--map z=obs/z`.
 using NamesInFile = std::map<std::string, std::string>;
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
+const std::string& name_in_file(const std::string& name, const NamesInFile& names);
 
 /// Whether the ending of a path is that of a trace.
 bool is_trace(const std::string& path);

@@ -62,6 +62,11 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
     if (encoder.dimension != 0 && then.dimension != encoder.dimension)
         found.push_back(difference("the dimension", std::to_string(then.dimension),
                                    std::to_string(encoder.dimension)));
+    if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
+        found.emplace_back(
+            "an earlier etlc ran it, by OpenCV, whose numbers may be others than the model's, or "
+            "by "
+            "ONNX Runtime without its version");
     const std::string path = beside_spec(c, encoder.model);
     if (!found.empty() || !exists(path)) return found;
     c.dependencies.insert(path);

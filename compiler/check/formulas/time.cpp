@@ -156,12 +156,19 @@ std::optional<std::uint32_t> duration_steps(Context& c, const ast::Bound& bound)
     return std::nullopt;
 }
 
-std::optional<std::uint32_t> bound_steps(Context& c, const ast::Bound& bound) {
-    if (is_infinite(bound)) return kUnbounded;
-    return bound.unit.empty() ? whole_steps(c, bound) : duration_steps(c, bound);
+}  // namespace
+
+bool is_duration(const ast::Bound& bound) {
+    return !bound.unit.empty() && bound.unit != ast::kStepsUnit;
 }
 
-}  // namespace
+std::optional<std::uint32_t> bound_steps(Context& c, const ast::Bound& bound) {
+    if (bound.unit == ast::kStepsUnit) c.steps_on_purpose = true;
+    if (!has_no_unit_of_its_own(bound) && bound.unit.empty())
+        c.bare_bounds.emplace(bound.span.begin, &bound);
+    if (is_infinite(bound)) return kUnbounded;
+    return is_duration(bound) ? duration_steps(c, bound) : whole_steps(c, bound);
+}
 
 void check_rate(Context& c) {
     const ast::Rate* first = nullptr;
@@ -203,7 +210,7 @@ std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
         return std::nullopt;
     }
     if (!has_no_unit_of_its_own(low) && !has_no_unit_of_its_own(high) &&
-        low.unit.empty() != high.unit.empty()) {
+        is_duration(low) != is_duration(high)) {
         c.report(Code::mixed_interval, interval.span,
                  fmt::format("one bound is in steps and one is a duration: {} and {}",
                              bound_text(low), bound_text(high)));
@@ -219,6 +226,25 @@ std::optional<Steps> interval_steps(Context& c, const ast::Interval& interval) {
         return std::nullopt;
     }
     return Steps{*low_steps, *high_steps};
+}
+
+void warn_of_bare_bounds(Context& c) {
+    if (c.step.rate == nullptr || c.steps_on_purpose || c.bare_bounds.empty()) return;
+    const ast::Rate& rate = *c.step.rate;
+    const ast::Bound& first = *c.bare_bounds.begin()->second;
+    const double length = seconds(quantity(rate)) * to_double(first.number.text);
+    const std::string in_steps = fmt::format("{} {}", written(first.number),
+                                             first.number.text == "1" ? "step" : ast::kStepsUnit);
+    diag::Diagnostic& warning = c.report(
+        Code::bare_bound, first.span,
+        fmt::format("{} has no unit and counts steps: at the {} of {} {} that is {:.3g} s",
+                    bound_text(first), rate_word(rate), rate.number.text, rate.unit, length));
+    warning.note(fmt::format("write '{}' where steps are meant, else a unit of time: '{} s'",
+                             in_steps, written(first.number)));
+    if (const std::size_t others = c.bare_bounds.size() - 1; others > 0)
+        warning.note(fmt::format("{} without a unit; one with 'steps' says that all are meant so",
+                                 diag::counted(others, "more bound")));
+    warning.meant = in_steps;
 }
 
 }  // namespace etlc::check

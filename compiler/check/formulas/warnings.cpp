@@ -84,6 +84,7 @@ void warn_of_same_predicates(Context& c) {
 void warn(Context& c) {
     // A name that was misspelt in its only use is no second cause.
     if (!c.sink.has_errors()) warn_of_unused(c);
+    if (!c.sink.has_errors()) warn_of_bare_bounds(c);
     warn_of_constant_predicates(c);
     warn_of_similarities(c);
     warn_of_same_predicates(c);

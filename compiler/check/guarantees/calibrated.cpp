@@ -44,11 +44,24 @@ const Method* find_method(Context& c, const ast::Name& name) {
     return nullptr;
 }
 
+/// Who writes 0.9 for the coverage gets thresholds that look good and miss nearly all.
+void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
+    const Decimal value = Decimal::parse(alpha.text);
+    if (!(Decimal::parse("0.5") < value)) return;
+    const std::string text = shown(alpha);
+    c.report(Code::large_alpha, alpha.span,
+             fmt::format("alpha = {} is the share that may be missed, more than half", text))
+        .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
+}
+
 bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
     const auto* number = std::get_if<ast::Number>(&argument.value);
     const bool open_unit = number != nullptr && Decimal::parse(number->text).is_positive() &&
                            Decimal::parse(number->text) < Decimal::parse("1");
-    if (open_unit) return true;
+    if (open_unit) {
+        warn_of_large_alpha(c, *number);
+        return true;
+    }
     const auto [text, span] = number != nullptr
                                   ? std::pair(shown(*number), number->span)
                                   : std::pair(std::get<ast::Name>(argument.value).text,

@@ -107,7 +107,33 @@ std::string text_with_definitions(const Model& model, Index formula,
     return text;
 }
 
+/// The phrases in front of a truth that arrays stood in for; nothing in a formula reads so.
+constexpr std::string_view kInPlaceOf = "array in place of ";
+constexpr std::string_view kBeside = "array or ";
+
+/// What says when the predicate holds: a truth, its own comparison, or nothing in the spec.
+std::string meaning(const Model& model, Index predicate, const Provenance& of) {
+    if (!is_own_truth(model, predicate)) return of.truth;
+    return of.predicate + model.predicates[predicate].threshold.text;
+}
+
 }  // namespace
+
+std::string labels(const std::string& truth, Index predicate, const Labelling& labelling) {
+    const auto found = labelling.from_arrays.find(predicate);
+    const std::size_t arrays = found == labelling.from_arrays.end() ? 0 : found->second;
+    if (truth.empty()) return "array";
+    if (arrays == 0) return truth;
+    return std::string(arrays == labelling.episodes ? kInPlaceOf : kBeside) + truth;
+}
+
+std::string stated(std::string labels) {
+    if (labels == "array") return "";
+    for (const std::string_view phrase : {kInPlaceOf, kBeside})
+        for (std::size_t at = 0; (at = labels.find(phrase, at)) != std::string::npos;)
+            labels.erase(at, phrase.size());
+    return labels;
+}
 
 std::string_view method_name(ThresholdOrigin origin) {
     switch (origin) {
@@ -123,6 +149,7 @@ std::string_view method_name(ThresholdOrigin origin) {
 Provenance provenance(const Model& model, Index predicate) {
     Provenance result;
     result.predicate = model.predicates[predicate].text;
+    result.reads = reads(model, predicate);
     add_predicate(model, predicate, result.targets);
     for (const Truth& truth : model.truths) {
         if (truth.predicate != predicate || truth.formula == kNone) continue;
@@ -140,8 +167,9 @@ std::vector<Index> predicates_of(const Model& model, Index formula) {
     return {found.begin(), found.end()};
 }
 
-Provenance provenance(const Model& model, const Monitor& monitor) {
+Provenance provenance(const Model& model, const Monitor& monitor, const Labelling& labelling) {
     Provenance result;
+    result.reads = reads(model, monitor);
     const std::vector<bool> seen = reachable(model, monitor.formula);
     result.predicate = text_with_definitions(model, monitor.formula, seen);
     add_flags(model, seen, result.targets);
@@ -149,15 +177,17 @@ Provenance provenance(const Model& model, const Monitor& monitor) {
         Provenance of = provenance(model, predicate);
         result.targets.merge(of.targets);
         result.targets.merge(of.truth_targets);
-        if (of.truth.empty()) continue;
+        if (model.predicates[predicate].name.empty()) continue;
         if (!result.truth.empty()) result.truth += "; ";
-        result.truth += model.predicates[predicate].name + ": " + of.truth;
+        result.truth += model.predicates[predicate].name + ": " +
+                        labels(meaning(model, predicate, of), predicate, labelling);
     }
     return result;
 }
 
-FittedProvenance provenance(const Model& model, const Fitted& fitted) {
+FittedProvenance provenance(const Model& model, const Fitted& fitted, const Labelling& labelling) {
     FittedProvenance result;
+    result.reads = reads(model, fitted);
     Hashes maps;
     add_projections(model, fitted.point, maps);
     for (const Index input : model.points[fitted.point].inputs) add_encoder(model, input, maps);
@@ -177,12 +207,11 @@ FittedProvenance provenance(const Model& model, const Fitted& fitted) {
     add_flags(model, seen, measured);
     for (const Index predicate : predicates_in(model, seen)) {
         Provenance of = provenance(model, predicate);
-        const bool own = is_own_truth(model, predicate);
-        measured.merge(own ? of.targets : of.truth_targets);
-        if (own) of.truth = of.predicate + model.predicates[predicate].threshold.text;
+        measured.merge(is_own_truth(model, predicate) ? of.targets : of.truth_targets);
         if (!model.predicates[predicate].name.empty())
-            result.truth += fmt::format("; {}: {}", model.predicates[predicate].name,
-                                        of.truth.empty() ? "array" : of.truth);
+            result.truth +=
+                fmt::format("; {}: {}", model.predicates[predicate].name,
+                            labels(meaning(model, predicate, of), predicate, labelling));
     }
     for (const auto& [name, hash] : measured) result.truth += fmt::format("; {} = {}", name, hash);
     return result;

@@ -1,7 +1,8 @@
 // What a calibrated threshold depends on, besides the demonstrations.
 // Takes: a predicate of the model. Gives: the texts and hashes that `etlc calibrate` writes beside
 // its epsilon and that check/ compares when it reads one back. Keeps true: two specs with equal
-// provenance ask for the same threshold from the same demonstrations.
+// provenance ask for the same threshold from the same demonstrations. `reads` alone sees to that;
+// the others say in the words of the spec what has changed.
 #pragma once
 
 #include <map>
@@ -9,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "check/guarantees/reads.hpp"
 #include "check/model/model.hpp"
 
 namespace etlc::check {
@@ -24,7 +26,20 @@ struct Provenance {
     std::map<std::string, std::string> targets;
     /// The same of what the truth formula measures and reads.
     std::map<std::string, std::string> truth_targets;
+    Reads reads;
 };
+
+/// Where labels came from: in how many of the episodes those of a predicate are of an array.
+struct Labelling {
+    std::size_t episodes = 0;
+    std::map<Index, std::size_t> from_arrays;
+};
+
+/// `truth` as an entry has it: the text of the truth in the spec; "array" without one; "array in
+/// place of TEXT" or, in some of the episodes, "array or TEXT".
+std::string labels(const std::string& truth, Index predicate, const Labelling& labelling);
+/// The other way: what the spec said; empty where it said nothing.
+std::string stated(std::string labels);
 
 Provenance provenance(const Model& model, Index predicate);
 
@@ -32,17 +47,19 @@ Provenance provenance(const Model& model, Index predicate);
 std::string_view method_name(ThresholdOrigin origin);
 
 /// The same of a calibrated monitor: `predicate` is its formula with the predicates and their
-/// thresholds written out, `truth` the truths of those that have one, `targets` all that either
+/// thresholds written out, `truth` says of each what its labels are, `targets` are all that either
 /// measures.
-Provenance provenance(const Model& model, const Monitor& monitor);
+Provenance provenance(const Model& model, const Monitor& monitor, const Labelling& labelling = {});
 
 /// What something is fitted to, besides the demonstrations: what `etlc fit` writes and check/
 /// compares.
 struct FittedProvenance {
     std::string of;  ///< "Q(z), Q = 0123456789abcdef": the point, and the maps that it goes through
-    std::string truth;  ///< `where`, the truths of its predicates and what they measure; or "true"
+    std::string truth;  ///< `where`, the labels of its predicates and what they measure; or "true"
+    Reads reads;
 };
-FittedProvenance provenance(const Model& model, const Fitted& fitted);
+FittedProvenance provenance(const Model& model, const Fitted& fitted,
+                            const Labelling& labelling = {});
 
 /// The predicates in a formula, ascending.
 std::vector<Index> predicates_of(const Model& model, Index formula);

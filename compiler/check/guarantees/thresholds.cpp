@@ -78,9 +78,14 @@ bool same_number(const std::string& a, const std::string& b) {
 class Differences {
 public:
     /// `what`: predicate or formula.
-    Differences(const Model& model, const Threshold& threshold, std::string_view what,
-                Provenance now, const thresholds::Entry& entry)
-        : model_(model), threshold_(threshold), what_(what), entry_(entry), now_(std::move(now)) {}
+    Differences(const Model& model, const std::string& name, const Threshold& threshold,
+                std::string_view what, Provenance now, const thresholds::Entry& entry)
+        : model_(model),
+          name_(name),
+          threshold_(threshold),
+          what_(what),
+          entry_(entry),
+          now_(std::move(now)) {}
 
     std::vector<std::string> find() && {
         const std::string_view method = method_name(threshold_.origin);
@@ -90,12 +95,12 @@ public:
             add("alpha", entry_.alpha, threshold_.alpha);
         if (entry_.predicate != now_.predicate) add(what_, entry_.predicate, now_.predicate);
         add_changed(now_.targets);
-        const bool by_array = entry_.truth == "array" && what_ == "predicate";
-        if (!by_array && entry_.truth != now_.truth)
-            add("truth", entry_.truth, now_.truth.empty() ? "none" : now_.truth);
-        else if (!by_array)
+        if (stated(entry_.truth) == now_.truth)
             add_changed(now_.truth_targets);
-        add_gone(by_array);
+        else
+            add_labels();
+        add_gone();
+        if (found_.empty()) add_read();
         return std::move(found_);
     }
 
@@ -108,6 +113,28 @@ private:
     static std::string_view trimmed(std::string_view text) {
         while (text.ends_with(' ')) text.remove_suffix(1);
         return text;
+    }
+
+    /// Another truth, or one in place of an array, or an array in place of one.
+    void add_labels() {
+        const std::string then = stated(entry_.truth);
+        if (then == entry_.truth && !now_.truth.empty()) return add("truth", then, now_.truth);
+        const auto labels = [&](std::string_view truth) {
+            return truth.empty() ? fmt::format("an array truth.{}", name_) : std::string(truth);
+        };
+        found_.push_back(fmt::format("the labels were: {}; they are: {}",
+                                     labels(entry_.truth == "array" ? then : entry_.truth),
+                                     labels(now_.truth)));
+    }
+
+    /// Whatever nobody has words for.
+    void add_read() {
+        if (!entry_.reads.empty())
+            found_ = differences(entry_.reads, now_.reads);
+        else if (what_ == "formula")
+            found_.emplace_back(
+                "it does not say all that it was calibrated for, as files of earlier versions do "
+                "not");
     }
 
     void add_changed(const std::map<std::string, std::string>& hashes) {
@@ -126,10 +153,10 @@ private:
     }
 
     /// What the entry was calibrated with, and is no more.
-    void add_gone(bool by_array) {
+    void add_gone() {
         if (!found_.empty()) return;  // which has said so
         for (const auto& [name, hash] : entry_.targets)
-            if (!now_.targets.contains(name) && (by_array || !now_.truth_targets.contains(name)))
+            if (!now_.targets.contains(name) && !now_.truth_targets.contains(name))
                 found_.push_back(
                     is_input(name)
                         ? fmt::format("the declaration of '{}' changed", name)
@@ -156,6 +183,7 @@ private:
     }
 
     const Model& model_;
+    const std::string& name_;
     const Threshold& threshold_;
     std::string_view what_;
     const thresholds::Entry& entry_;
@@ -189,6 +217,15 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
     return nullptr;
 }
 
+/// Says beside the guarantees that they are about other labels than the spec says.
+void reserve(Context& c, const std::string& labels, const std::string& name) {
+    if (labels != "array" && labels != stated(labels))
+        c.model.reservations.push_back(
+            fmt::format("'{}' was calibrated on labels that arrays of the episodes gave in place "
+                        "of what the spec says is true",
+                        name));
+}
+
 /// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
           Threshold& threshold, bool upper_bound, const std::string& path,
@@ -213,13 +250,15 @@ void take(Context& c, const thresholds::Entry& entry, const std::string& place,
 void take_threshold(Context& c, Index index, const thresholds::File& file) {
     Predicate& predicate = c.model.predicates[index];
     Threshold& threshold = predicate.threshold;
-    const thresholds::Entry* entry = find_entry(
-        c, predicate.name, threshold, file.path, file.predicates,
-        [&](const thresholds::Entry& found) {
-            return Differences(c.model, threshold, "predicate", provenance(c.model, index), found)
-                .find();
-        });
+    const thresholds::Entry* entry =
+        find_entry(c, predicate.name, threshold, file.path, file.predicates,
+                   [&](const thresholds::Entry& found) {
+                       return Differences(c.model, predicate.name, threshold, "predicate",
+                                          provenance(c.model, index), found)
+                           .find();
+                   });
     if (entry == nullptr) return;
+    reserve(c, entry->truth, predicate.name);
     take(c, *entry, "predicates." + predicate.name, threshold, predicate.upper_bound(), file.path,
          file.episodes);
     if (!threshold.adaptation || std::isnan(threshold.value)) return;
@@ -240,8 +279,9 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
     Threshold& shift = calibration.threshold;
     const thresholds::Entry* entry = find_entry(
         c, monitor.name, shift, file.path, file.monitors, [&](const thresholds::Entry& of) {
-            auto found =
-                Differences(c.model, shift, "formula", provenance(c.model, monitor), of).find();
+            auto found = Differences(c.model, monitor.name, shift, "formula",
+                                     provenance(c.model, monitor), of)
+                             .find();
             if (of.against != word(calibration.against))
                 found.push_back(fmt::format("it was against: {}; it is: {}", of.against,
                                             word(calibration.against)));
@@ -263,6 +303,7 @@ void take_shift(Context& c, Monitor& monitor, const thresholds::File& file) {
                 "better there than they will be");
         return;
     }
+    reserve(c, entry->truth, monitor.name);
     take(c, *entry, place, shift, calibration.against == Against::missed_alarm, file.path,
          entry->episodes);
 }

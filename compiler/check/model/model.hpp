@@ -361,7 +361,7 @@ struct Model {
 
     std::vector<std::string> dependencies;  ///< paths of every file loaded, for --depfile, sorted
     /// What the thresholds' guarantees rest on besides exchangeable episodes, in words: that
-    /// episodes which overlap were allowed, and why.
+    /// episodes which overlap were allowed, and why; that labels were not those of a truth.
     std::vector<std::string> reservations;
 };
 

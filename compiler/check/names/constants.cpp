@@ -21,6 +21,11 @@ std::string text_of(const ast::Constant& constant) {
     return with_unit(constant.value.text, constant.unit);
 }
 
+std::string_view kind_of(const ast::Constant& constant) {
+    if (constant.unit.empty()) return "a number";
+    return constant.unit == ast::kStepsUnit ? "a number of steps" : "a duration";
+}
+
 std::string text_of(const Setting& setting) {
     return fmt::format("--set {}={}{}", setting.name, setting.number, setting.unit);
 }
@@ -41,11 +46,10 @@ void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
         }
         ast::Constant& constant = **found;
         if (constant.unit.empty() != setting.unit.empty()) {
-            c.report(
-                Code::constant_form, constant.span,
-                fmt::format("{}: '{}' is {}, {}; expected {}", text_of(setting), setting.name,
-                            constant.unit.empty() ? "a number" : "a duration", text_of(constant),
-                            constant.unit.empty() ? "no unit" : "a unit behind the number"));
+            c.report(Code::constant_form, constant.span,
+                     fmt::format("{}: '{}' is {}, {}; expected {}", text_of(setting), setting.name,
+                                 kind_of(constant), text_of(constant),
+                                 constant.unit.empty() ? "no unit" : "a unit behind the number"));
             continue;
         }
         constant.value.text = setting.number;
@@ -87,8 +91,8 @@ private:
         if (constant.unit.empty()) return true;
         good_ = false;
         c_.report(Code::constant_form, use,
-                  fmt::format("'{}' is a duration, {}; expected a number", constant.name.text,
-                              text_of(constant)))
+                  fmt::format("'{}' is {}, {}; expected a number", constant.name.text,
+                              kind_of(constant), text_of(constant)))
             .note(constant.span, fmt::format("'{}' is declared here", constant.name.text));
         return false;
     }
@@ -168,11 +172,13 @@ private:
         expression.constant = number.constant;
     }
 
+    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
+
     void replace(ast::Formula& formula) {
         replace(formula.operands);
         if (formula.interval) {
-            replace(formula.interval->low.number, formula.interval->low.unit);
-            replace(formula.interval->high.number, formula.interval->high.unit);
+            replace(formula.interval->low);
+            replace(formula.interval->high);
         }
         replace(formula.left);
         replace(formula.right);
@@ -197,12 +203,14 @@ private:
     void replace(ast::Rate& rate) {
         if (!rate.is_period) return replace(rate.number);
         replace(rate.number, rate.unit);
-        if (!rate.unit.empty() || !good_) return;
+        const bool in_steps = rate.unit == ast::kStepsUnit;
+        if ((!rate.unit.empty() && !in_steps) || !good_) return;
         good_ = false;
-        c_.report(Code::constant_form, rate.number.span,
-                  fmt::format("'{0}' is a number, {1}, and a period has a unit; expected one, as "
-                              "in 'period {0} ms'",
-                              rate.number.constant, rate.number.text));
+        c_.report(
+            Code::constant_form, rate.number.span,
+            fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; expected "
+                        "one, as in 'period {0} ms'",
+                        rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
     }
 
     void replace(ast::Input& input) {

@@ -10,15 +10,27 @@ namespace {
 
 using diag::Code;
 
+void suggest(Context& c, diag::Diagnostic& to, std::string suggestion, bool is_namespace) {
+    while (!is_namespace && c.scope.find(suggestion) != nullptr) suggestion += "1";
+    to.note(fmt::format("another name would do, for example '{}'", suggestion)).meant = suggestion;
+}
+
 void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bool is_namespace) {
     if (name.text.empty()) return;
-    const auto why = why_forbidden(name.text, is_namespace);
-    if (!why) return;
-    std::string suggestion = allowed_name(name.text, kind, is_namespace);
-    while (!is_namespace && c.scope.find(suggestion) != nullptr) suggestion += "1";
-    c.report(Code::forbidden_name, name.span, fmt::format("'{}' {}", name.text, *why))
-        .note(fmt::format("another name would do, for example '{}'", suggestion))
-        .meant = suggestion;
+    if (const auto why = why_forbidden(name.text, is_namespace)) {
+        auto& error =
+            c.report(Code::forbidden_name, name.span, fmt::format("'{}' {}", name.text, *why));
+        return suggest(c, error, allowed_name(name.text, kind, is_namespace), is_namespace);
+    }
+    // Programs write these names; all others stand in generated code alone.
+    const bool is_written = kind == "spec" || kind == "input" || kind == "monitor";
+    const auto header = macro_elsewhere(name.text);
+    if (!header || !is_written) return;
+    auto& warning =
+        c.report(Code::macro_elsewhere, name.span,
+                 fmt::format("'{}' is a macro of {}: a program that includes that cannot write it",
+                             name.text, *header));
+    suggest(c, warning, fmt::format("{}_{}", name.text, kind), is_namespace);
 }
 
 void declare(Context& c, NameKind kind, const ast::Name& name) {

@@ -77,6 +77,62 @@ constexpr std::array kMacros = std::to_array<std::string_view>({
     // clang-format on
 });
 
+struct Elsewhere {
+    std::string_view name;
+    std::string_view header;
+};
+
+/// Macros of platforms that stand for something else than a name, without those in capitals and
+/// those that take arguments.
+constexpr std::array kElsewhere = std::to_array<Elsewhere>({
+    {"Above", "<X11/X.h>"},
+    {"Always", "<X11/X.h>"},
+    {"Below", "<X11/X.h>"},
+    {"Bool", "<X11/Xlib.h>"},
+    {"Complex", "<X11/X.h>"},
+    {"Convex", "<X11/X.h>"},
+    {"False", "<X11/Xlib.h>"},
+    {"Nonconvex", "<X11/X.h>"},
+    {"None", "<X11/X.h>"},
+    {"Opposite", "<X11/X.h>"},
+    {"Status", "<X11/Xlib.h>"},
+    {"Success", "<X11/X.h>"},
+    {"True", "<X11/Xlib.h>"},
+    {"Unsorted", "<X11/X.h>"},
+    {"cdecl", "<windows.h>"},
+    {"ctlFirst", "<windows.h>"},
+    {"ctlLast", "<windows.h>"},
+    {"emit", "Qt"},
+    {"exception_code", "<windows.h>"},
+    {"exception_info", "<windows.h>"},
+    {"far", "<windows.h>"},
+    {"foreach", "Qt"},
+    {"forever", "Qt"},
+    {"h_addr", "<windows.h>"},
+    {"h_errno", "<windows.h>"},
+    {"hyper", "<windows.h>"},
+    {"interface", "<windows.h>"},
+    {"near", "<windows.h>"},
+    {"pascal", "<windows.h>"},
+    {"s_addr", "<windows.h>"},
+    {"s_host", "<windows.h>"},
+    {"s_imp", "<windows.h>"},
+    {"s_impno", "<windows.h>"},
+    {"s_lh", "<windows.h>"},
+    {"s_net", "<windows.h>"},
+    {"signals", "Qt"},
+    {"slots", "Qt"},
+    {"small", "<windows.h>"},
+});
+
+/// The controls of dialogs in <windows.h>: rad1, grp2, ...
+constexpr std::array kControls = std::to_array<std::string_view>(
+    {"chx", "cmb", "ctl", "edt", "frm", "grp", "ico", "lst", "psh", "rad", "rct", "scr", "stc"});
+
+constexpr bool by_name(const Elsewhere& a, const Elsewhere& b) {
+    return a.name < b.name;
+}
+
 /// Functions and types at global scope in the C library and POSIX: no namespace may bear their
 /// names. Derived from the headers by tests/spec/library_names_test.sh.
 constexpr std::array kLibrary = std::to_array<std::string_view>({
@@ -88,6 +144,8 @@ static_assert(std::is_sorted(kKeywords.begin(), kKeywords.end()));
 static_assert(std::is_sorted(kGenerated.begin(), kGenerated.end()));
 static_assert(std::is_sorted(kMacros.begin(), kMacros.end()));
 static_assert(std::is_sorted(kLibrary.begin(), kLibrary.end()));
+static_assert(std::is_sorted(kElsewhere.begin(), kElsewhere.end(), by_name));
+static_assert(std::is_sorted(kControls.begin(), kControls.end()));
 
 template <std::size_t N>
 bool contains(const std::array<std::string_view, N>& table, std::string_view name) {
@@ -145,6 +203,18 @@ std::optional<std::string_view> why_forbidden(std::string_view name, bool is_nam
     if (is_namespace && contains(kLibrary, name))
         return "is a name of the C library, so that no namespace can bear it";
     return std::nullopt;
+}
+
+std::optional<std::string_view> macro_elsewhere(std::string_view name) {
+    const auto* const found =
+        std::lower_bound(kElsewhere.begin(), kElsewhere.end(), Elsewhere{name, {}}, by_name);
+    if (found != kElsewhere.end() && found->name == name) return found->header;
+    const std::string_view digits = name.substr(std::min<std::size_t>(name.size(), 3));
+    const bool numbered = !digits.empty() && digits.find_first_not_of("0123456789") == name.npos;
+    if (numbered && contains(kControls, name.substr(0, 3))) return "<windows.h>";
+    const bool binary = name.size() > 1 && name.size() <= 9 && name[0] == 'B' &&
+                        name.find_first_not_of("01", 1) == name.npos;
+    return binary ? std::optional<std::string_view>("<Arduino.h>") : std::nullopt;
 }
 
 std::string allowed_name(std::string_view name, std::string_view kind, bool is_namespace) {

@@ -15,6 +15,10 @@ namespace etlc::check {
 /// scope, the spec's own name, which stands beside the functions of the C library.
 std::optional<std::string_view> why_forbidden(std::string_view name, bool is_namespace);
 
+/// The header, in words, of which `name` is a macro that stands for something else: near is nothing
+/// at all in <windows.h>. Such a name may be declared, and generated code shields its own.
+std::optional<std::string_view> macro_elsewhere(std::string_view name);
+
 /// A name like `name` that may be declared: `int` becomes `int_input`, `a__b` becomes `a_b`. `kind`
 /// is a word of the language.
 std::string allowed_name(std::string_view name, std::string_view kind, bool is_namespace);

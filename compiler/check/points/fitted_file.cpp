@@ -94,8 +94,10 @@ void check_fitted_entries(Context& c) {
         const FittedProvenance now = provenance(c.model, fitted);
         std::vector<std::string> differences;
         if (entry.of != now.of) differences.push_back(difference("the point", entry.of, now.of));
-        if (entry.truth != "array" && entry.truth != now.truth)
+        if (stated(entry.truth) != now.truth)
             differences.push_back(difference("the truth", entry.truth, now.truth));
+        if (differences.empty() && !entry.reads.empty())
+            differences = check::differences(entry.reads, now.reads);
         report_stale(c, fitted, differences);
     }
     for (const thresholds::Allowance& allowance : c.fitted_file->allowances)

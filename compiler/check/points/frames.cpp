@@ -113,6 +113,10 @@ std::optional<Matrix> read_frames(Context& c, const ast::Frames& written) {
         if (!marks) return report(c, written, path, marks.failure()), std::nullopt;
         if (const auto other = other_encoder(c.model, *input, input->name, *marks))
             return report(c, written, path, *other), std::nullopt;
+        if (is_unmarked(*input, input->name, *marks))
+            explain_unmarked(c.report(
+                Code::unmarked_episode, written.span,
+                fmt::format("{} does not say which encoder made '{}'", written.path, input->name)));
     }
 
     Matrix matrix;

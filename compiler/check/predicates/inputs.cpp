@@ -137,13 +137,19 @@ private:
 
     std::uint32_t hold() {
         if (!declaration_.hold) return 0;
-        const ast::Number& number = *declaration_.hold;
-        if (const auto steps = Decimal::parse(number.text).whole(kMaxHold))
-            return static_cast<std::uint32_t>(*steps);
-        report(Code::hold_out_of_range, number.span,
-               fmt::format("hold {} is not a whole number of steps from 0 to {}", shown(number),
-                           kMaxHold));
-        return 0;
+        const ast::Bound& hold = *declaration_.hold;
+        if (!is_duration(hold)) {
+            // A number alone has always been one of steps here: no bound that is perhaps seconds.
+            const auto steps = Decimal::parse(hold.number.text).whole(kMaxHold);
+            if (!steps)
+                report(Code::hold_out_of_range, hold.span,
+                       fmt::format("hold {} is not a whole number of steps from 0 to {}",
+                                   shown(hold.number), kMaxHold));
+            return static_cast<std::uint32_t>(steps.value_or(0));
+        }
+        const auto steps = bound_steps(c_, hold);
+        if (!steps) broken_ = true;
+        return steps.value_or(0);
     }
 
     /// Of its inputs, which all have the dimension of what it gives.

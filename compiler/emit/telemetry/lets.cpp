@@ -32,6 +32,16 @@ void print_let_interface(Printer& out, const Context& context) {
     out.line();
 }
 
+namespace {
+
+/// Of a let: its verdict has no sample.
+std::string value_of(const Context& context, const plan::Let& let) {
+    const std::string value = context.value(let.stream);
+    return context.explains ? fmt::format("etlmon::unsourced({})", value) : value;
+}
+
+}  // namespace
+
 /// After the trace they stay: there is no step that they would be about.
 void print_lets(Printer& out, const Context& context) {
     const plan::Plan& plan = context.plan;
@@ -42,7 +52,7 @@ void print_lets(Printer& out, const Context& context) {
         print_with_comment(
             out,
             fmt::format("{} = etlmon::sliding_verdict({});", context.names.let_member[l],
-                        context.value(plan.lets[l].stream)),
+                        value_of(context, plan.lets[l])),
             context.place(context.model.lets[plan.lets[l].index].span));
     if (plan.has_sliding) out.close();
 }

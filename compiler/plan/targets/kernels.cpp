@@ -49,4 +49,12 @@ etlmon::Measured measure(const check::Distance& distance, const float* z, const 
                            rows, dimension, distance.weights.data(), scratch);
 }
 
+bool project(const check::Projection& map, const std::vector<float>& z, std::vector<float>& y) {
+    y.resize(map.rows);
+    std::vector<float> centred(map.offset.size());
+    return etlmon::project(z.data(), map.matrix.data(),
+                           map.offset.empty() ? nullptr : map.offset.data(), map.rows,
+                           map.dimension, centred.data(), y.data());
+}
+
 }  // namespace etlc::plan

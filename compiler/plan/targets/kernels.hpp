@@ -29,4 +29,7 @@ std::string metric_name(const check::Distance& distance);
 etlmon::Measured measure(const check::Distance& distance, const float* z, const float* targets,
                          std::uint32_t rows, std::uint32_t dimension, float* scratch);
 
+/// A (z - m), as generated code computes it; false where it is unknown.
+bool project(const check::Projection& map, const std::vector<float>& z, std::vector<float>& y);
+
 }  // namespace etlc::plan

@@ -8,7 +8,8 @@
 #include "intervals.hpp"
 
 extern "C" {
-extern uint32_t bss_start, bss_end, stack_top;
+extern uint32_t data_start, data_end, bss_start, bss_end, stack_top;
+extern const uint32_t data_stored;
 int main();
 [[noreturn]] void reset() noexcept;
 [[noreturn]] void fault() noexcept;
@@ -65,6 +66,8 @@ __attribute__((section(".vectors"), used)) const void* const vectors[16] = {
 void reset() noexcept {
     at(0xe000ed88) = at(0xe000ed88) | 0xfu << 20;  // CPACR: the floating-point unit is on
     __asm__ volatile("dsb\n isb");
+    const uint32_t* from = &data_stored;  // monitors as they begin
+    for (uint32_t* p = &data_start; p != &data_end; ++p) *p = *from++;
     for (uint32_t* p = &bss_start; p != &bss_end; ++p) *p = 0;
     count_from(0xffffff, false);
     board_exit(main());

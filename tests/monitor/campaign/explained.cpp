@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
+#include <set>
 
 #include "campaign.hpp"
 #include "explain/explain.hpp"
@@ -152,10 +154,15 @@ private:
     std::optional<std::string> change() const {
         if (found_.change) {
             const explain::Change& change = *found_.change;
-            const Said then = reference_.said_with(altered(change.sample, beyond(change)));
-            if (then != said_by(change.status, change.for_good) || !turned(then))
+            const auto with = [&](float measured) {
+                return reference_.said_with(altered(change.sample, measured));
+            };
+            const auto as_said = [&](Said then) {
+                return then == said_by(change.status, change.for_good) && turned(then);
+            };
+            if (!as_said(with(change.measured)) && !as_said(with(beyond(change))))
                 return fmt::format("{} as {:.9g}: {}", show(set_of({change.sample})),
-                                   change.measured, words(then));
+                                   change.measured, words(with(change.measured)));
         }
         for (explain::Index atom = 0; atom < observations_.atoms().size(); ++atom)
             for (std::uint64_t step = 0; step <= step_; ++step)
@@ -166,27 +173,51 @@ private:
     std::optional<std::string> smaller_change(const explain::Sample& sample) const {
         if (observations_.is_missing(sample)) return {};
         const float now = observations_.measured(sample);
-        std::vector<float> others;
-        if (!observations_.atoms()[sample.atom].is_predicate) {
-            if (!found_.change) others.push_back(now != 0 ? 0.0F : 1.0F);
-        } else {
-            const check::Range& range = observations_.predicate(sample.atom).delta;
-            for (const float end : {range.low, range.high}) {
-                const float most = std::clamp(end, -1e6F, 1e6F);
-                const float by = found_.change && is_predicate(*found_.change)
-                                     ? smaller(*found_.change)
-                                     : std::abs(most - now);
-                const float other = most < now ? now - by : now + by;
-                if (range.contains(other)) others.push_back(other);
-            }
-        }
-        for (const float other : others) {
+        for (const float other : smaller_ones(sample, now)) {
             const Said then = reference_.said_with(altered(sample, other));
             if (turned(then))
                 return fmt::format("{} as {:.9g} instead of {:.9g}: {}", show(set_of({sample})),
                                    other, now, words(then));
         }
         return {};
+    }
+
+    std::vector<float> smaller_ones(const explain::Sample& sample, float now) const {
+        const bool found = found_.change.has_value();
+        if (!observations_.atoms()[sample.atom].is_predicate)
+            return found ? std::vector<float>{} : std::vector{now != 0 ? 0.0F : 1.0F};
+        const check::Range& range = observations_.predicate(sample.atom).delta;
+        const bool by_size = found && is_predicate(*found_.change);
+        const float most = by_size ? smaller(*found_.change) : std::numeric_limits<float>::max();
+        std::vector<float> others = points(sample.atom);
+        for (const float end : {range.low, range.high}) {
+            const float far = std::clamp(end, -1e6F, 1e6F);
+            others.push_back(!by_size ? far : far < now ? now - most : now + most);
+        }
+        std::erase_if(others, [&](float other) {
+            return !range.contains(other) || std::abs(other - now) > most;
+        });
+        return others;
+    }
+
+    /// What may turn where == or != compares: all thresholds that the expression is compared with,
+    /// what is just beside them, but for what a shift rounds, and what lies between them.
+    std::vector<float> points(explain::Index atom) const {
+        std::set<float> thresholds;
+        bool any_equality = false;
+        for (const Alteration& one : altered({atom, 0}, 0)) {
+            const check::Predicate& predicate = model_.predicates[one.index];
+            any_equality = any_equality || predicate.equality();
+            thresholds.insert(predicate.threshold.value);
+        }
+        if (!any_equality) return {};
+        std::vector<float> result;
+        for (const float threshold : thresholds)
+            for (const float away : {-0.0625F, 0.0F, 0.0625F}) {
+                result.push_back(threshold + away);
+                if (shift() == 0) result.push_back(std::nextafter(threshold, threshold + away));
+            }
+        return result;
     }
 
     /// Less a shift, robustness is rounded twice, which the reference is not: a little farther.

@@ -12,7 +12,8 @@ row() { printf "note,z[0],z[1],grip,held\n,1,2,0.5,1\n$1\n" > trace.csv; "$ETLC"
 row '"two\nlines",1,two,0.5,1'
 row ',1,2,"0,5",1'
 row ',1,2,0x10,1'
-row ',1,2,0.5,True'
+row ',1,2,0.5,yes'
+row ',1,2,True,1'
 row ',1,2,0.5,0.5'
 row ',1,2,0.5\033[31m,1'
 ls

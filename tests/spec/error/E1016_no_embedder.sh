@@ -1,3 +1,3 @@
-# etlc without OpenCV and FFmpeg.
+# etlc without FFmpeg, libpng and libjpeg.
 . "$SPECS/../encoding.bash"
 ETLC_EMBEDDER=/nowhere "$ETLC" embed t.etl

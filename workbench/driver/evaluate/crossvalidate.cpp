@@ -25,7 +25,8 @@ std::vector<Paths> parts(const Paths& episodes, std::size_t count) {
     return result;
 }
 
-/// Passes errors on, and of warnings those that no earlier fold had.
+/// Passes errors on, and of warnings those that no earlier fold had. That episodes do not say which
+/// encoder made their embeddings, is told of all of them, as they are judged.
 class Telling {
 public:
     explicit Telling(diag::Sink& sink) : sink_(sink) {}
@@ -34,7 +35,8 @@ public:
         diag::Sink first;
         for (const diag::Diagnostic& one : found.sorted()) {
             const std::uint32_t place = one.span ? one.span->begin : 0;
-            const bool is_new = told_.emplace(one.code, place).second;
+            const bool is_new =
+                one.code != diag::Code::unmarked_episode && told_.emplace(one.code, place).second;
             if (is_new || one.severity() == diag::Severity::error) first.report(one);
         }
         sink_.add(first, note);

@@ -116,11 +116,14 @@ std::optional<evaluate::SideBySide> judged(const std::vector<Candidate>& candida
         auto judgement = evaluation.folds > 0
                              ? judging.in_folds(one, evaluation.folds, found)
                              : judge_as_it_is(*one.compiled, path, request, asked, found);
+        std::optional<evaluate::Evaluation> summary;
+        if (judgement) summary = evaluate::summarise(*judgement);
+        if (summary) evaluate::warn_of_doubts(one.model(), *summary, found);
         one.spec.sink.add(found, candidates.size() > 1 ? fmt::format("for the spec {}", path) : "");
-        if (!judgement) return std::nullopt;
+        if (!summary) return std::nullopt;
         auto& spec = result.specs.emplace_back();
         spec.path = path;
-        spec.evaluation = evaluate::summarise(*judgement);
+        spec.evaluation = std::move(*summary);
         if (evaluation.by_episode) spec.evaluation.by_episode = evaluate::by_episode(*judgement);
         if (first)
             spec.differences = evaluate::differences(*first, *judgement);

@@ -11,6 +11,7 @@
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
 #include "episodes/replay.hpp"
+#include "episodes/unmarked.hpp"
 #include "explain/history.hpp"
 #include "explain/report.hpp"
 #include "source/escape.hpp"
@@ -164,6 +165,9 @@ bool explain(const source::File& spec, const Compiled& compiled, const ExplainRe
     inputs.insert(inputs.end(), {spec.path(), data::trace_file(request.trace)});
     if (!check_outputs({request.output}, inputs, sink)) return false;
     const auto text = Explaining(compiled, request, sink).text();
+    if (text)
+        episodes::warn_of_unmarked(model, compiled.plan.inputs, {request.trace}, request.names,
+                                   sink);
     OutputFiles output(sink);
     return text && output.add(request.output, *text) && output.commit();
 }

@@ -86,8 +86,8 @@ std::string text_of(const plan::Plan& plan, const Incident& incident, IncidentFo
 bool incident(const source::File& spec, const Compiled& compiled, const IncidentRequest& request,
               diag::Sink& sink) {
     const plan::Plan& plan = compiled.plan;
-    const auto bytes =
-        data::read_file(request.file, data::kMaxIncidentBytes, diag::Code::unreadable_incident);
+    const auto bytes = data::read_file(request.file, data::kMaxIncidentBytes,
+                                       diag::Code::unreadable_incident, data::Streams::taken);
     if (!bytes) return sink.report(data::in_file(bytes.failure(), request.file)), false;
     const auto read = data::within_memory([&] { return data::parse_incident(*bytes); });
     if (!read) return sink.report(data::in_file(read.failure(), request.file)), false;

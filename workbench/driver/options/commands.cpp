@@ -64,6 +64,13 @@ CommandText text_of(Command command) {
             "why; 2, the call is wrong; 3, a\nfault of etlc itself."};
 }
 
+std::vector<std::string> command_names() {
+    std::vector<std::string> names;
+    for (const Row& row : kCommands)
+        if (!row.name.empty()) names.emplace_back(row.name);
+    return names;
+}
+
 std::optional<Command> command_named(std::string_view word) {
     for (const Row& row : kCommands)
         if (!row.name.empty() && row.name == word) return row.command;

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "driver/options/call.hpp"
 
@@ -17,6 +18,8 @@ struct CommandText {
 
 CommandText text_of(Command command);
 
+/// "run", ...
+std::vector<std::string> command_names();
 /// Nothing where the word names none.
 std::optional<Command> command_named(std::string_view word);
 

@@ -1,11 +1,13 @@
 #include "driver/options/mistakes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
 #include <charconv>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 
 #include "check/names/reserved.hpp"
@@ -13,6 +15,7 @@
 #include "data/traces/trace.hpp"
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
+#include "driver/options/commands.hpp"
 #include "driver/process/output_file.hpp"
 #include "library/recorder.hpp"
 
@@ -169,6 +172,23 @@ std::string mistake_in_evaluating(const Call& call) {
 }
 
 }  // namespace
+
+std::string mistake_in_command(int argc, char** argv) {
+    const std::string word = argc > 1 ? argv[1] : "";
+    const bool is_path = word.find_first_of("./\\") != std::string::npos;
+    std::error_code ignored;
+    if (word.empty() || word[0] == '-' || is_path || std::filesystem::exists(word, ignored))
+        return "";
+    const std::string no_command = fmt::format("there is no command {}", data::in_quotes(word));
+    if (word == "help" || word == "version")
+        return fmt::format("{}; did you mean '--{}'?", no_command, word);
+    const std::vector<std::string> commands = command_names();
+    if (const auto near = diag::nearest_name(word, commands))
+        return fmt::format("{}; did you mean '{}'?", no_command, *near);
+    if (argc == 2 || argv[2][0] == '-') return "";
+    return fmt::format("{}; the commands are {}; etlc SPEC.etl compiles a spec", no_command,
+                       fmt::join(commands, ", "));
+}
 
 std::string mistake_in(const Call& call) {
     switch (call.command) {

@@ -24,6 +24,10 @@ std::string mistake_in_namespace(const std::string& name);
 /// Expected: seconds from 0.
 std::string mistake_in_seconds(const std::string& found);
 
+/// A first word that is neither an option nor a spec, but was meant as a command; empty where it
+/// may be a spec.
+std::string mistake_in_command(int argc, char** argv);
+
 /// Of the options of the call together.
 std::string mistake_in(const Call& call);
 

@@ -48,12 +48,6 @@ CLI::Option* add(CLI::App& app, const Option& option) {
     return added;
 }
 
-int complain(const std::string& command, const std::string& mistake) {
-    print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
-                            source::visible_lines(mistake), command));
-    return kWrongCall;
-}
-
 /// --help, --version
 int fulfil(const CLI::App& app, const CLI::Success& wish) {
     std::ostringstream text;
@@ -64,6 +58,12 @@ int fulfil(const CLI::App& app, const CLI::Success& wish) {
 }
 
 }  // namespace
+
+int complain(const std::string& command, const std::string& mistake) {
+    print_error(fmt::format("etlc: {}\nRun {} --help for more information.\n",
+                            source::visible_lines(mistake), command));
+    return kWrongCall;
+}
 
 std::optional<int> parse(int argc, char** argv, Call& call) {
     const CommandText text = text_of(call.command);

@@ -293,19 +293,17 @@ std::vector<Option> make_options() {
         {embed, "--shard", form("I/N", read_shard),
          "make episodes of this shard of the recordings only; the first encodes what the spec "
          "names as well"},
-        {embed, "--runtime",
-         choice<embed::Runtime>(
-             {{"opencv", embed::Runtime::opencv}, {"onnxruntime", embed::Runtime::onnxruntime}},
-             in(&Call::embed, &EmbedRequest::embed, &embed::Request::running,
-                &embed::Running::runtime)),
-         "what runs the models of encoders; ONNX Runtime has all operators, where etlc was built "
-         "with it"},
+        {embed, "--onnxruntime",
+         text("PATH", in(&Call::embed, &EmbedRequest::embed, &embed::Request::running,
+                         &embed::Running::onnxruntime)),
+         "what runs the models of encoders: the library, or a folder that has it (default: "
+         "ETLC_ONNXRUNTIME, or where pip, npm or the system put it)"},
         {embed, "--encoder-cmd",
          text("COMMAND", in(&Call::embed, &EmbedRequest::embed, &embed::Request::running,
                             &embed::Running::command)),
          "a command that encodes: frames on its standard input, embeddings on its standard output "
          "(docs/encoders.md)",
-         Option::Need::none, "--runtime"},
+         Option::Need::none, "--onnxruntime"},
         {embed, "--encoder-timeout", encoder_timeout(),
          "seconds after which an encoder that neither reads nor writes is stopped"},
 

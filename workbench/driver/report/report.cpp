@@ -8,6 +8,7 @@
 #include "driver/evaluate/evaluate.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/progress.hpp"
+#include "episodes/unmarked.hpp"
 
 namespace etlc::driver {
 
@@ -80,6 +81,9 @@ bool report(const source::File& spec, const Compiled& compiled, const Request& r
         material.truth = &*truths.subject;
         material.judgement = &*judgement;
     }
+    if (!judgement)
+        episodes::warn_of_unmarked(model, compiled.plan.inputs, wanted.episodes, wanted.names,
+                                   sink);
     const auto page = report::page(material, wanted, sink);
     return page && !sink.refused() && output.write(*page) && output.commit();
 }

@@ -14,6 +14,7 @@
 #include "driver/report/report.hpp"
 #include "driver/run/summary.hpp"
 #include "episodes/replay.hpp"
+#include "episodes/unmarked.hpp"
 #include "plan/recorder.hpp"
 #include "source/escape.hpp"
 
@@ -50,6 +51,8 @@ public:
         if (writes_rows() && !output_.begin(request_.output)) return false;
         print_head();
         if (!step_through_trace() || !flush()) return false;
+        episodes::warn_of_unmarked(*plan_.model, plan_.inputs, {request_.trace}, request_.names,
+                                   sink_);
         if (request_.summary && !print(summary_.text(steps_, monitors_.evaluator()), sink_))
             return false;
         return write_pictures() && output_.commit();

@@ -118,6 +118,12 @@ std::int64_t Decoder::promised() const {
     return std::max<std::int64_t>(frames - discarded_, 0);
 }
 
+std::optional<std::int64_t> Decoder::counted() {
+    note_packets();
+    if (noted_ || promised() == 0) return noted_;
+    return promised();
+}
+
 /// False at the end.
 bool Decoder::read_packet() {
     int error = av_read_frame(format_.get(), packet_.get());
@@ -150,18 +156,19 @@ void Decoder::note_packets() {
     Decoder other(path_);
     bool is_first = true;
     bool tells = true;
-    for (; tells && other.read_packet(); av_packet_unref(other.packet_.get())) {
+    for (; other.read_packet(); av_packet_unref(other.packet_.get())) {
         const AVPacket& packet = *other.packet_;
         if ((packet.flags & AV_PKT_FLAG_DISCARD) != 0) {
             ++discarded_in_all_;
             continue;
         }
         const bool is_key = (packet.flags & AV_PKT_FLAG_KEY) != 0;
-        tells = packet.pts != AV_NOPTS_VALUE && (is_key || !is_first);
+        tells = tells && packet.pts != AV_NOPTS_VALUE && (is_key || !is_first);
         is_first = false;
         times_.push_back(packet.pts);
         if (is_key) starts_.push_back(packet.pts);
     }
+    noted_ = static_cast<std::int64_t>(times_.size());
     const std::int64_t first = times_.empty() ? 0 : times_.front();
     std::sort(times_.begin(), times_.end());
     std::sort(starts_.begin(), starts_.end());

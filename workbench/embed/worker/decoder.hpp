@@ -6,6 +6,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -27,6 +28,8 @@ public:
 
     /// How many pictures there should be: what the container says; 0 where it says nothing.
     std::int64_t promised() const;
+    /// How many there are, where that is known without decoding them.
+    std::optional<std::int64_t> counted();
     /// The number of the next picture, counted from 0.
     std::int64_t shown() const { return shown_; }
     /// The time stamp of the first picture, where pictures before this one were left out.
@@ -48,6 +51,7 @@ private:
     std::int64_t shown_ = 0;
     std::int64_t discarded_ = 0;  ///< packets of pictures that are not shown
     std::int64_t discarded_in_all_ = 0;
+    std::optional<std::int64_t> noted_;  ///< packets of pictures that are shown
     bool has_noted_ = false;
     bool has_jumped_ = false;
     std::vector<std::int64_t> times_;   ///< of all pictures, ascending; empty: they do not tell

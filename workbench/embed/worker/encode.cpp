@@ -1,4 +1,4 @@
-// Frames in, embeddings out: what is the same for all libraries that run networks.
+// Frames in, embeddings out.
 #include <bit>
 #include <fstream>
 #include <iterator>
@@ -14,19 +14,22 @@ namespace {
 
 using data::frames::kMaxExtent;
 using data::frames::kMaxPixels;
-using data::frames::kNotBuilt;
 using data::frames::kRefused;
 using data::frames::kWrongCall;
+
+std::string shape_of(const Value& value) {
+    return value.shape ? shape_text(*value.shape) : "any shape";
+}
 
 std::string listed(const std::vector<Value>& values) {
     std::string text;
     for (const Value& value : values)
-        text += (text.empty() ? "'" : ", '") + value.name + "' (" + shape_text(value) + ")";
+        text += (text.empty() ? "'" : ", '") + value.name + "' (" + shape_of(value) + ")";
     return text;
 }
 
 std::string described(const Value& value) {
-    return "'" + value.name + "' of " + (value.is_float ? "" : "not float, ") + shape_text(value);
+    return "'" + value.name + "' of " + (value.is_float ? "" : "not float, ") + shape_of(value);
 }
 
 /// Of one image to one embedding; else a refusal.
@@ -39,7 +42,7 @@ void check_interface(const Interface& model) {
                              " outputs, expected one embedding: " + listed(model.outputs) +
                              "; export it with one of them");
     const Value& input = model.inputs[0];
-    const std::vector<std::int64_t>& shape = input.shape;
+    const Extents shape = input.shape.value_or(Extents{});
     const bool is_image = input.is_float && shape.size() == 4 && shape[0] <= 1 &&
                           (shape[1] == kChannels || shape[1] == 0);
     if (!is_image)
@@ -61,9 +64,9 @@ Settings settings_of(const Words& options, const Value& input) {
     if (mean.size() != kChannels || deviation.size() != kChannels ||
         (!image.empty() && image.size() != 2))
         refuse(kWrongCall, "--image takes two numbers, --mean and --deviation three");
-    const std::int64_t own[] = {input.shape[2], input.shape[3]};
+    const std::int64_t own[] = {input.shape->at(2), input.shape->at(3)};
     if (image.empty() && (own[0] == 0 || own[1] == 0))
-        refuse(kRefused, "takes images of any size (" + shape_text(input) +
+        refuse(kRefused, "takes images of any size (" + shape_of(input) +
                              "): say which in the spec, as image [224, 224]");
     settings.height = image.empty() ? static_cast<int>(own[0]) : static_cast<int>(image[0]);
     settings.width = image.empty() ? static_cast<int>(own[1]) : static_cast<int>(image[1]);
@@ -91,19 +94,6 @@ Model read_model(const std::string& path) {
     return model;
 }
 
-std::unique_ptr<Network> start(const Model& model, const std::string& runtime) {
-    if (runtime == "opencv") return by_opencv(model);
-    if (runtime != "onnxruntime")
-        refuse(kWrongCall, "--runtime takes opencv or onnxruntime, not " + runtime);
-    if constexpr (kHasOnnxRuntime)
-        return by_onnxruntime(model);
-    else
-        refuse(kNotBuilt,
-               "is not run by ONNX Runtime: this etlc-embed was built without it; build etlc with "
-               "-DCMAKE_PREFIX_PATH=FOLDER, where FOLDER has its include/ and lib/ "
-               "(docs/recordings.md), or leave out --runtime");
-}
-
 /// False at the end.
 bool read_frame(Frame& frame) {
     char head[8];
@@ -122,19 +112,25 @@ bool read_frame(Frame& frame) {
 
 }  // namespace
 
+void say_onnxruntime(const Words& options) {
+    const Library library = load_onnxruntime(options.text("--onnxruntime", ""));
+    const std::string lines = library.version + "\n" + library.path + "\n";
+    write_out(lines.data(), lines.size());
+}
+
 void encode(const std::string& path, const Words& options) {
     static_assert(std::endian::native == std::endian::little);
     Model model = read_model(path);
     const Settings settings = settings_of(options, model.interface.inputs[0]);
     model.height = settings.height;
     model.width = settings.width;
-    const std::unique_ptr<Network> network = start(model, options.text("--runtime", "opencv"));
+    Network network(load_onnxruntime(options.text("--onnxruntime", "")), model);
     std::vector<float> image(settings.elements());
     Frame frame;
     std::size_t dimension = 0;
     for (std::uint64_t n = 0; read_frame(frame); ++n) {
         prepare(frame, settings, image);
-        const std::span<const float> embedding = network->run(image);
+        const std::span<const float> embedding = network.run(image);
         if (n == 0) {
             dimension = embedding.size();
             if (dimension == 0) refuse(kRefused, "gives no number, expected an embedding");

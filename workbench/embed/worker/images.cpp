@@ -1,10 +1,19 @@
-// Images through OpenCV: PNG and JPEG, turned as their EXIF orientation says.
+// Images through libpng and libjpeg: turned as their EXIF orientation says.
+#include <png.h>
+
 #include <algorithm>
+#include <cstddef>
+#include <cstdio>
+#include <cstring>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
-#include <opencv2/imgcodecs.hpp>
-#include <opencv2/imgproc.hpp>
+#include <span>
+
+// They need the above, each those before.
+#include <jpeglib.h>
+
+#include <jerror.h>
 
 #include "data/frames/protocol.hpp"
 #include "embed/worker/worker.hpp"
@@ -19,57 +28,220 @@ using data::frames::kMaxPixels;
 using data::frames::kRefused;
 using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
+using View = std::span<const std::uint8_t>;
+
+constexpr std::size_t kChannels = 3;
+
+struct Image {
+    std::size_t height = 0;
+    std::size_t width = 0;
+    Bytes rgb;
+    unsigned orientation = 1;  ///< of EXIF: 1 to 8
+};
 
 Bytes bytes_of(const std::string& path) {
-    std::ifstream file(path, std::ios::binary);
-    if (!file || std::filesystem::is_directory(path)) refuse(kRefused, "cannot be read");
+    std::error_code error;
+    const bool is_file = std::filesystem::is_regular_file(path, error);  // a pipe may never begin
+    std::ifstream file(is_file ? path : "", std::ios::binary);
+    if (!file) refuse(kRefused, "cannot be read as a file");
     return Bytes(std::istreambuf_iterator<char>(file), {});
 }
 
-/// libjpeg fills what is not there with grey and only warns. The end is looked for behind the
-/// segments of the head, since a thumbnail in them has an end of its own.
-bool is_cut_jpeg(const Bytes& bytes) {
-    constexpr std::uint8_t kMark = 0xff;
-    constexpr std::uint8_t kScan = 0xda;
-    constexpr std::uint8_t kEnd = 0xd9;
-    if (bytes.size() < 4 || bytes[0] != kMark || bytes[1] != 0xd8) return false;
-    std::size_t at = 2;
-    while (at + 4 <= bytes.size() && bytes[at] == kMark && bytes[at + 1] != kScan)
-        at += 2 + std::size_t{bytes[at + 2]} * 256 + bytes[at + 3];
-    const std::uint8_t end[] = {kMark, kEnd};
-    const auto from = bytes.begin() + static_cast<std::ptrdiff_t>(std::min(at, bytes.size()));
-    return std::search(from, bytes.end(), std::begin(end), std::end(end)) == bytes.end();
+[[noreturn]] void refuse_damaged(const char* why) {
+    refuse(kRefused, std::string("is no image, or a damaged one: ") + why);
 }
 
-/// Refuses what cannot be taken as red, green and blue of 8 bits without saying how.
-void check_pixels(const cv::Mat& image) {
-    if (image.depth() != CV_8U)
-        refuse(kRefused, "has " + std::to_string(8 * image.elemSize1()) +
-                             " bits a channel, expected 8: save it with 8");
-    if (static_cast<std::uint32_t>(std::max(image.rows, image.cols)) > kMaxExtent ||
-        image.total() > kMaxPixels)
-        refuse(kRefused, "has " + std::to_string(image.cols) + " x " + std::to_string(image.rows) +
-                             " pixels, more than are read");
-    if (image.channels() != 4) return;
-    cv::Mat alpha;
-    cv::extractChannel(image, alpha, 3);
-    double least = 0;
-    cv::minMaxLoc(alpha, &least);
-    if (least < 255) refuse(kRefused, "has transparent pixels, expected none: save it without");
+/// Before anything is allocated for its pixels.
+void check_size(std::uint64_t width, std::uint64_t height) {
+    if (std::max(width, height) <= kMaxExtent && width * height <= kMaxPixels) return;
+    refuse(kRefused, "has " + std::to_string(width) + " x " + std::to_string(height) +
+                         " pixels, expected at most " + std::to_string(kMaxExtent) +
+                         " in a row or column and " + std::to_string(kMaxPixels) + " in all");
+}
+
+/// 1 where nothing says another. `tiff`: what EXIF data are, entries of 12 bytes in a list.
+unsigned orientation_in(View tiff) {
+    constexpr std::uint64_t kOrientation = 0x0112, kShort = 3;
+    const bool little = tiff.size() >= 2 && tiff[0] == 'I' && tiff[1] == 'I';
+    const auto number = [&](std::size_t at, std::size_t bytes) {
+        std::uint64_t result = 0;
+        for (std::size_t i = 0; i < bytes && at + bytes <= tiff.size(); ++i)
+            result = result << 8U | tiff[little ? at + bytes - 1 - i : at + i];
+        return result;
+    };
+    if (number(2, 2) != 42) return 1;
+    const std::size_t list = number(4, 4);
+    for (std::size_t i = 0; i < number(list, 2); ++i) {
+        const std::size_t entry = list + 2 + 12 * i;
+        if (number(entry, 2) != kOrientation || number(entry + 2, 2) != kShort) continue;
+        const std::uint64_t found = number(entry + 8, 2);
+        return found >= 1 && found <= 8 ? static_cast<unsigned>(found) : 1;
+    }
+    return 1;
+}
+
+class Png {
+public:
+    explicit Png(View bytes) : rest_(bytes) {
+        png_ = png_create_read_struct(PNG_LIBPNG_VER_STRING, nullptr, fail, ignore);
+        info_ = png_create_info_struct(png_);
+        png_set_user_limits(png_, PNG_UINT_31_MAX, PNG_UINT_31_MAX);  // check_size says more
+        png_set_read_fn(png_, this, read);
+    }
+    Png(const Png&) = delete;
+    Png& operator=(const Png&) = delete;
+    ~Png() { png_destroy_read_struct(&png_, &info_, nullptr); }
+
+    Image decoded() {
+        png_read_info(png_, info_);
+        Image image;
+        image.height = png_get_image_height(png_, info_);
+        image.width = png_get_image_width(png_, info_);
+        check_size(image.width, image.height);
+        if (png_get_bit_depth(png_, info_) == 16)
+            refuse(kRefused, "has 16 bits a channel, expected 8: save it with 8");
+        png_set_expand(png_);
+        png_set_gray_to_rgb(png_);
+        png_set_interlace_handling(png_);
+        png_read_update_info(png_, info_);
+        const std::size_t channels = png_get_channels(png_, info_);
+        Bytes pixels(image.height * image.width * channels);
+        std::vector<png_bytep> rows(image.height);
+        for (std::size_t row = 0; row < rows.size(); ++row)
+            rows[row] = pixels.data() + row * image.width * channels;
+        png_read_image(png_, rows.data());
+        png_read_end(png_, info_);
+        image.rgb = opaque(std::move(pixels), channels);
+        png_bytep exif = nullptr;
+        png_uint_32 size = 0;
+        if (png_get_eXIf_1(png_, info_, &size, &exif) != 0)
+            image.orientation = orientation_in({exif, size});
+        return image;
+    }
+
+private:
+    [[noreturn]] static void fail(png_structp /*unused*/, const char* why) { refuse_damaged(why); }
+    static void ignore(png_structp /*unused*/, const char* /*unused*/) {}
+
+    static void read(png_structp png, png_bytep to, std::size_t size) {
+        View& rest = static_cast<Png*>(png_get_io_ptr(png))->rest_;
+        if (size > rest.size()) refuse_damaged("its end is missing");
+        std::copy_n(rest.begin(), size, to);
+        rest = rest.subspan(size);
+    }
+
+    static Bytes opaque(Bytes pixels, std::size_t channels) {
+        if (channels == kChannels) return pixels;
+        std::size_t to = 0;
+        for (std::size_t from = 0; from < pixels.size(); from += channels, to += kChannels) {
+            if (pixels[from + kChannels] != 255)
+                refuse(kRefused, "has transparent pixels, expected none: save it without");
+            std::copy_n(pixels.begin() + std::ptrdiff_t(from), kChannels,
+                        pixels.begin() + std::ptrdiff_t(to));
+        }
+        pixels.resize(to);
+        return pixels;
+    }
+
+    View rest_;
+    png_structp png_ = nullptr;
+    png_infop info_ = nullptr;
+};
+
+class Jpeg {
+public:
+    explicit Jpeg(View bytes) {
+        state_.err = jpeg_std_error(&errors_);
+        errors_.error_exit = fail;
+        errors_.emit_message = judge;
+        jpeg_create_decompress(&state_);
+        jpeg_mem_src(&state_, bytes.data(), bytes.size());
+        jpeg_save_markers(&state_, kExif, 0xffff);
+    }
+    Jpeg(const Jpeg&) = delete;
+    Jpeg& operator=(const Jpeg&) = delete;
+    ~Jpeg() { jpeg_destroy_decompress(&state_); }
+
+    Image decoded() {
+        jpeg_read_header(&state_, TRUE);
+        Image image;
+        image.height = state_.image_height;
+        image.width = state_.image_width;
+        check_size(image.width, image.height);
+        if (state_.jpeg_color_space == JCS_CMYK || state_.jpeg_color_space == JCS_YCCK)
+            refuse(kRefused, "is made for printing (CMYK), expected grey or RGB");
+        state_.out_color_space = JCS_RGB;
+        image.orientation = orientation();
+        jpeg_start_decompress(&state_);
+        image.rgb.resize(image.height * image.width * kChannels);
+        while (state_.output_scanline < state_.output_height) {
+            JSAMPROW row = image.rgb.data() + state_.output_scanline * image.width * kChannels;
+            jpeg_read_scanlines(&state_, &row, 1);
+        }
+        jpeg_finish_decompress(&state_);
+        return image;
+    }
+
+private:
+    static constexpr int kExif = JPEG_APP0 + 1;
+
+    unsigned orientation() const {
+        constexpr char kName[] = {'E', 'x', 'i', 'f', '\0', '\0'};
+        for (const jpeg_marker_struct* one = state_.marker_list; one != nullptr; one = one->next)
+            if (one->data_length > sizeof kName && std::memcmp(one->data, kName, sizeof kName) == 0)
+                return orientation_in({one->data + sizeof kName, one->data_length - sizeof kName});
+        return 1;
+    }
+
+    [[noreturn]] static void fail(j_common_ptr state) {
+        char why[JMSG_LENGTH_MAX];
+        state->err->format_message(state, why);
+        refuse_damaged(why);
+    }
+
+    /// Of what the library goes on from, only that is taken which leaves the pixels as they were.
+    static void judge(j_common_ptr state, int level) {
+        const int code = state->err->msg_code;
+        if (level >= 0 || code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
+            code == JWRN_NOT_SEQUENTIAL)
+            return;
+        if (code == JWRN_JPEG_EOF) refuse(kRefused, "is cut: its end is missing");
+        fail(state);
+    }
+
+    jpeg_decompress_struct state_{};
+    jpeg_error_mgr errors_{};
+};
+
+/// As its EXIF orientation says: the side that is stored first may be any, in either direction.
+Image upright(Image image) {
+    const unsigned kind = image.orientation;
+    if (kind == 1) return image;
+    const bool swaps = kind >= 5;
+    const bool from_bottom = kind == 3 || kind == 4 || kind == 6 || kind == 7;
+    const bool from_right = kind == 2 || kind == 3 || kind == 7 || kind == 8;
+    Image turned{image.height, image.width, Bytes(image.rgb.size())};
+    if (swaps) std::swap(turned.height, turned.width);
+    auto to = turned.rgb.begin();
+    for (std::size_t r = 0; r < turned.height; ++r)
+        for (std::size_t c = 0; c < turned.width; ++c) {
+            const std::size_t down = swaps ? c : r, along = swaps ? r : c;
+            const std::size_t row = from_bottom ? image.height - 1 - down : down;
+            const std::size_t column = from_right ? image.width - 1 - along : along;
+            const std::size_t from = kChannels * (row * image.width + column);
+            to = std::copy_n(image.rgb.begin() + std::ptrdiff_t(from), kChannels, to);
+        }
+    return turned;
 }
 
 void send_image(const Bytes& bytes) {
     if (bytes.empty()) refuse(kRefused, "is empty");
-    if (is_cut_jpeg(bytes)) refuse(kRefused, "is cut: its end is missing");
-    const cv::Mat stored = cv::imdecode(bytes, cv::IMREAD_UNCHANGED);
-    if (stored.empty()) refuse(kRefused, "is no image, or a damaged one");
-    check_pixels(stored);
-    const cv::Mat turned = cv::imdecode(bytes, cv::IMREAD_COLOR);
-    if (turned.empty()) refuse(kRefused, "is no image, or a damaged one");
-    cv::Mat rgb;
-    cv::cvtColor(turned, rgb, cv::COLOR_BGR2RGB);
-    write_frame(static_cast<std::uint32_t>(rgb.rows), static_cast<std::uint32_t>(rgb.cols),
-                rgb.data);
+    const bool is_png = bytes.size() >= 8 && png_sig_cmp(bytes.data(), 0, 8) == 0;
+    const bool is_jpeg = bytes.size() >= 2 && bytes[0] == 0xff && bytes[1] == 0xd8;
+    if (!is_png && !is_jpeg) refuse(kRefused, "is no image, expected PNG or JPEG");
+    const Image image = upright(is_png ? Png(bytes).decoded() : Jpeg(bytes).decoded());
+    write_frame(static_cast<std::uint32_t>(image.height), static_cast<std::uint32_t>(image.width),
+                image.rgb.data());
 }
 
 }  // namespace

@@ -107,10 +107,12 @@ int run(const std::vector<std::string>& words) {
     } else if (command == "encode" && words.size() >= 2) {
         limit_resources(0);
         encode(words[1], Words(rest(2)));
+    } else if (command == "onnxruntime") {
+        say_onnxruntime(Words(rest(1)));
     } else {
         refuse(kWrongCall,
                "etlc-embed belongs to etlc: etlc-embed images FILE..., etlc-embed given, "
-               "etlc-embed video FILE, etlc-embed encode MODEL.onnx");
+               "etlc-embed video FILE, etlc-embed encode MODEL.onnx, etlc-embed onnxruntime");
     }
     return EXIT_SUCCESS;
 }

@@ -1,7 +1,7 @@
-// A network that runs, by one of the libraries that can.
+// A network that runs, by ONNX Runtime.
 // Takes: a model of one image to one embedding, and images as `prepare` leaves them. Gives: the
-// embedding of each. Keeps true: what of a model is not run, or not as ONNX has it, ends the
-// process with a line that names the library, and the node where that is known.
+// embedding of each. Keeps true: the embedding has the shape that the model declares; what of a
+// model is not run ends the process with a line that names the node, where that is known.
 #pragma once
 
 #include <memory>
@@ -10,11 +10,9 @@
 #include <vector>
 
 #include "embed/worker/onnx.hpp"
+#include "embed/worker/onnxruntime.hpp"
 
 namespace etlc::embed::worker {
-
-/// Whether this etlc-embed was built with ONNX Runtime.
-inline constexpr bool kHasOnnxRuntime = ETLC_ONNXRUNTIME != 0;
 
 struct Model {
     std::string bytes;
@@ -25,14 +23,16 @@ struct Model {
 
 class Network {
 public:
-    virtual ~Network() = default;
-    /// The embedding of an image of 3 x height x width, which is there until the next run.
-    virtual std::span<const float> run(std::vector<float>& image) = 0;
-};
+    /// The model outlives it.
+    Network(const Library& library, const Model& model);
+    ~Network();
 
-/// The model outlives it.
-std::unique_ptr<Network> by_opencv(const Model& model);
-/// Only where `kHasOnnxRuntime`.
-std::unique_ptr<Network> by_onnxruntime(const Model& model);
+    /// The embedding of an image of 3 x height x width, which is there until the next run.
+    std::span<const float> run(std::vector<float>& image);
+
+private:
+    struct Parts;
+    std::unique_ptr<Parts> parts_;
+};
 
 }  // namespace etlc::embed::worker

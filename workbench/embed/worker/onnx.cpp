@@ -1,29 +1,46 @@
 #include "embed/worker/onnx.hpp"
 
 #include <algorithm>
-#include <array>
-#include <map>
+#include <set>
 
 namespace etlc::embed::worker {
 
 namespace {
 
 // Field numbers of onnx.proto, https://github.com/onnx/onnx/blob/v1.12.0/onnx/onnx.proto
-constexpr std::uint64_t kGraph = 7;                                    // ModelProto
-constexpr std::uint64_t kInitializer = 5, kInput = 11, kOutput = 12;   // GraphProto
-constexpr std::uint64_t kNode = 1;                                     // GraphProto
-constexpr std::uint64_t kNodeInput = 1, kNodeOutput = 2;               // NodeProto
-constexpr std::uint64_t kNodeName = 3, kOperator = 4, kAttribute = 5;  // NodeProto
-constexpr std::uint64_t kAttributeTensor = 5, kAttributeGraph = 6;     // AttributeProto
-constexpr std::uint64_t kTensorShape = 1, kTensorName = 8;             // TensorProto
-constexpr std::uint64_t kTensorFile = 13;                              // TensorProto
-constexpr std::uint64_t kKey = 1, kKeyValue = 2;                       // StringStringEntryProto
-constexpr std::uint64_t kName = 1, kType = 2;                          // ValueInfoProto
-constexpr std::uint64_t kTensorType = 1;                               // TypeProto
-constexpr std::uint64_t kElement = 1, kShape = 2;                      // TypeProto.Tensor
-constexpr std::uint64_t kDimension = 1;                                // TensorShapeProto
-constexpr std::uint64_t kDimensionValue = 1;                           // its Dimension
-constexpr std::uint64_t kFloat = 1;                                    // TensorProto.DataType
+constexpr std::uint64_t kGraph = 7;                                   // ModelProto
+constexpr std::uint64_t kInitializer = 5, kInput = 11, kOutput = 12;  // GraphProto
+constexpr std::uint64_t kTensorName = 8, kTensorFile = 13;            // TensorProto
+constexpr std::uint64_t kKey = 1, kKeyValue = 2;                      // StringStringEntryProto
+constexpr std::uint64_t kName = 1, kType = 2;                         // ValueInfoProto
+constexpr std::uint64_t kTensorType = 1;                              // TypeProto
+constexpr std::uint64_t kElement = 1, kShape = 2;                     // TypeProto.Tensor
+constexpr std::uint64_t kDimension = 1;                               // TensorShapeProto
+constexpr std::uint64_t kDimensionValue = 1;                          // its Dimension
+constexpr std::uint64_t kFloat = 1;                                   // TensorProto.DataType
+
+/// The messages that tensors lie in, one in the other.
+enum class Part { model, function, graph, node, attribute, sparse, tensor };
+struct Inner {
+    Part of;
+    std::uint64_t field;
+    Part is;
+};
+constexpr Inner kInner[] = {{Part::model, kGraph, Part::graph},
+                            {Part::model, 25, Part::function},
+                            {Part::function, 7, Part::node},
+                            {Part::graph, 1, Part::node},
+                            {Part::graph, kInitializer, Part::tensor},
+                            {Part::graph, 15, Part::sparse},
+                            {Part::node, 5, Part::attribute},
+                            {Part::attribute, 5, Part::tensor},
+                            {Part::attribute, 6, Part::graph},
+                            {Part::attribute, 10, Part::tensor},
+                            {Part::attribute, 11, Part::graph},
+                            {Part::attribute, 22, Part::sparse},
+                            {Part::attribute, 23, Part::sparse},
+                            {Part::sparse, 1, Part::tensor},
+                            {Part::sparse, 2, Part::tensor}};
 
 /// One message: its fields in order.
 class Message {
@@ -35,7 +52,7 @@ public:
         if (rest_.empty() || !sound_) return false;
         const std::uint64_t key = varint();
         field = key >> 3U;
-        is_number = (key & 7U) == 0;
+        bytes = {};
         switch (key & 7U) {
             case 0: number = varint(); break;
             case 1: skip(8); break;
@@ -46,18 +63,10 @@ public:
         return sound_;
     }
 
-    /// The next of numbers that stand one after the other.
-    bool next_packed() {
-        if (rest_.empty() || !sound_) return false;
-        number = varint();
-        return sound_;
-    }
-
     bool sound() const { return sound_; }
 
-    bool is_number = false;  ///< else it has bytes
     std::uint64_t field = 0;
-    std::uint64_t number = 0;
+    std::uint64_t number = 0;  ///< where it has no bytes
     std::string_view bytes;
 
 private:
@@ -88,8 +97,8 @@ private:
     bool sound_ = true;
 };
 
-std::vector<std::int64_t> shape_of(std::string_view bytes) {
-    std::vector<std::int64_t> shape;
+Extents shape_of(std::string_view bytes) {
+    Extents shape;
     for (Message message(bytes); message.next();) {
         if (message.field != kDimension) continue;
         shape.push_back(0);
@@ -120,120 +129,47 @@ Value value_of(std::string_view bytes) {
     return value;
 }
 
-/// Repeated numbers, which a file may hold one by one or packed.
-void add_numbers(const Message& field, std::vector<std::int64_t>& to) {
-    if (field.is_number) return to.push_back(static_cast<std::int64_t>(field.number));
-    for (Message packed(field.bytes); packed.next_packed();)
-        to.push_back(static_cast<std::int64_t>(packed.number));
+/// The text of a field of a message.
+std::string_view text_in(std::string_view bytes, std::uint64_t field) {
+    std::string_view text;
+    for (Message message(bytes); message.next();)
+        if (message.field == field) text = message.bytes;
+    return text;
 }
 
-struct Tensor {
-    std::string name;
-    std::vector<std::int64_t> shape;
-    std::string file;  ///< that holds its numbers; empty: it holds them itself
-};
-
-/// What one of the words on a tensor's file says.
-std::string file_in(std::string_view bytes) {
-    std::string_view key, value;
-    for (Message entry(bytes); entry.next();) {
-        if (entry.field == kKey) key = entry.bytes;
-        if (entry.field == kKeyValue) value = entry.bytes;
-    }
-    return std::string(key == "location" ? value : "");
+/// A file that the numbers of a tensor lie in; empty: it holds them itself.
+std::string file_of(std::string_view tensor) {
+    for (Message message(tensor); message.next();)
+        if (message.field == kTensorFile && text_in(message.bytes, kKey) == "location")
+            return std::string(text_in(message.bytes, kKeyValue));
+    return "";
 }
 
-Tensor tensor_of(std::string_view bytes) {
-    Tensor tensor;
-    for (Message message(bytes); message.next();) {
-        if (message.field == kTensorFile && tensor.file.empty())
-            tensor.file = file_in(message.bytes);
-        if (message.field == kTensorName) tensor.name = message.bytes;
-        if (message.field == kTensorShape) add_numbers(message, tensor.shape);
-    }
-    return tensor;
-}
-
-using Shapes = std::map<std::string, std::vector<std::int64_t>, std::less<>>;
-
-struct StoredNode {
-    std::string kind;
-    std::string name;
-    std::vector<std::string> inputs;
-    std::vector<std::string> outputs;
-};
-
-/// `tensors`: gets what a node Constant gives.
-StoredNode node_of(std::string_view bytes, Shapes& tensors) {
-    StoredNode node;
-    std::vector<std::int64_t> shape;
-    for (Message message(bytes); message.next();) {
-        if (message.field == kNodeInput) node.inputs.emplace_back(message.bytes);
-        if (message.field == kNodeOutput) node.outputs.emplace_back(message.bytes);
-        if (message.field == kNodeName) node.name = message.bytes;
-        if (message.field == kOperator) node.kind = message.bytes;
-        if (message.field != kAttribute) continue;
-        for (Message attribute(message.bytes); attribute.next();)
-            if (attribute.field == kAttributeTensor && !attribute.is_number)
-                shape = tensor_of(attribute.bytes).shape;
-    }
-    if (node.kind == "Constant" && !node.outputs.empty()) tensors[node.outputs[0]] = shape;
-    return node;
-}
-
-Node described(const StoredNode& node, const Shapes& tensors) {
-    constexpr std::array<std::string_view, 4> kArithmetic = {"Add", "Sub", "Mul", "Div"};
-    const std::string output = node.outputs.empty() ? "" : node.outputs[0];
-    Node result;
-    result.layer = node.name.empty() ? "onnx_node_output_0!" + output : "onnx_node!" + node.name;
-    result.text = node.kind + " '" + (node.name.empty() ? output : node.name) + "'";
-    if (std::find(kArithmetic.begin(), kArithmetic.end(), node.kind) == kArithmetic.end())
-        return result;
-    for (const std::string& input : node.inputs)
-        if (const auto tensor = tensors.find(input); tensor != tensors.end())
-            result.constant = tensor->second;
-    return result;
-}
-
-/// A file that tensors of a graph lie in, or those of its branches and loops. `levels`: of these,
-/// one in the other; protocol buffers with more are none.
-std::string file_beside(std::string_view graph, unsigned levels = 30) {
-    std::string found;
-    const auto look = [&](std::uint64_t field, std::uint64_t tensor, std::string_view bytes) {
-        if (found.empty() && field == tensor) found = tensor_of(bytes).file;
-    };
-    for (Message part(graph); part.next() && found.empty();) {
-        look(part.field, kInitializer, part.bytes);
-        if (part.field != kNode) continue;
-        for (Message node(part.bytes); node.next();) {
-            if (node.field != kAttribute) continue;
-            for (Message attribute(node.bytes); attribute.next();) {
-                look(attribute.field, kAttributeTensor, attribute.bytes);
-                if (attribute.field == kAttributeGraph && levels > 0 && found.empty())
-                    found = file_beside(attribute.bytes, levels - 1);
-            }
-        }
-    }
-    return found;
+/// A file that the numbers of a tensor lie in, wherever that is; empty: there is none. `levels`: of
+/// messages one in the other; protocol buffers with more are none.
+std::string file_beside(Part part, std::string_view bytes, unsigned levels = 100) {
+    if (part == Part::tensor) return file_of(bytes);
+    for (Message message(bytes); levels > 0 && message.next();)
+        for (const Inner& inner : kInner)
+            if (inner.of == part && inner.field == message.field)
+                if (std::string file = file_beside(inner.is, message.bytes, levels - 1);
+                    !file.empty())
+                    return file;
+    return "";
 }
 
 }  // namespace
 
 std::optional<Interface> interface_of(std::string_view model) {
     Interface result;
-    Shapes weights;
-    std::vector<StoredNode> nodes;
+    result.file_beside = file_beside(Part::model, model);
+    std::set<std::string_view> weights;
     Message message(model);
     while (message.next()) {
         if (message.field != kGraph) continue;
-        if (result.file_beside.empty()) result.file_beside = file_beside(message.bytes);
         Message graph(message.bytes);
         while (graph.next()) {
-            if (graph.field == kInitializer) {
-                Tensor weight = tensor_of(graph.bytes);
-                weights[weight.name] = std::move(weight.shape);
-            }
-            if (graph.field == kNode) nodes.push_back(node_of(graph.bytes, weights));
+            if (graph.field == kInitializer) weights.insert(text_in(graph.bytes, kTensorName));
             if (graph.field == kInput) result.inputs.push_back(value_of(graph.bytes));
             if (graph.field == kOutput) result.outputs.push_back(value_of(graph.bytes));
         }
@@ -241,15 +177,20 @@ std::optional<Interface> interface_of(std::string_view model) {
     }
     if (!message.sound() || result.inputs.empty() || result.outputs.empty()) return std::nullopt;
     std::erase_if(result.inputs, [&](const Value& input) { return weights.contains(input.name); });
-    for (const StoredNode& node : nodes) result.nodes.push_back(described(node, weights));
     return result;
 }
 
-std::string shape_text(const Value& value) {
+bool fits(const Extents& shape, const Value& declared) {
+    return !declared.shape ||
+           std::equal(shape.begin(), shape.end(), declared.shape->begin(), declared.shape->end(),
+                      [](std::int64_t is, std::int64_t said) { return said == 0 || is == said; });
+}
+
+std::string shape_text(const Extents& shape) {
     std::string text;
-    for (const std::int64_t n : value.shape)
+    for (const std::int64_t n : shape)
         text += (text.empty() ? "" : " x ") + (n == 0 ? std::string("?") : std::to_string(n));
-    return text;
+    return text.empty() ? "no dimensions" : text;
 }
 
 }  // namespace etlc::embed::worker

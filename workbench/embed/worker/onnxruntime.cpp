@@ -1,163 +1,198 @@
-// Networks through ONNX Runtime, by its C interface, which stays as it is from release to release.
-#include <onnxruntime_c_api.h>
+#include "embed/worker/onnxruntime.hpp"
+
+#include <dlfcn.h>
+#include <elf.h>
+#include <link.h>
 
 #include <algorithm>
 #include <array>
-#include <regex>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+#include <sstream>
+#include <string_view>
+#include <vector>
 
 #include "data/frames/protocol.hpp"
-#include "embed/worker/network.hpp"
-#include "embed/worker/prepare.hpp"
 #include "embed/worker/worker.hpp"
 
 namespace etlc::embed::worker {
 
 namespace {
 
-using data::frames::kRefused;
+namespace fs = std::filesystem;
+using data::frames::kNoRuntime;
+using Paths = std::vector<fs::path>;
 
-/// Of ONNX Runtime 1.12, the first that has LayerNormalization. What is called is in it, so any
-/// later library does, whichever header is read here.
-constexpr std::uint32_t kInterface = 12;
+constexpr std::string_view kName = "libonnxruntime.so";
+constexpr char kExpected[] = ", expected ONNX Runtime 1.13 or later";
+#if defined(__aarch64__)
+constexpr std::string_view kNodeMachine = "arm64";
+#else
+constexpr std::string_view kNodeMachine = "x64";
+#endif
 
-std::string library_name() {
-    return std::string("ONNX Runtime ") + OrtGetApiBase()->GetVersionString();
+[[noreturn]] void refuse_library(const std::string& what) {
+    refuse(kNoRuntime, "is not run: " + what);
 }
 
-const OrtApi& api() {
-    static const OrtApi* const found = OrtGetApiBase()->GetApi(kInterface);
-    if (found == nullptr)
-        refuse(kRefused, "is not run by " + library_name() + ": expected 1.12 or later");
-    return *found;
+/// What a folder holds under names that begin so, the highest version first.
+Paths named(const fs::path& folder, std::string_view beginning) {
+    Paths found;
+    std::error_code none;
+    for (const auto& entry : fs::directory_iterator(folder, none))
+        if (entry.path().filename().native().starts_with(beginning)) found.push_back(entry.path());
+    std::sort(found.begin(), found.end(), [](const fs::path& a, const fs::path& b) {
+        return ::strverscmp(a.c_str(), b.c_str()) > 0;
+    });
+    return found;
 }
 
-template <auto release>
-struct Release {
-    template <class T>
-    void operator()(T* pointer) const {
-        (api().*release)(pointer);
+void add(Paths& to, const Paths& more) {
+    to.insert(to.end(), more.begin(), more.end());
+}
+
+/// Of the python3 on the PATH, which knows where its packages lie.
+Paths of_pip() {
+    constexpr char kAsk[] =
+        "python3 -c 'import importlib.util as u, sys; sys.path = [p for p in sys.path if p]; "
+        "s = u.find_spec(\"onnxruntime\"); print(*(s.submodule_search_locations if s else ()))' "
+        "2> /dev/null";
+    std::string folder;
+    FILE* const asked = ::popen(kAsk, "r");
+    if (asked == nullptr) return {};
+    std::array<char, 4096> part{};
+    while (std::fgets(part.data(), part.size(), asked) != nullptr) folder += part.data();
+    ::pclose(asked);
+    while (!folder.empty() && folder.back() == '\n') folder.pop_back();
+    return folder.empty() ? Paths{} : named(fs::path(folder) / "capi", kName);
+}
+
+/// The folders in which node looks for packages, and npm installs them: here and further up, and
+/// beside the node on the PATH.
+Paths folders_of_npm() {
+    Paths folders;
+    std::error_code none;
+    for (fs::path at = fs::current_path(none); !at.empty(); at = at.parent_path()) {
+        folders.push_back(at / "node_modules");
+        if (at == at.root_path()) break;
     }
+    const char* const path = std::getenv("PATH");
+    std::istringstream programs(path == nullptr ? "" : path);
+    for (std::string folder; std::getline(programs, folder, ':');)
+        if (fs::exists(fs::path(folder) / "node", none))
+            folders.push_back(fs::path(folder).parent_path() / "lib" / "node_modules");
+    folders.emplace_back("/usr/local/lib/node_modules");
+    return folders;
+}
+
+Paths of_npm() {
+    Paths found;
+    for (const fs::path& folder : folders_of_npm())
+        for (const fs::path& version : named(folder / "onnxruntime-node" / "bin", "napi-v"))
+            add(found, named(version / "linux" / kNodeMachine, kName));
+    return found;
+}
+
+/// Of packages of the system, whose names may end in any version.
+Paths of_system() {
+    Paths found;
+    for (const char* const folder :
+         {"/usr/local/lib", "/usr/lib/" ETLC_LIBRARY_ARCHITECTURE, "/usr/lib64", "/usr/lib"})
+        add(found, named(folder, kName));
+    return found;
+}
+
+/// The library that a path names: itself, or one in the folder, as releases and packages have it.
+fs::path library_at(const std::string& where) {
+    std::error_code none;
+    if (!fs::exists(where, none)) refuse_library("there is no '" + where + "'");
+    if (!fs::is_directory(where, none)) return where;
+    for (const char* const inner : {"", "lib", "capi"})
+        if (const Paths found = named(fs::path(where) / inner, kName); !found.empty())
+            return found.front();
+    refuse_library("'" + where + "' holds no " + std::string(kName) + kExpected);
+}
+
+using Head = ElfW(Ehdr);
+
+/// Of an ELF file; nothing where it is none.
+std::optional<Head> head_of(const fs::path& path) {
+    Head head{};
+    std::ifstream file(path, std::ios::binary);
+    file.read(reinterpret_cast<char*>(&head), sizeof head);
+    if (!file || std::memcmp(head.e_ident, ELFMAG, SELFMAG) != 0) return std::nullopt;
+    return head;
+}
+
+/// Whether programs of both kinds run on one machine.
+bool are_alike(const Head& one, const Head& other) {
+    return one.e_ident[EI_CLASS] == other.e_ident[EI_CLASS] &&
+           one.e_ident[EI_DATA] == other.e_ident[EI_DATA] && one.e_machine == other.e_machine;
+}
+
+struct Opened {
+    void* library = nullptr;
+    std::string name;
 };
 
-using Status = std::unique_ptr<OrtStatus, Release<&OrtApi::ReleaseStatus>>;
-using Environment = std::unique_ptr<OrtEnv, Release<&OrtApi::ReleaseEnv>>;
-using Options = std::unique_ptr<OrtSessionOptions, Release<&OrtApi::ReleaseSessionOptions>>;
-using Session = std::unique_ptr<OrtSession, Release<&OrtApi::ReleaseSession>>;
-using Memory = std::unique_ptr<OrtMemoryInfo, Release<&OrtApi::ReleaseMemoryInfo>>;
-using Tensor = std::unique_ptr<OrtValue, Release<&OrtApi::ReleaseValue>>;
-using Shape =
-    std::unique_ptr<OrtTensorTypeAndShapeInfo, Release<&OrtApi::ReleaseTensorTypeAndShapeInfo>>;
-
-/// On one line, without the places in its sources: "NAME.h:91 void Type::function(int, float) ".
-std::string said(std::string why) {
-    static const std::regex place(R"(\S+\.(h|cc):\d+ [^()]*\([^()]*\)( const)? )");
-    constexpr std::size_t kLongest = 2000;
-    if (why.size() > kLongest) why = why.substr(0, kLongest) + "...";
-    std::replace_if(
-        why.begin(), why.end(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
-    why = std::regex_replace(why, place, "");
-    return why.substr(0, why.find_last_not_of(' ') + 1);
+Opened open(const fs::path& found) {
+    const fs::path path = fs::absolute(found);  // a name alone is looked for elsewhere
+    const std::string name = "'" + path.string() + "'";
+    const auto head = head_of(path);
+    if (!head) refuse_library(name + " is no shared library" + kExpected);
+    if (!are_alike(*head, head_of("/proc/self/exe").value_or(*head)))
+        refuse_library(name + " is for another processor than this etlc");
+    // The table of sections is its end, without which the loader would be stopped by a signal.
+    if (head->e_shoff + std::size_t{head->e_shnum} * head->e_shentsize > fs::file_size(path))
+        refuse_library(name + " is cut: its end is missing");
+    void* const library = ::dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+    if (library == nullptr) refuse_library(name + " cannot be loaded: " + ::dlerror());
+    return {library, name};
 }
 
-/// Its message names the node.
-[[noreturn]] void refuse_for(const OrtStatus& status, const std::string& doing) {
-    if (api().GetErrorCode(&status) == ORT_INVALID_PROTOBUF)
-        refuse(kRefused, "is no ONNX model, or a damaged one");
-    refuse(kRefused, doing + " by " + library_name() + ": " + said(api().GetErrorMessage(&status)) +
-                         "; run the model by a command of your own instead: --encoder-cmd "
-                         "(docs/encoders.md)");
+/// What no path names: by pip, by npm, by the system.
+Opened find() {
+    for (const auto& where : {of_pip, of_npm})
+        if (const Paths found = where(); !found.empty()) return open(found.front());
+    for (const char* const name : {"libonnxruntime.so.1", "libonnxruntime.so"})
+        if (void* const library = ::dlopen(name, RTLD_NOW | RTLD_LOCAL)) return {library, name};
+    if (const Paths found = of_system(); !found.empty()) return open(found.front());
+    refuse_library(
+        "there is no ONNX Runtime, which runs networks: pip install onnxruntime, or npm install "
+        "onnxruntime-node, or unpack a release of it and name its folder, --onnxruntime FOLDER "
+        "(Debian 13: apt install libonnxruntime-dev; docs/recordings.md)");
 }
 
-/// What a call makes; ends the process, `doing` being what was not done, where it fails.
-template <class Holder, class Call>
-Holder made(const std::string& doing, const Call& call) {
-    typename Holder::pointer result = nullptr;
-    if (const Status failed(call(&result)); failed) refuse_for(*failed, doing);
-    return Holder(result);
-}
-
-void done(const std::string& doing, OrtStatus* status) {
-    if (const Status failed(status); failed) refuse_for(*failed, doing);
-}
-
-/// Standard error has what goes wrong, on one line.
-void ORT_API_CALL say_nothing(void* /*unused*/, OrtLoggingLevel /*unused*/, const char* /*unused*/,
-                              const char* /*unused*/, const char* /*unused*/,
-                              const char* /*unused*/) {}
-
-constexpr char kLoading[] = "is not run";
-constexpr char kRunning[] = "cannot be run";
-
-class OnnxRuntimeNetwork final : public Network {
-public:
-    explicit OnnxRuntimeNetwork(const Model& model)
-        : model_(model),
-          shape_{1, kChannels, model.height, model.width},
-          environment_(made<Environment>(kLoading,
-                                         [](OrtEnv** result) {
-                                             return api().CreateEnvWithCustomLogger(
-                                                 say_nothing, nullptr, ORT_LOGGING_LEVEL_FATAL,
-                                                 "etlc-embed", result);
-                                         })),
-          memory_(made<Memory>(kLoading, [](OrtMemoryInfo** result) {
-              return api().CreateCpuMemoryInfo(OrtArenaAllocator, OrtMemTypeDefault, result);
-          })) {
-        const auto options = made<Options>(kLoading, [](OrtSessionOptions** result) {
-            return api().CreateSessionOptions(result);
-        });
-        // Threads that wait for a frame leave the cores to what decodes it.
-        done(kLoading,
-             api().AddSessionConfigEntry(options.get(), "session.intra_op.allow_spinning", "0"));
-        session_ = made<Session>(kLoading, [&](OrtSession** result) {
-            return api().CreateSessionFromArray(environment_.get(), model.bytes.data(),
-                                                model.bytes.size(), options.get(), result);
-        });
-    }
-
-    std::span<const float> run(std::vector<float>& image) override {
-        const auto input = made<Tensor>(kRunning, [&](OrtValue** result) {
-            return api().CreateTensorWithDataAsOrtValue(
-                memory_.get(), image.data(), image.size() * sizeof(float), shape_.data(),
-                shape_.size(), ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT, result);
-        });
-        const OrtValue* const inputs[] = {input.get()};
-        const char* const input_names[] = {model_.interface.inputs[0].name.c_str()};
-        const char* const output_names[] = {model_.interface.outputs[0].name.c_str()};
-        embedding_ = made<Tensor>(kRunning, [&](OrtValue** result) {
-            return api().Run(session_.get(), nullptr, input_names, inputs, 1, output_names, 1,
-                             result);
-        });
-        return floats_of(*embedding_);
-    }
-
-private:
-    static std::span<const float> floats_of(OrtValue& value) {
-        const auto shape = made<Shape>(kRunning, [&](OrtTensorTypeAndShapeInfo** result) {
-            return api().GetTensorTypeAndShape(&value, result);
-        });
-        ONNXTensorElementDataType type{};
-        std::size_t elements = 0;
-        done(kRunning, api().GetTensorElementType(shape.get(), &type));
-        done(kRunning, api().GetTensorShapeElementCount(shape.get(), &elements));
-        if (type != ONNX_TENSOR_ELEMENT_DATA_TYPE_FLOAT)
-            refuse(kRefused, "gives no float, expected an embedding of float32");
-        void* data = nullptr;
-        done(kRunning, api().GetTensorMutableData(&value, &data));
-        return {static_cast<const float*>(data), elements};
-    }
-
-    const Model& model_;
-    std::array<std::int64_t, 4> shape_;
-    Environment environment_;
-    Memory memory_;
-    Session session_;
-    Tensor embedding_;
+struct Base {
+    const ort::Function* (*table)(std::uint32_t interface);
+    const char* (*version)();
 };
+
+const ort::Function* loaded = nullptr;
 
 }  // namespace
 
-std::unique_ptr<Network> by_onnxruntime(const Model& model) {
-    return std::make_unique<OnnxRuntimeNetwork>(model);
+const ort::Function* ort::table() {
+    return loaded;
+}
+
+Library load_onnxruntime(const std::string& where) {
+    const char* const environment = std::getenv("ETLC_ONNXRUNTIME");
+    const std::string named = where.empty() && environment != nullptr ? environment : where;
+    const Opened opened = named.empty() ? find() : open(library_at(named));
+    auto* const base =
+        reinterpret_cast<const Base* (*)()>(::dlsym(opened.library, "OrtGetApiBase"));
+    if (base == nullptr) refuse_library(opened.name + " is another library" + kExpected);
+    Dl_info place{};
+    ::dladdr(reinterpret_cast<void*>(base), &place);
+    loaded = base()->table(ort::kInterface);
+    const std::string version = base()->version();
+    if (loaded == nullptr) refuse_library(opened.name + " is ONNX Runtime " + version + kExpected);
+    return {place.dli_fname, version};
 }
 
 }  // namespace etlc::embed::worker

@@ -9,6 +9,7 @@ extern "C" {
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <optional>
 
 #include "data/frames/protocol.hpp"
 #include "embed/worker/container.hpp"
@@ -33,8 +34,9 @@ struct Choice {
     std::int64_t first = 0;
     std::int64_t count = INT64_MAX;
     double rate = 0;
+    std::optional<std::int64_t> total;  ///< frames that the video has to have
 
-    /// One that needs no frame behind this one.
+    /// One that needs no frame from this one on.
     bool ends_before(std::int64_t frame) const {
         if (!only.empty()) return frame > only.back();
         return frame >= first && frame - first >= count;
@@ -58,6 +60,7 @@ Choice choice_of(const Words& options) {
     for (const double frame : options.numbers("--first")) choice.first = whole(frame);
     for (const double frames : options.numbers("--count")) choice.count = whole(frames);
     for (const double rate : options.numbers("--rate")) choice.rate = rate;
+    for (const double frames : options.numbers("--total")) choice.total = whole(frames);
     return choice;
 }
 
@@ -226,13 +229,17 @@ private:
 void check_count(const Decoder& decoder, const Choice& choice) {
     const std::int64_t shown = decoder.shown();
     if (shown == 0) refuse(kRefused, "holds no frame, expected at least one");
+    const bool is_cut = decoder.promised() > 0 && decoder.promised() != shown;
+    if (choice.total && *choice.total != shown && !is_cut)
+        refuse(kOtherCount, "has " + std::to_string(shown) + " frames, expected the " +
+                                std::to_string(*choice.total));
     const std::int64_t last = choice.only.empty() ? choice.first : choice.only.back();
     const bool too_few = choice.only.empty() && !choice.is_all() && shown - last < choice.count;
     if (shown <= last || too_few)
         refuse(kNoSuchFrame, "has " + std::to_string(shown) + " frames; there is no frame " +
                                  std::to_string(too_few ? last + choice.count - 1 : last) +
                                  " (from 0)");
-    if (decoder.promised() > 0 && decoder.promised() != shown)
+    if (is_cut)
         refuse(kRefused, "promises " + std::to_string(decoder.promised()) + " frames and holds " +
                              std::to_string(shown) + ": it is cut or damaged");
 }
@@ -248,8 +255,9 @@ void send_video(const std::string& path, const Words& options) {
     Converter converter;
     const int turns = quarter_turns(decoder.stream());
     const Picture picture(av_frame_alloc());
+    const bool is_as_long = !choice.total || decoder.counted() == choice.total;
     for (;;) {
-        if (choice.ends_before(decoder.shown())) return;
+        if (is_as_long && choice.ends_before(decoder.shown())) return;
         decoder.go_towards(choice.next_from(decoder.shown()));
         if (decoder.first_time() != AV_NOPTS_VALUE) clock.begin(decoder.first_time());
         const std::int64_t frame = decoder.shown();

@@ -40,5 +40,7 @@ void send_images(const std::vector<std::string>& paths);
 void send_given_images();
 void send_video(const std::string& path, const Words& options);
 void encode(const std::string& model, const Words& options);
+/// Writes the version of the library that runs networks, and its path, on a line each.
+void say_onnxruntime(const Words& options);
 
 }  // namespace etlc::embed::worker

@@ -6,6 +6,7 @@
 
 #include "data/files/file.hpp"
 #include "data/quote.hpp"
+#include "episodes/admission/leak_evidence.hpp"
 #include "episodes/admission/overlaps.hpp"
 
 namespace etlc::episodes {
@@ -121,6 +122,29 @@ Unseen not_fitted_on(const OverlapSearch& search, const fitted::File& file, bool
             allowing};
 }
 
+/// Refuses a file in which episodes are told apart as they no longer are.
+void refuse_old(std::uint32_t format, bool has_episodes, const std::string& path,
+                std::string_view again, diag::Sink& sink) {
+    if (format == thresholds::kFormat || !has_episodes) return;
+    sink.report(data::in_file(
+                    {Code::incomparable_episodes,
+                     fmt::format("is of format {}, whose episodes cannot be compared with those "
+                                 "given here",
+                                 format)},
+                    path))
+        .note(
+            "an earlier version of etlc told episodes apart by the numbers stored in their "
+            "files, not by what the monitor sees")
+        .note(std::string(again));
+}
+
+void refuse_old(const thresholds::File& thresholds, const fitted::File& fitted, diag::Sink& sink) {
+    refuse_old(fitted.format, !fitted.episodes.empty(), fitted.path, "fit again with 'etlc fit'",
+               sink);
+    refuse_old(thresholds.format, !thresholds::all_episodes(thresholds).empty(), thresholds.path,
+               "calibrate again with 'etlc calibrate'", sink);
+}
+
 /// Looks at one episode after the other.
 class Admission {
 public:
@@ -129,6 +153,7 @@ public:
         : model_(model),
           episodes_(episodes),
           allows_(!reason.empty()),
+          leak_evidence_(episodes),
           search_(search(episodes, fitted, before, before.episodes, true)),
           not_fitted_on_(not_fitted_on(search_, fitted, allows_, kHowToAllow)),
           unseen_(search_, thresholds_file, allows_, Code::not_disjoint,
@@ -146,10 +171,10 @@ public:
         const bool overlaps =
             fitted_on == Unseen::Met::passed_over || calibrated_on == Unseen::Met::passed_over;
         passed_over_.overlapping += look_at_earlier(e, episode) || overlaps ? 1 : 0;
-        if (episode.leak && allows_) ++passed_over_.leaked;
-        if (episode.leak && !allows_)
-            (of_scalars(*episode.leak) ? scalar_leaks_ : leaks_)
-                .add(episode, text(model_, *episode.leak));
+        const auto leak = leak_evidence_.of(episode);
+        if (leak && allows_) ++passed_over_.leaked;
+        if (leak && !allows_)
+            (of_scalars(*leak) ? scalar_leaks_ : leaks_).add(episode, text(model_, *leak));
     }
 
     thresholds::Allowance conclude(diag::Sink& sink) && {
@@ -180,6 +205,7 @@ private:
     const check::Model& model_;
     const Identities& episodes_;
     bool allows_;
+    LeakEvidence leak_evidence_;
     OverlapSearch search_;
     Unseen not_fitted_on_;
     Unseen unseen_;
@@ -216,6 +242,7 @@ std::string text(const check::Model& model, const Leak& leak) {
 thresholds::Allowance admit(const check::Model& model, const Identities& episodes,
                             const thresholds::File& before, const fitted::File& fitted,
                             const std::string& reason, diag::Sink& sink) {
+    refuse_old(before, fitted, sink);
     Admission admission(model, episodes, before, fitted, reason);
     episodes.for_each(
         [&](std::size_t e, const Recorded& episode) { admission.look_at(e, episode); });
@@ -228,6 +255,7 @@ thresholds::Allowance admit_unseen(const Identities& episodes, const thresholds:
     constexpr std::string_view kAllowing =
         "if they are different recordings after all, say why with --allow-overlap REASON: the "
         "reason stands next to the figures";
+    refuse_old(thresholds, fitted, sink);
     thresholds::Allowance passed_over{reason};
     const OverlapSearch among =
         search(episodes, fitted, thresholds, thresholds::all_episodes(thresholds), false);

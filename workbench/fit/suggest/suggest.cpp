@@ -8,6 +8,7 @@
 #include "data/quote.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
+#include "episodes/unmarked.hpp"
 #include "fit/separation.hpp"
 #include "fit/suggest/candidates.hpp"
 #include "plan/budget/budget.hpp"
@@ -203,8 +204,9 @@ std::optional<Separations> measure(const check::Model& spec, const std::vector<M
     const Needs needs = needs_of(spec);
     const auto collection = collect(spec, needs.all, measured, request, sink);
     if (!collection) return std::nullopt;
-    episodes::admit(spec, episodes::recorded(collection->readings.episodes()), {}, {},
-                    request.allow_overlap, sink);
+    const auto recorded = episodes::recorded(collection->readings.episodes());
+    episodes::warn_of_unmarked(recorded, sink);
+    episodes::admit(spec, recorded, {}, {}, request.allow_overlap, sink);
     if (sink.has_errors()) return std::nullopt;
     suggested.episodes = collection->readings.episodes().size();
     for (const episodes::Recorded& episode : collection->readings.episodes())

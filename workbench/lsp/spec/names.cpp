@@ -86,6 +86,8 @@ public:
         visit(expression.arguments);
     }
 
+    void visit(const ast::Bound& bound) { visit(bound.number); }
+
     void visit(const ast::Formula& formula) {
         if (formula.kind == ast::Formula::Kind::name) use(formula.name, formula.span);
         visit(formula.operands);

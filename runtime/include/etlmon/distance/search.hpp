@@ -46,7 +46,7 @@ ETLMON_INLINE Measured best_search(const float* z, const float* rows, SearchView
 template <uint32_t K, uint32_t D>
 class Search {
  public:
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     nearest_ = 0;
     measured_ = detail::blocks_of(K);
   }

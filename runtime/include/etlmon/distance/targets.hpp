@@ -52,10 +52,10 @@ class Targets {
     if (ready()) rows_ = reinterpret_cast<const float*>(reinterpret_cast<uintptr_t>(bytes));
   }
 
-  bool ready() const noexcept { return state_ == TargetsState::ready; }
-  TargetsState state() const noexcept { return state_; }
+  constexpr bool ready() const noexcept { return state_ == TargetsState::ready; }
+  constexpr TargetsState state() const noexcept { return state_; }
   /// The first row; nullptr where they are not ready.
-  const float* rows() const noexcept { return rows_; }
+  constexpr const float* rows() const noexcept { return rows_; }
 
  private:
   static_assert(Size % 64 == 0, "rows begin at multiples of 64");

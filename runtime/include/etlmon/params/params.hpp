@@ -178,11 +178,11 @@ class Params {
     if (ready()) numbers_ = as_floats(bytes);
   }
 
-  bool ready() const noexcept { return state_ == ParamsState::ready; }
-  ParamsState state() const noexcept { return state_; }
+  constexpr bool ready() const noexcept { return state_ == ParamsState::ready; }
+  constexpr ParamsState state() const noexcept { return state_; }
   /// The first byte, as floats, in which Layout says where each number lies; nullptr where they are
   /// not ready.
-  const float* numbers() const noexcept { return numbers_; }
+  constexpr const float* numbers() const noexcept { return numbers_; }
 
   MadeFrom origin() const noexcept { return made_from(numbers_); }
 

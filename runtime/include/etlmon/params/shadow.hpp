@@ -21,8 +21,8 @@ struct ShadowCount {
 template <class Monitor, class Inputs, class Verdicts, uint32_t monitors>
 class Shadow {
  public:
-  Shadow() noexcept = default;
-  explicit Shadow(const Monitor& active) noexcept : active_(active) {}
+  constexpr Shadow() noexcept = default;
+  constexpr explicit Shadow(const Monitor& active) noexcept : active_(active) {}
 
   /// The monitor that answers, and the one on trial. What is called on one that the other must
   /// know, such as restart_M(), is called on both.
@@ -90,9 +90,9 @@ class Shadow {
     }
   }
 
-  Monitor active_;
-  Monitor candidate_;
-  ShadowCount counts_[monitors];
+  Monitor active_{};
+  Monitor candidate_{};
+  ShadowCount counts_[monitors] = {};
   bool on_trial_ = false;
 };
 

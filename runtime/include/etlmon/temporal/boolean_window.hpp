@@ -18,10 +18,10 @@ namespace detail {
 template <uint32_t N>
 class Age {
  public:
-  void reset() noexcept { steps_ = N; }
+  constexpr void reset() noexcept { steps_ = N; }
   void next(bool happened) noexcept { steps_ = happened ? 0 : steps_ + (steps_ < N ? 1u : 0u); }
   /// It no longer counts.
-  void forget() noexcept { steps_ = N; }
+  constexpr void forget() noexcept { steps_ = N; }
   bool within() const noexcept { return steps_ < N; }
 
  private:
@@ -34,7 +34,7 @@ class Dual {
  public:
   using Element = typename W::Element;
 
-  void reset() noexcept { failed_.reset(); }
+  constexpr void reset() noexcept { failed_.reset(); }
   Element push(Span<Truth> now) noexcept {
     return {negate(failed_.push({negate(now.value), negate(now.guard)}).value)};
   }
@@ -49,7 +49,7 @@ class Dual {
 template <uint32_t N>
 class Window<Greatest<Truth>, N> {
  public:
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     low_.reset();
     high_.reset();
   }
@@ -69,7 +69,7 @@ class Window<Greatest<Truth>, N> {
 template <uint32_t N>
 class Window<Least<Truth>, N> {
  public:
-  void reset() noexcept { failed_.reset(); }
+  constexpr void reset() noexcept { failed_.reset(); }
   Truth push(Truth now) noexcept { return negate(failed_.push(negate(now))); }
 
  private:
@@ -84,7 +84,7 @@ class Window<Since<Truth>, N> {
     Truth value;
   };
 
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     low_.reset();
     high_.reset();
   }
@@ -118,7 +118,7 @@ class Window<Until<Truth>, N> {
  public:
   using Element = typename Window<Since<Truth>, N>::Element;
 
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     cursor_ = 0;
     open_ = N - 1;
     more_open_ = 0;
@@ -191,7 +191,7 @@ class Delay<Truth, N> {
   static_assert(N >= 1, "a delay by nothing is the value itself");
 
  public:
-  void reset(Truth fill) noexcept {
+  constexpr void reset(Truth fill) noexcept {
     cursor_ = 0;
     const uint32_t word = (fill.low ? 0x55555555u : 0u) | (fill.high ? 0xaaaaaaaau : 0u);
     for (uint32_t& pairs : pairs_) pairs = word;

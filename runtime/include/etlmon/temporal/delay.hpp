@@ -33,7 +33,7 @@ class Delay {
 
  public:
   /// Forgets all; the next N pushes give `fill`.
-  void reset(V fill) noexcept {
+  constexpr void reset(V fill) noexcept {
     cursor_ = 0;
     for (uint32_t i = 0; i < N; ++i) values_[i] = fill;
   }

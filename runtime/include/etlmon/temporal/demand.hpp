@@ -75,7 +75,7 @@ struct Either {
 };
 
 template <class A>
-struct Opposite {
+struct Negation {
   typename Kept<A>::Type of;
   operator Truth() const noexcept { return negate(static_cast<Truth>(of)); }
 };
@@ -97,7 +97,7 @@ struct IsLazy<Either<A, B>> {
   static constexpr bool value = true;
 };
 template <class A>
-struct IsLazy<Opposite<A>> {
+struct IsLazy<Negation<A>> {
   static constexpr bool value = true;
 };
 template <class A>
@@ -126,7 +126,7 @@ ETLMON_INLINE detail::Either<A, B> max_of(A&& a, B&& b) noexcept {
   return {a, b};
 }
 template <class A, typename detail::Where<detail::IsLazy<A>::value>::Type = 0>
-ETLMON_INLINE detail::Opposite<A> negate(A&& a) noexcept {
+ETLMON_INLINE detail::Negation<A> negate(A&& a) noexcept {
   return {a};
 }
 

@@ -15,7 +15,7 @@ inline namespace ETLMON_BUILD {
 template <class T, uint32_t D, uint32_t N>
 class Hold {
  public:
-  void reset() noexcept { age_ = N; }
+  constexpr void reset() noexcept { age_ = N; }
 
   /// `sample`: D elements, or nullptr where it is missing. The result is good until the next call.
   const T* take(const T* sample) noexcept {

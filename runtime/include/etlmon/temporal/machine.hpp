@@ -62,7 +62,7 @@ class Machine {
   using End = typename Lattice<V>::End;
 
  public:
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     turn_ = 0;
     for (uint32_t q = 0; q < States; ++q)
       registers_[0][q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();

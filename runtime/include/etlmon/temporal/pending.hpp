@@ -19,7 +19,7 @@ inline namespace ETLMON_BUILD {
 template <class V, uint32_t N>
 class Recent {
  public:
-  void reset() noexcept { next_ = 0; }
+  constexpr void reset() noexcept { next_ = 0; }
 
   void push(V value) noexcept {
     values_[next_] = value;
@@ -223,7 +223,7 @@ class PendingMachine {
   using End = typename Lattice<V>::End;
 
  public:
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     for (uint32_t q = 0; q < States; ++q)
       registers_[q] = q == 0 ? Lattice<V>::top() : Lattice<V>::bottom();
   }

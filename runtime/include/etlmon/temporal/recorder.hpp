@@ -53,7 +53,7 @@ struct RowCalls {
 /// What is recorded of a step: its number, a word for each figure of a predicate, a byte for each
 /// bool and each verdict.
 template <uint32_t Figures, uint32_t Bools, uint32_t Monitors>
-struct RecorderRow : RowCalls<RecorderRow<Figures, Bools, Monitors>> {
+struct RecorderCells {
   static constexpr uint32_t kWords = 1 + Figures;
   static constexpr uint32_t kBytes = Bools + Monitors;
   static constexpr uint32_t kPaddedBytes = (kBytes + 3) / 4 * 4;
@@ -62,12 +62,20 @@ struct RecorderRow : RowCalls<RecorderRow<Figures, Bools, Monitors>> {
 
   uint32_t words[kWords];
   uint8_t bytes[kPaddedBytes];
+};
+
+/// The row that a step fills.
+template <uint32_t Figures, uint32_t Bools, uint32_t Monitors>
+struct RecorderRow : RecorderCells<Figures, Bools, Monitors>,
+                     RowCalls<RecorderRow<Figures, Bools, Monitors>> {
+  using Cells = RecorderCells<Figures, Bools, Monitors>;
 
   /// A step at which nobody asked for anything.
   RecorderRow() noexcept {
-    words[0] = 0;
-    for (uint32_t i = 1; i < kWords; ++i) words[i] = kUnaskedBits;
-    for (uint32_t i = 0; i < kPaddedBytes; ++i) bytes[i] = i < Bools ? kRecordedUnasked : 0;
+    this->words[0] = 0;
+    for (uint32_t i = 1; i < Cells::kWords; ++i) this->words[i] = kUnaskedBits;
+    for (uint32_t i = 0; i < Cells::kPaddedBytes; ++i)
+      this->bytes[i] = i < Bools ? kRecordedUnasked : 0;
   }
 };
 
@@ -143,8 +151,8 @@ struct RecorderArrays {
 
   uint32_t alarms[(Row::kMonitors + 31) / 32];
   RecordedIncident incidents[Incidents];
-  Row ring[Before + 1];
-  Row log[Incidents * (Before + 1 + After)];
+  typename Row::Cells ring[Before + 1];
+  typename Row::Cells log[Incidents * (Before + 1 + After)];
 };
 
 /// A ring of the last `before` steps and this one, and a log of the steps that incidents hold. A
@@ -156,7 +164,7 @@ class RecorderIn {
   static constexpr uint32_t kAlarm = Verdict::kViolated | Verdict::kFinal;
 
  public:
-  RecorderIn() noexcept { end_episode(); }
+  constexpr RecorderIn() noexcept { end_episode(); }
   /// In storage whose sizes are known at run time.
   explicit RecorderIn(Storage&& storage) noexcept : kept_(static_cast<Storage&&>(storage)) {
     end_episode();
@@ -166,7 +174,7 @@ class RecorderIn {
   /// a verdict is one that was none at the step before.
   void record(const Row& row, const typename Storage::Statuses& statuses) noexcept {
     if (count_ == ring_rows()) take_oldest();
-    Row& here = kept_.ring[in_ring(count_)];
+    auto& here = kept_.ring[in_ring(count_)];
     ++count_;
     here = row;
     here.words[0] = step_;
@@ -186,10 +194,12 @@ class RecorderIn {
   }
 
   /// Monitor m restarted: its next alarm is another one.
-  void restart(uint32_t m) noexcept { kept_.alarms[m / 32] &= ~(uint32_t{1} << (m % 32)); }
+  constexpr void restart(uint32_t m) noexcept {
+    kept_.alarms[m / 32] &= ~(uint32_t{1} << (m % 32));
+  }
 
   /// A new episode: no step before it counts.
-  void end_episode() noexcept {
+  constexpr void end_episode() noexcept {
     close();
     oldest_ = count_ = 0;
     if (step_ != 0 && episode_ != UINT32_MAX) ++episode_;
@@ -198,7 +208,7 @@ class RecorderIn {
   }
 
   /// Completes the incidents that wait for steps, with those that there are.
-  void close() noexcept {
+  constexpr void close() noexcept {
     for (uint32_t i = 0; i < count_ && owed_ > 0; ++i, --owed_)
       kept_.log[logged_++] = kept_.ring[in_ring(i)];
     owed_ = 0;
@@ -210,7 +220,7 @@ class RecorderIn {
   void forget() noexcept { begun_ = logged_ = owed_ = lost_ = 0; }
 
   /// How many are complete: their steps after the alarm, and Before more, are over.
-  uint32_t complete() const noexcept {
+  constexpr uint32_t complete() const noexcept {
     uint32_t n = 0;
     while (n < begun_ && kept_.incidents[n].first + kept_.incidents[n].length <= logged_) ++n;
     return n;
@@ -246,7 +256,7 @@ class RecorderIn {
                                 0};
     for (const uint32_t figure : figures) out.word(figure);
     for (uint32_t i = 0; i < incident.length; ++i) {
-      const Row& row = kept_.log[incident.first + i];
+      const auto& row = kept_.log[incident.first + i];
       for (const uint32_t word : row.words) out.word(word);
       for (const uint8_t byte : row.bytes) out.byte(byte);
     }
@@ -255,7 +265,7 @@ class RecorderIn {
   }
 
  private:
-  uint32_t ring_rows() const noexcept { return kept_.before() + 1; }
+  constexpr uint32_t ring_rows() const noexcept { return kept_.before() + 1; }
 
   uint32_t file_bytes(uint32_t rows) const noexcept {
     const uint32_t row = 4 * kept_.row_words() + (kept_.bools() + kept_.monitors() + 3) / 4 * 4;
@@ -263,7 +273,7 @@ class RecorderIn {
     return (bytes + 31) / 32 * 32 + kIncidentChecksumBytes;
   }
 
-  uint32_t in_ring(uint32_t i) const noexcept {
+  constexpr uint32_t in_ring(uint32_t i) const noexcept {
     const uint32_t at = oldest_ + i;
     return at < ring_rows() ? at : at - ring_rows();
   }
@@ -296,7 +306,7 @@ class RecorderIn {
   uint32_t lost_ = 0;     ///< alarms without one; saturates
   uint32_t step_ = 0;     ///< of the episode; saturates
   uint32_t episode_ = 0;  ///< saturates
-  Storage kept_;
+  Storage kept_{};
 };
 
 template <class Row, uint32_t Before, uint32_t After, uint32_t Incidents>

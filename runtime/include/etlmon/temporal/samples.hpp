@@ -62,7 +62,7 @@ ETLMON_INLINE uint32_t code_of(uint32_t first, const Flag& flag) noexcept {
 template <uint32_t Monitors>
 class Deciding {
  public:
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     for (SourcedKey& key : keys_) key = SourcedKey(0);
   }
 

@@ -103,7 +103,7 @@ struct SourcedRegister {
   End high;
 
   constexpr operator Sourced() const noexcept { return {SourcedKey::of(low.order), high}; }
-  ETLMON_INLINE SourcedRegister& operator=(Sourced value) noexcept {
+  ETLMON_INLINE constexpr SourcedRegister& operator=(Sourced value) noexcept {
     low.order = value.low.order;
     high.order = static_cast<uint64_t>(value.high.order);
     return *this;

@@ -78,7 +78,7 @@ struct Register {
   End high;
 
   constexpr operator Value() const noexcept { return {low, high}; }
-  ETLMON_INLINE Register& operator=(Value value) noexcept {
+  ETLMON_INLINE constexpr Register& operator=(Value value) noexcept {
     low = value.low;
     high.bits = static_cast<uint32_t>(value.high);
     return *this;

@@ -22,7 +22,7 @@ class Widening {
   using Element = typename Monoid::Element;
 
   /// Forgets all elements; time proportional to N - M.
-  void reset() noexcept { past_.reset(Monoid::identity()); }
+  constexpr void reset() noexcept { past_.reset(Monoid::identity()); }
 
   /// Takes this step's aggregate of the last M, gives that of the last N.
   ETLMON_STEP Element push(Element aggregate) noexcept {

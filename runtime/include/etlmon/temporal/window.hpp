@@ -10,7 +10,7 @@
 // other two are running totals. The table for the middle block, which is the next oldest, is built
 // in place from its end while the newest block fills, one entry a step: it is complete when it is
 // due. The oldest block is given up from its front at the pace at which the newest grows, so these
-// two share their slots, and the next entry to build mirrors the next slot to fill. (Suffix and
+// two share their places, and the next entry to build mirrors the next slot to fill. (Suffix and
 // prefix tables: van Herk 1992, Gil and Werman 1993; half-blocks keep a step from building a whole
 // table.)
 #pragma once
@@ -27,7 +27,8 @@ constexpr uint32_t window_elements(uint32_t n) noexcept { return (n & ~uint32_t{
 
 /// Empties a window: storage of window_elements(n).
 template <class Monoid>
-void window_reset(typename Monoid::Element* storage, uint32_t& cursor, uint32_t n) noexcept {
+constexpr void window_reset(typename Monoid::Element* storage, uint32_t& cursor,
+                            uint32_t n) noexcept {
   cursor = 0;
   for (uint32_t i = 0; i < window_elements(n); ++i) storage[i] = Monoid::identity();
 }
@@ -51,7 +52,7 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
   using Element = typename Monoid::Element;
   if (n == 1) return element;
   const bool odd = n % 2 != 0;
-  const uint32_t slots = n & ~uint32_t{1};
+  const uint32_t places = n & ~uint32_t{1};
   Element& middle = storage[0];
   Element& newest = storage[1];
   Element* ring = storage + 2;
@@ -64,15 +65,15 @@ ETLMON_STEP typename Monoid::Element window_push(typename Monoid::Element* stora
         window_total<Monoid>(ring[at], middle, total);  // the slot's suffix, before it is filled
   ring[at] = element;
   uint32_t next = at + 1;
-  if (n < 4 || next == slots / 2 ||
-      next == slots) {  // the newest block is full: every block is one older from here
-    if (next == slots) next = 0;
+  if (n < 4 || next == places / 2 ||
+      next == places) {  // the newest block is full: every block is one older from here
+    if (next == places) next = 0;
     middle = total;
     newest = Monoid::identity();
     if (!odd) aggregate = Monoid::combine(ring[next], total);
   } else {
     newest = total;
-    ring[slots - 1 - next] = Monoid::combine(ring[slots - 1 - next], ring[slots - next]);
+    ring[places - 1 - next] = Monoid::combine(ring[places - 1 - next], ring[places - next]);
     if (!odd) aggregate = window_total<Monoid>(ring[next], middle, total);
   }
   cursor = next;
@@ -90,7 +91,7 @@ class Window {
   using Element = typename Monoid::Element;
 
   /// Forgets all elements; time proportional to N.
-  void reset() noexcept { window_reset<Monoid>(storage_, cursor_, N); }
+  constexpr void reset() noexcept { window_reset<Monoid>(storage_, cursor_, N); }
 
   /// Takes this step's element, gives the combination of the last N, oldest first.
   Element push(Element element) noexcept {
@@ -110,7 +111,7 @@ struct Parting {
   static constexpr uint32_t kNowhere = 0xffffffffu;
   uint32_t newest, middle, oldest;
 
-  void reset() noexcept { newest = middle = oldest = kNowhere; }
+  constexpr void reset() noexcept { newest = middle = oldest = kNowhere; }
   bool nowhere() const noexcept { return (newest & middle & oldest) == kNowhere; }
   /// The newest block is full: every block is one older.
   void next_block() noexcept {
@@ -131,7 +132,7 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
   using Element = typename Ends::Element;
   constexpr uint32_t kNowhere = Parting::kNowhere;
   const bool odd = n % 2 != 0;
-  const uint32_t slots = n & ~uint32_t{1};
+  const uint32_t places = n & ~uint32_t{1};
   const auto suffix = [&](uint32_t slot) noexcept {
     return (parting.oldest == kNowhere ? lows : highs)[2 + slot];
   };
@@ -143,14 +144,14 @@ typename Ends::Element window_push_highs(const typename Ends::Element* lows,
   if (odd) aggregate = window_total<Ends>(suffix(cursor), middle(), total);
   highs[2 + cursor] = element;
   uint32_t next = cursor + 1;
-  if (n < 4 || next == slots / 2 || next == slots) {
-    if (next == slots) next = 0;
+  if (n < 4 || next == places / 2 || next == places) {
+    if (next == places) next = 0;
     highs[0] = total;
     parting.next_block();
     if (!odd) aggregate = Ends::combine(suffix(next), total);
   } else {
     highs[1] = total;
-    const uint32_t built = slots - 1 - next;
+    const uint32_t built = places - 1 - next;
     if (parting.middle != kNowhere)
       highs[2 + built] =
           Ends::combine((built < parting.middle ? lows : highs)[2 + built], highs[3 + built]);
@@ -166,7 +167,7 @@ class PairWindow {
  public:
   using Element = typename Operator<V>::Element;
 
-  void reset() noexcept {
+  constexpr void reset() noexcept {
     window_reset<Ends>(lows_, cursor_, N);
     parting_.reset();
   }

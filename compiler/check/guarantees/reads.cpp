@@ -1,0 +1,304 @@
+#include "check/guarantees/reads.hpp"
+
+#include <fmt/format.h>
+
+#include <set>
+#include <vector>
+
+#include "check/guarantees/guarantees.hpp"
+#include "check/model/fingerprint.hpp"
+#include "check/numbers/decimal.hpp"
+#include "data/files/hash.hpp"
+
+namespace etlc::check {
+
+namespace {
+
+/// Stands before hashes of what is too long to be shown.
+constexpr char kHashed = '#';
+
+/// What an atom of a formula says: what its comparison does, or what is true.
+enum class Atoms : std::uint8_t { compared, truths };
+
+std::string_view word(InputType type) {
+    switch (type) {
+        case InputType::scalar: return "scalar";
+        case InputType::boolean: return "bool";
+        case InputType::f32: return "f32";
+        case InputType::f16: return "f16";
+        case InputType::i8: return "i8";
+    }
+    return "";
+}
+
+std::string_view word(Metric metric) {
+    switch (metric) {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case Metric::id:                                  \
+        return #id;
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    }
+    return "";
+}
+
+std::string_view word(Aggregation aggregation) {
+    switch (aggregation) {
+        case Aggregation::min: return "min";
+        case Aggregation::max: return "max";
+        case Aggregation::mean: return "mean";
+        case Aggregation::kth: return "kth";
+    }
+    return "";
+}
+
+std::string_view word(Comparison comparison) {
+    switch (comparison) {
+        case Comparison::less_equal: return "<=";
+        case Comparison::less: return "<";
+        case Comparison::greater_equal: return ">=";
+        case Comparison::greater: return ">";
+        case Comparison::equal: return "==";
+        case Comparison::not_equal: return "!=";
+    }
+    return "";
+}
+
+std::string_view word(Restarts restarts) {
+    switch (restarts) {
+        case Restarts::never: return "";
+        case Restarts::on_request: return "restartable ";
+        case Restarts::when_final: return "repeating ";
+    }
+    return "";
+}
+
+class Reading {
+public:
+    explicit Reading(const Model& model) : model_(model) {
+        // Constants and durations count as the numbers that they have become; which part of the
+        // lists counts, the things in them say.
+        const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
+                     encoded, inputs, projections, points, targets, fitted, distances, predicates,
+                     formulas, lets, truths, monitors, dependencies, reservations] = model;
+        // Episodes at another rate have other frames.
+        if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
+    }
+
+    void add_calibrated(Index index) {
+        // How its left side is measured; the threshold is what is looked for, and where its sample
+        // is missing there is no score. Ranges follow from the expression.
+        const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
+                     inputs, span] = model_.predicates[index];
+        add_expression(expression);
+        add("predicate " + name, fmt::format("{} {}", print(model_, expression), word(comparison)));
+        add_truth(index);
+    }
+
+    void add_monitor(const Monitor& monitor) {
+        // The method, alpha and `against` stand in the entry, the shift is what is looked for.
+        const auto& [name, formula, sliding, restarts, horizon, calibration, span] = monitor;
+        add("monitor " + name,
+            fmt::format("{}{}", word(restarts),
+                        sliding ? fmt::format("sliding, horizon {}", horizon) : "monitor"));
+        add("formula " + name, hash_of(formula, Atoms::compared));
+        hash_of(formula, Atoms::truths);
+    }
+
+    void add_fitted(const Fitted& fitted) {
+        // What it gives is looked for.
+        const auto& [name, declaration, method, rows, columns, away, point, where, slot, index,
+                     filled, span] = fitted;
+        add("fitted",
+            fmt::format("slot {}, method {}, {} x {}, away {}, of {}", static_cast<int>(slot),
+                        static_cast<int>(method), rows, columns, away, text_of(point)));
+        add("where", where == kNone ? "true" : hash_of(where, Atoms::truths));
+    }
+
+    Reads take() && {
+        Reads result;
+        for (const auto& [key, texts] : texts_)
+            result[key] = fmt::format("{}", fmt::join(texts, " and "));
+        return result;
+    }
+
+private:
+    std::string add_input(Index index) {
+        const auto& [name, type, dimension, scale, range, has_range, hold, missing, encoder, span] =
+            model_.inputs[index];
+        std::string text = fmt::format("{}[{}]", word(type), dimension);
+        if (scale != 1) text += fmt::format(" scale {}", scale);
+        if (has_range) text += fmt::format(" in [{}, {}]", range.low, range.high);
+        if (hold > 0) text += fmt::format(" hold {}", hold);
+        if (missing) text += fmt::format(" missing {}", *missing);
+        if (encoder != kNone) text += " by " + add_encoder(encoder);
+        return add("input " + name, std::move(text));
+    }
+
+    std::string add_encoder(Index index) {
+        // The fingerprint is of the model, of what is done to images, and of what runs it.
+        const auto& [name, model, image, mean, deviation, declaration, dimension, fingerprint,
+                     otherwise, span] = model_.encoders[index];
+        add("encoder " + name, fingerprint.empty() ? declaration : kHashed + fingerprint);
+        return name;
+    }
+
+    void add_projection(Index index) {
+        // The hash is of matrix and offset, wherever they come from.
+        const auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, span] =
+            model_.projections[index];
+        add("projection " + name, fmt::format("{} x {}, {}{}", rows, dimension, kHashed, hash));
+    }
+
+    std::string text_of(Index point) {
+        // The text is of the names of the others, and what these are is added.
+        const auto& [kind, inputs, dimension, projection, inner, text] = model_.points[point];
+        for (const Index input : inputs) add_input(input);
+        if (projection != kNone) add_projection(projection);
+        if (inner != kNone) text_of(inner);
+        return text;
+    }
+
+    /// Its name.
+    std::string add_target(Index index) {
+        // The hash is of the rows, wherever they come from. Those in another space follow from the
+        // declared ones and the maps of the point.
+        const auto& [name, rows, dimension, values, origin, path, hash, encoded, space, source,
+                     fitted, span] = model_.targets[index];
+        if (source != kNone) return add_target(source);
+        std::string text = fmt::format("{} x {}, {}{}", rows, dimension, kHashed, hash);
+        if (space != kNone) text += " of " + text_of(space);
+        add("target " + name, std::move(text));
+        return name;
+    }
+
+    void add_distance(Index index) {
+        // The text stands for it in expressions, and says the same in words.
+        const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
+                     weights_fitted, weights_path, text, span] = model_.distances[index];
+        std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
+                                      word(metric), text_of(point), add_target(target));
+        if (metric == Metric::mahalanobis)
+            all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,
+                               weights_hash(model_.distances[index]));
+        add("distance " + text, std::move(all));
+    }
+
+    void add_expression(const Expr& expression) {
+        // Its numbers are those of its text, which print() writes.
+        const auto& [kind, text, number, number32, index, arguments, span] = expression;
+        if (kind == Expr::Kind::scalar) add_input(index);
+        if (kind == Expr::Kind::distance) add_distance(index);
+        for (const Expr& argument : arguments) add_expression(argument);
+    }
+
+    static std::string text_of(const Threshold& threshold) {
+        // What a calibrated one came from, its own entry says. Adaptive ones stand in no formula
+        // whose truth or shift is asked for.
+        const auto& [origin, text, alpha, value64, value, n, k, adaptation, span] = threshold;
+        if (origin == ThresholdOrigin::literal) return Decimal::parse(text).text();
+        return fmt::format("{} from {}", value, text);
+    }
+
+    /// What it says of a sample.
+    std::string add_predicate(Index index) {
+        // The ranges follow from the rest, the inputs are those of the expression.
+        const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
+                     inputs, span] = model_.predicates[index];
+        add_expression(expression);
+        std::string all = fmt::format("{} {} {}", print(model_, expression), word(comparison),
+                                      text_of(threshold));
+        if (missing) all += fmt::format(" missing {}", *missing);
+        return add("predicate " + model_.predicates[index].shown(), std::move(all));
+    }
+
+    /// What says when it holds: that is so of truths, not of what a truth compares.
+    std::string add_truth(Index of) {
+        const std::string key = "truth " + model_.predicates[of].shown();
+        for (const Truth& truth : model_.truths) {
+            const auto& [predicate, formula, span] = truth;
+            if (predicate == of && formula != kNone)
+                return add(key, hash_of(formula, Atoms::compared));
+        }
+        if (!is_own_truth(model_, of)) return add(key, "array");
+        add_predicate(of);
+        return add(key, "its comparison");
+    }
+
+    std::string add_atom(Index predicate, Atoms atoms) {
+        return atoms == Atoms::compared ? add_predicate(predicate) : add_truth(predicate);
+    }
+
+    /// Of all that the formula consists of, lets written out, each part once; what its atoms read
+    /// is added.
+    std::string hash_of(Index root, Atoms atoms) {
+        std::vector<bool> seen(root + 1, false);
+        seen[root] = true;
+        for (Index i = root + 1; i-- > 0;)
+            if (seen[i])
+                for (const Index operand : model_.formulas[i].operands) seen[operand] = true;
+        std::vector<std::string> hashes(root + 1);
+        for (Index i = 0; i <= root; ++i) {
+            if (!seen[i]) continue;
+            const auto& [kind, index, operands, low, high, span] = model_.formulas[i];
+            std::string text = fmt::format("{} [{}, {}]", static_cast<int>(kind), low, high);
+            if (kind == Formula::Kind::predicate) text += ' ' + add_atom(index, atoms);
+            if (kind == Formula::Kind::boolean_input) text += ' ' + add_input(index);
+            for (const Index operand : operands) text += ' ' + hashes[operand];
+            hashes[i] = kHashed + data::hash_text(data::xxh64(text));
+        }
+        return hashes[root];
+    }
+
+    std::string add(std::string key, std::string text) {
+        texts_[key].insert(std::move(text));
+        return key;
+    }
+
+    const Model& model_;
+    /// Of a key one; should two things ever have a name in common, none hides the other.
+    std::map<std::string, std::set<std::string>> texts_;
+};
+
+template <class Add>
+Reads read(const Model& model, const Add& add) {
+    Reading reading(model);
+    add(reading);
+    return std::move(reading).take();
+}
+
+}  // namespace
+
+Reads reads(const Model& model, Index predicate) {
+    return read(model, [&](Reading& reading) { reading.add_calibrated(predicate); });
+}
+
+Reads reads(const Model& model, const Monitor& monitor) {
+    return read(model, [&](Reading& reading) { reading.add_monitor(monitor); });
+}
+
+Reads reads(const Model& model, const Fitted& fitted) {
+    return read(model, [&](Reading& reading) { reading.add_fitted(fitted); });
+}
+
+std::vector<std::string> differences(const Reads& then, const Reads& now) {
+    std::vector<std::string> found;
+    const auto text = [](const Reads& all, const std::string& key) {
+        const auto at = all.find(key);
+        return at == all.end() ? std::string("none") : at->second;
+    };
+    Reads both = then;
+    both.insert(now.begin(), now.end());
+    for (const auto& [key, either] : both) {
+        const std::string before = text(then, key);
+        const std::string after = text(now, key);
+        if (before == after) continue;
+        const bool hashed = before[0] == kHashed && after[0] == kHashed;
+        found.push_back(hashed ? fmt::format("{} changed", key)
+                               : fmt::format("{} was: {}; it is: {}", key, before, after));
+    }
+    return found;
+}
+
+}  // namespace etlc::check

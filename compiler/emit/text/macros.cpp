@@ -1,0 +1,61 @@
+#include "emit/text/macros.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cctype>
+#include <set>
+#include <string_view>
+
+#include "check/names/reserved.hpp"
+
+namespace etlc::emit {
+
+namespace {
+
+bool is_word(char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
+}
+
+/// Just past the string that begins at `at`.
+std::size_t end_of_string(std::string_view code, std::size_t at) {
+    for (++at; at < code.size() && code[at] != '"'; ++at)
+        if (code[at] == '\\') ++at;
+    return at + 1;
+}
+
+/// Those words, outside strings and comments, that are macros elsewhere.
+std::set<std::string> macros_in(std::string_view code) {
+    std::set<std::string> found;
+    for (std::size_t at = 0; at < code.size();) {
+        if (code[at] == '"') {
+            at = end_of_string(code, at);
+        } else if (code.substr(at, 2) == "//") {
+            at = std::min(code.find('\n', at), code.size());
+        } else if (is_word(code[at])) {
+            const std::size_t begin = at;
+            while (at < code.size() && is_word(code[at])) ++at;
+            const std::string_view word = code.substr(begin, at - begin);
+            if (check::macro_elsewhere(word)) found.emplace(word);
+        } else {
+            ++at;
+        }
+    }
+    return found;
+}
+
+}  // namespace
+
+std::string shielded(const std::string& code) {
+    const std::set<std::string> names = macros_in(code);
+    if (names.empty()) return code;
+    std::string before = "// Macros of other headers by these names are none in here.\n";
+    std::string after = "\n";
+    for (const std::string& name : names) {
+        before += fmt::format("#pragma push_macro(\"{0}\")\n#undef {0}\n", name);
+        after += fmt::format("#pragma pop_macro(\"{}\")\n", name);
+    }
+    return before + "\n" + code + after;
+}
+
+}  // namespace etlc::emit

@@ -1,0 +1,50 @@
+"""What an answer is, that is none to a question which was not asked."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import Any, ClassVar, NoReturn
+
+import numpy as np
+
+from .errors import AmbiguousError
+
+_VALUES = (bool, int, float, complex, str, bytes, np.generic, np.ndarray)
+
+
+class Ambiguous:
+    """Its truth value could mean several things, and raises, as that of a numpy array does.
+
+    So does a comparison with a value: a verdict is neither True nor "violated". Two of a kind are
+    equal where all that they say is.
+    """
+
+    __slots__ = ()
+    __array_ufunc__ = None  # array == verdict asks the verdict
+    #: What to ask instead.
+    _ask: ClassVar[str] = ""
+
+    def __bool__(self) -> NoReturn:
+        raise AmbiguousError(
+            f"the truth value of {self._shown()} is ambiguous: ask for {self._ask}"
+        )
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is type(self):
+            return self._content() == other._content()  # type: ignore[attr-defined]
+        if isinstance(other, (*_VALUES, Ambiguous)):
+            raise AmbiguousError(
+                f"{self._shown()} is compared with {other!r}: compare {self._ask}"
+            )
+        return NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self._content())
+
+    def _content(self) -> tuple[Any, ...]:
+        """Of a dataclass: all its fields."""
+        return tuple(getattr(self, field.name) for field in fields(self))  # type: ignore[arg-type]
+
+    def _shown(self) -> str:
+        kind = type(self).__name__
+        return f"an {kind}" if kind[0] in "AEIOU" else f"a {kind}"

@@ -1,0 +1,241 @@
+#!/usr/bin/env python3
+"""same_recording_test.py ETLC: every road from a recording to another episode, in every storage.
+`etlc calibrate` refuses it, `evaluate` and what is calibrated on what was fitted as well; on each
+road another recording passes."""
+import ctypes
+import ctypes.util
+import itertools
+import json
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+import numpy as np
+
+from demonstrations import CONFORMAL, D, EPISODES, STEPS, World
+
+
+def csv(path, z, label, write=repr):
+    with open(path.with_suffix(".csv"), "w", encoding="ascii") as file:
+        print(*(f"z[{i}]" for i in range(z.shape[1])), "truth.a", sep=",", file=file)
+        for row, holds in zip(z, label):
+            print(*(write(float(x)) for x in row), int(holds), sep=",", file=file)
+
+
+def npz(kind):
+    def store(path, z, label):
+        np.savez(path.with_suffix(".npz"), z=z.astype(kind), **{"truth.a": label})
+    return store
+
+
+def fortran(path, z, label):
+    np.savez_compressed(path.with_suffix(".npz"), z=np.asfortranarray(z), **{"truth.a": label})
+
+
+def h5(path, z, label):
+    """By the C library: the arrays of a group."""
+    lib = ctypes.CDLL(ctypes.util.find_library("hdf5_serial") or ctypes.util.find_library("hdf5"))
+    for name in ("H5Fcreate", "H5Screate_simple", "H5Dcreate2"):
+        getattr(lib, name).restype = ctypes.c_int64
+    lib.H5open()
+    handle = ctypes.c_int64
+    file = handle(lib.H5Fcreate(str(path.with_suffix(".h5")).encode(), 2, handle(0), handle(0)))
+    for name, array in (("z", z.astype(np.float64)), ("truth.a", label.astype(np.float64))):
+        array = np.ascontiguousarray(array)
+        shape = (ctypes.c_uint64 * array.ndim)(*array.shape)
+        space = handle(lib.H5Screate_simple(array.ndim, shape, None))
+        double = handle.in_dll(lib, "H5T_NATIVE_DOUBLE_g")
+        data = handle(lib.H5Dcreate2(file, name.encode(), double, space, handle(0), handle(0),
+                                     handle(0)))
+        lib.H5Dwrite(data, double, handle(0), handle(0), handle(0),
+                     array.ctypes.data_as(ctypes.c_void_p))
+        lib.H5Dclose(data)
+    lib.H5Fclose(file)
+
+
+def relu(z):
+    return np.where(z > 0, z, np.float32(0))
+
+
+def negative_zeros(z):
+    z = relu(z)
+    z[::2][z[::2] == 0] = -0.0
+    return z
+
+
+def gaps(value):
+    """Missing frames, which one of the numbers says or all."""
+    def edit(z):
+        z = z.copy()
+        z[2::5] = value
+        z[3::5, 1] = value
+        return z
+    return edit
+
+
+def first(n):
+    return lambda z: z[:n]
+
+
+def few(n):
+    """So many frames are there, the rest is missing."""
+    def edit(z):
+        z = z.copy()
+        z[n:] = np.nan
+        return z
+    return edit
+
+
+def blank(x):
+    return "" if np.isnan(x) else repr(x)
+
+
+def blanks(path, z, label):
+    csv(path, z, label, blank)
+
+
+def same(z):
+    return z
+
+
+#     input, what all are stored as and the other one is made from, what it is stored as
+EPISODE_ROADS = [
+    ("f32", same, npz("f4"), same, npz("f4"), "E0664"),
+    ("f32", same, npz("f4"), same, npz("f8"), "E0664"),
+    ("f32", same, npz("f4"), same, fortran, "E0664"),
+    ("f32", same, npz("f4"), same, csv, "E0664"),
+    ("f32", same, npz("f4"), same, h5, "E0664"),
+    ("f32", same, csv, same, h5, "E0664"),
+    ("f16", same, npz("f4"), same, npz("f2"), "E0664"),
+    ("f16", same, npz("f2"), same, csv, "E0664"),
+    ("f16", same, npz("f8"), same, npz("f2"), "E0664"),
+    ("f16", same, h5, first(9), npz("f2"), "E0667"),
+    ("f32", relu, npz("f4"), negative_zeros, npz("f4"), "E0664"),
+    ("f32", relu, csv, negative_zeros, csv, "E0664"),
+    ("f32", gaps(np.nan), npz("f4"), gaps(np.inf), npz("f4"), "E0664"),
+    ("f32", gaps(-np.inf), npz("f4"), gaps(np.nan), blanks, "E0664"),
+    ("f16", gaps(np.nan), blanks, gaps(np.inf), npz("f2"), "E0664"),
+    ("f16", gaps(np.nan), npz("f4"), gaps(1e6), npz("f4"), "E0664"),  # beyond float16
+    ("f32", same, npz("f4"), first(STEPS - 1), csv, "E0667"),
+    ("f32", same, npz("f4"), lambda z: z[3:], npz("f8"), "E0667"),
+    ("f32", few(5), npz("f4"), few(5), blanks, "E0664"),
+    ("f32", few(5), npz("f4"), few(4), npz("f4"), "E0667"),
+    ("f32", few(7), npz("f4"), lambda z: few(7)(z)[1:], npz("f4"), "E0667"),
+    ("f32", first(5), npz("f4"), first(4), csv, "E0667"),
+    ("f32", first(3), npz("f4"), first(2), npz("f4"), "E0667"),
+    ("f16", first(6), npz("f4"), first(5), npz("f2"), "E0667"),
+    ("f32 hold 3", gaps(np.nan), npz("f4"), lambda z: held(gaps(np.nan)(z)), npz("f4"), "E0664"),
+]
+
+
+def held(z):
+    """What `hold` makes of it."""
+    for t in range(1, len(z)):
+        if np.isnan(z[t]).any():
+            z[t] = z[t - 1]
+    return z
+
+
+def episode_spec(kind):
+    name, _, rest = kind.partition(" ")
+    return (f"spec t; input z : {name}[{D}] {rest};\n"
+            f"target g = [[{', '.join(['0.5'] * D)}]];\n"
+            f"predicate a = l2(z, g) {CONFORMAL};\nmonitor m = F a;\n")
+
+
+def fit_spec(kind):
+    fitted = ("projection E = fitted(pca, r = 2, of = z, where = true);\n"
+              "target c = fitted(mean, of = E(z), where = a);\n")
+    return episode_spec(kind).replace("predicate", fitted + "predicate").replace(
+        "l2(z, g)", "l2(E(z), c)")
+
+
+def stored(world, part, number, store, z):
+    path = world.folder / part
+    path.mkdir(exist_ok=True)
+    store(path / f"{number:02}", z, np.arange(len(z)) % 3 == 0)
+
+
+def clear(world, *parts):
+    for part in parts:
+        for path in (world.folder / part).glob("*"):
+            path.unlink()
+
+
+def test_episodes(world):
+    for kind, edit, store, other_edit, other_store, expected in EPISODE_ROADS:
+        world.spec(episode_spec(kind))
+        for repeats in (True, False):
+            clear(world, "demos", "new")
+            for number, (z, _) in enumerate(world.demos):
+                stored(world, "demos", number, store, edit(z))
+            z = (world.demos if repeats else world.others)[4][0]
+            stored(world, "new", 99, other_store, other_edit(z))
+            road = (kind, edit, store, other_edit, other_store, expected, repeats)
+            says = world.run("calibrate", "--data", "demos", "new", "-o", "t.thresholds.json")
+            assert says == ({expected} if repeats else set()), (road, says)
+            says = world.run("calibrate", "--data", "demos", "-o", "t.thresholds.json")
+            assert says == set(), (road, says)
+            says = world.run("evaluate", "--data", "new")
+            assert ("E0670" in says) == repeats, (road, says)
+            world.spec(fit_spec(kind))
+            says = world.run("fit", "--data", "demos", "-o", "t.fitted.npz")
+            assert not any(code[0] == "E" for code in says), (road, says)
+            says = world.run("calibrate", "--data", "new", "-o", "t.json")
+            assert ("E0675" in says) == repeats, (road, says)
+            world.spec(episode_spec(kind))
+
+
+def test_scalars(world):
+    """A scalar out of its range is missing, as an empty cell is, and so is one that `hold` ends."""
+    world.spec("spec t; input s : f32 in [-1, 1] hold 1;\n"
+               f"predicate a = s {CONFORMAL};\nmonitor m = F a;\n")
+    clear(world, "demos", "new")
+    signals = world.random.uniform(-1, 1, (EPISODES + 1, 40)).astype(np.float32)
+
+    def store(part, number, cells):
+        lines = [f"{cell},{int(t % 3 == 0)}" for t, cell in enumerate(cells)]
+        (world.folder / part / f"{number:02}.csv").write_text("\n".join(["s,truth.a", *lines]))
+
+    def cells(signal, missing, held, zero):
+        all_ = [repr(float(x)) for x in signal]
+        all_[5] = all_[20] = all_[21] = missing
+        all_[30] = zero
+        return all_[:11] + [all_[10] if held else missing] + all_[12:]
+
+    for number, signal in enumerate(signals[:EPISODES]):
+        store("demos", number, cells(signal, "7", False, "0"))
+    for missing, held in itertools.product(("", "nan", "-inf", "1.5"), (False, True)):
+        for signal, expected in ((signals[3], {"E0664"}), (signals[EPISODES], set())):
+            store("new", 99, cells(signal, missing, held, "-0.0"))
+            says = world.run("calibrate", "--data", "demos", "new", "-o", "t.json")
+            assert says == expected, (missing, held, expected, says)
+
+
+def test_old_files(world):
+    """What an earlier version wrote is refused where episodes are compared."""
+    world.spec(episode_spec("f32"))
+    clear(world, "demos", "new")
+    world.write("demos", world.demos)
+    world.write("new", world.others)
+    assert world.run("calibrate", "--data", "demos") == set()
+    path = world.folder / "t.thresholds.json"
+    new = json.loads(path.read_text())
+    assert new["format"] == 2
+    path.write_text(json.dumps({**new, "format": 1}))
+    assert "E0668" in world.run("evaluate", "--data", "new")
+    done = subprocess.run([world.etlc, "t.etl", "--check"], cwd=world.folder, capture_output=True)
+    assert done.returncode == 0, done.stderr  # it still compiles
+
+
+def main(etlc):
+    with tempfile.TemporaryDirectory() as name:
+        world = World(etlc, pathlib.Path(name), 1)
+        test_episodes(world)
+        test_scalars(world)
+        test_old_files(world)
+
+
+if __name__ == "__main__":
+    main(sys.argv[1])

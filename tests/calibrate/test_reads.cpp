@@ -1,0 +1,121 @@
+// What a guarantee was made from, on the model itself: every field of it is changed in turn. Either
+// what is read differs, or the field is listed as one that does not count, with the reason.
+#include <gtest/gtest.h>
+
+#include <set>
+#include <stdexcept>
+
+#include "changing.hpp"
+#include "check/check.hpp"
+#include "check/guarantees/reads.hpp"
+#include "parse/parse.hpp"
+
+namespace etlc::tests {
+namespace {
+
+/// Whatever a model may hold is in it. `m` reads all of it, `p` what its threshold is taken from.
+const std::string kSpec =
+    "spec t; rate 10 Hz;\n"
+    "input z : f32[2] hold 1; input w : i8[2] scale 0.5; input x : f32 in [-9, 9]; input y : f32;\n"
+    "input b : bool missing false; input c : bool; input u, v : f32;\n"
+    "projection Q = [[1, 0], [0, 2]] offset [[1, 1]]; projection V = [[1, 0], [1, 2]];\n"
+    "target g = [[0, 0], [1, 1]]; target h = [[1, 2]] of Q(z); target k = [[3, 1]];\n"
+    "target fit = fitted(kmeans, k = 2, away = 1, of = Q(z), where = p && q);\n"
+    "predicate p = min l2(Q(z), g) - kth(2) l1(w, g) <= calibrated(f1);\n"
+    "truth p = (mahalanobis([[2, 0], [0, 1]])(z, k) < 3 || min(x, 2) * abs(y) > 0.5) && O[0, 2] "
+    "c;\n"
+    "predicate q = x - 2 / y != 0.5 missing false; predicate r = l2([x, y], k) < 0.5;\n"
+    "truth r = O[1, 3] (b && l2(Q(z), h) > 1); predicate s = l2(z, k) < u;\n"
+    "let often = p && q; monitor m = F[0, 4] (often && r && s && X b) calibrated(conformal, alpha "
+    "= 0.1,\n"
+    "    against = missed_alarm); sliding monitor n = G[0, 2] p; monitor o = F u > v;";
+
+check::Model model_of_everything() {
+    diag::Sink sink;
+    const source::File file("t.etl", kSpec);
+    check::Options options;
+    options.allow_uncalibrated = true;
+    options.allow_uncalibrated_monitors = true;
+    options.allow_unfitted = true;
+    auto model = check::check(parse::parse(file, sink), file, options, sink);
+    if (!model) throw std::runtime_error(std::string(sink.sorted().front().message));
+    check::Encoder encoder;
+    encoder.name = "dino";
+    encoder.fingerprint = "0123456789abcdef";
+    model->encoders = {encoder, encoder};
+    model->encoders[1].name = "clip";
+    model->inputs[0].encoder = 0;
+    return *model;
+}
+
+/// All that is read for the threshold of p, the shift of m, and `fit`.
+std::vector<check::Reads> read(const check::Model& model) {
+    return {check::reads(model, 0), check::reads(model, model.monitors[0]),
+            check::reads(model, model.fitted[0])};
+}
+
+/// Fields that no score depends on.
+const std::set<std::string> kUnread{
+    // Of the fingerprint.
+    "Encoder.model", "Encoder.image", "Encoder.mean", "Encoder.deviation", "Encoder.declaration",
+    "Encoder.dimension", "Encoder.otherwise",
+    // Of the hash, which is of the values; or where these come from.
+    "Projection.matrix", "Projection.offset", "Projection.origin", "Projection.path",
+    "Projection.fitted", "Target.values", "Target.origin", "Target.path", "Target.encoded",
+    "Target.fitted", "Distance.weights_fitted", "Distance.weights_path",
+    // Of the text.
+    "Point.kind", "Point.dimension", "Point.inner", "Expr.number", "Expr.number32",
+    "Predicate.inputs", "Threshold.value64",
+    // Ranges follow from the expression, the inputs and the threshold.
+    "Predicate.delta", "Predicate.robustness",
+    // How sure the threshold is, its own entry says.
+    "Threshold.alpha", "Threshold.n", "Threshold.k", "Threshold.adaptation", "Monitor.calibration",
+    // What it comes to.
+    "Fitted.name", "Fitted.declaration", "Fitted.index", "Fitted.filled",
+    // Names of formulas, and what is shown of them.
+    "Let.name", "Let.formula", "Let.telemetry", "Model.constants", "Model.rounded",
+    "Model.rounding",
+    // About other things.
+    "Model.name", "Model.retargetable", "Model.encoded", "Model.dependencies",
+    "Model.reservations"};
+
+TEST(Reads, EveryFieldOfTheModelCountsOrIsListed) {
+    check::Model model = model_of_everything();
+    const std::vector<check::Reads> before = read(model);
+    Changing changing([&] { return read(model) != before; });
+    visit(model, changing);
+    EXPECT_EQ(read(model), before);
+    EXPECT_GT(changing.all.size(), 100U);
+    for (const std::string& field : changing.all) {
+        const bool unread = kUnread.contains(field) || field.ends_with(".span");
+        EXPECT_NE(changing.read.contains(field), unread) << field;
+    }
+    for (const std::string& field : kUnread) EXPECT_TRUE(changing.all.contains(field)) << field;
+}
+
+/// What the monitor reads, it reads of each: no input, distance or predicate is passed over.
+TEST(Reads, EachThingOfAMonitorCounts) {
+    check::Model model = model_of_everything();
+    const check::Reads before = check::reads(model, model.monitors[0]);
+    Changing changing([&] { return check::reads(model, model.monitors[0]) != before; });
+    for (check::Input& input : model.inputs) {
+        visit(model, input, changing);
+        EXPECT_EQ(changing.some(), input.name != "v") << input.name;
+    }
+    for (check::Predicate& predicate : model.predicates) {
+        const bool in_another = predicate.text.starts_with("u - v");
+        visit(model, predicate, changing);
+        EXPECT_NE(changing.some(), in_another) << predicate.shown();
+    }
+    for (check::Distance& distance : model.distances) {
+        visit(model, distance, changing);
+        EXPECT_TRUE(changing.some()) << distance.text;
+    }
+    for (check::Truth& truth : model.truths) {
+        visit(model, truth, changing);
+        EXPECT_TRUE(changing.some()) << truth.predicate;
+    }
+}
+
+}  // namespace
+}  // namespace etlc::tests

@@ -1,0 +1,299 @@
+#!/usr/bin/python3
+"""The Python package, used by mistake: nothing is taken for what it is not, and nothing is silent.
+
+python_mistakes_test.py PAGE: PAGE is docs/python.md.
+"""
+
+import inspect
+import sys
+import tempfile
+import unittest
+import warnings
+from pathlib import Path
+
+import numpy as np
+
+import etlc
+
+PAGE = Path(sys.argv.pop()).resolve()
+
+SPEC = """spec all_types;
+input z    : f32[3];
+input x    : f32 in [-100, 100];
+input stop : bool;
+input half : f16[2];
+input byte : i8[2] scale 0.5;
+target at = [[1, 0, 0]];
+target o  = [[0, 0]];
+monitor far   = G l2(z, at) > 0.125;
+predicate is_high = x >= 50;
+monitor high  = F is_high;
+monitor goes  = G !stop;
+monitor small = G l1(half, o) <= 8;
+monitor bytes = G l1(byte, o) <= 99;
+sliding monitor late = F[0, 3] x >= 20;
+"""
+DOUBTFUL = """spec doubtful;
+input x : f32;
+predicate high = x > 1;
+monitor stays = F G high;
+"""
+
+
+def episode(steps=30):
+    random = np.random.default_rng(7)
+    return {
+        "z": random.normal(size=(steps, 3)).astype("f4"),
+        "x": random.integers(-100, 100, steps).astype("f4"),
+        "stop": random.random(steps) < 0.1,
+        "half": random.normal(size=(steps, 2)).astype("f2"),
+        "byte": random.integers(-128, 128, (steps, 2)).astype("i1"),
+    }  # fmt: skip
+
+
+def caught(call):
+    """What it gives, and its warnings."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        return call(), found
+
+
+class Truth(unittest.TestCase):
+    """Of one instance of each public class."""
+
+    def instances(self):
+        monitor = etlc.Monitor(text=SPEC, history=1)
+        steps = monitor.run(episode())
+        monitor.reset()
+        verdicts = monitor.step(x=1.0)
+        place = etlc.Diagnostic("E0204", "error", "m")
+        made = [
+            monitor, steps, steps.high, verdicts, verdicts.high, verdicts.high.why,
+            monitor.measure("is_high"), monitor.inputs["x"], place, etlc.Written(Path("f"), "r"),
+            etlc.Evaluation({}, "r"), etlc.EtlcWarning("w"),
+        ]  # fmt: skip
+        made += [
+            getattr(etlc, name)("m") for name in etlc.__all__ if name.endswith("Error")
+        ]
+        return {type(one).__name__: one for one in made}
+
+    def test_raises_or_is_documented_as_safe(self):
+        instances = self.instances()
+        classes = {name for name in etlc.__all__ if inspect.isclass(getattr(etlc, name))}
+        self.assertEqual(set(instances), classes)
+        text = PAGE.read_text()
+        safe = text[text.index("Always true"):].split("\n\n")[0]
+        raising = []
+        for name, one in instances.items():
+            is_safe = f"`{name}`" in safe or isinstance(one, (etlc.Error, Warning))
+            if is_safe:
+                self.assertIs(bool(one), True, name)
+            else:
+                raising.append(name)
+                self.expect_ambiguous(one)
+        for name in ("Verdict", "Verdicts", "EpisodeVerdicts", "Episode", "Measurement"):
+            self.assertIn(name, raising)
+        self.assertIn("exceptions and warnings", " ".join(safe.split()))
+
+    def expect_ambiguous(self, one):
+        numbers = np.array([1, 2])
+        for mistake in (
+            lambda: bool(one), lambda: not one, lambda: one and 1, lambda: one or 1,
+            lambda: 1 if one else 2, lambda: any([one]), lambda: all([one]),
+            lambda: list(filter(None, [one])), lambda: [0 for _ in "a" if one],
+            lambda: one == True, lambda: one != False, lambda: one == "violated",  # noqa: E712
+            lambda: "alarm" == one, lambda: one == 0, lambda: one != np.float32(1),
+            lambda: np.float32(1) == one, lambda: one == numbers, lambda: numbers == one,
+            lambda: one in ("satisfied", "violated"), lambda: np.array([one, one], "O").any(),
+        ):  # fmt: skip
+            with self.assertRaises(etlc.AmbiguousError, msg=inspect.getsource(mistake)) as raised:
+                mistake()
+            named = [word.strip(".,:()[-1]") for word in str(raised.exception).split()
+                     if word.startswith(".")]  # fmt: skip
+            self.assertTrue(named)
+        for mistake in (lambda: one < 0, lambda: one >= 0, lambda: float(one), lambda: int(one),
+                        lambda: np.isnan(one), lambda: one + 1, lambda: np.any(one),
+                        lambda: np.all(one)):  # fmt: skip
+            with self.assertRaises(TypeError):
+                mistake()
+        self.assertIsInstance(raised.exception, ValueError)
+        self.assertFalse(one == None)  # noqa: E711
+        self.assertTrue(one is not None and one == one)
+        self.assertIn(one, [one])
+
+    def test_every_name_in_the_message_is_there(self):
+        for name, one in self.instances().items():
+            try:
+                bool(one)
+            except etlc.AmbiguousError as error:
+                asked = one
+                if isinstance(one, etlc.Verdicts):
+                    self.assertTrue(hasattr(one, "alarms"))
+                    asked = one.high
+                if isinstance(one, etlc.Episode):
+                    asked = one.high
+                words = str(error).replace("(", " ").replace("[", " ").replace(",", " ").split()
+                named = [word.strip(".") for word in words if word.strip(".") and word[0] == "."]
+                named = [word.split(".")[0] for word in named if word != "alarms"]
+                self.assertTrue(named, name)
+                for attribute in named:
+                    self.assertTrue(hasattr(asked, attribute), f"{name}.{attribute}")
+
+    def test_mistakes_with_what_is_in_it(self):
+        monitor = etlc.Monitor(text=SPEC)
+        verdicts = monitor.step(x=1.0)
+        steps = monitor.run(episode())
+        for group in (verdicts, steps):
+            for one in ("high", "violated", True, 0, None):
+                with self.assertRaises(etlc.AmbiguousError):
+                    one in group
+            self.assertTrue(all(one in group for one in list(group)))
+            for mistake in (any, all):
+                with self.assertRaises(etlc.AmbiguousError):
+                    mistake(group)
+
+    def test_those_that_say_the_same_are_equal(self):
+        first, second = (etlc.Monitor(text=SPEC) for _ in range(2))
+        self.assertEqual(first.step(x=1.0), second.step(x=1.0))
+        said, other = first.step(x=2.0), second.step(x=60.0)
+        self.assertNotEqual(said, other)
+        self.assertNotEqual(said.high, other.high)
+        self.assertEqual(said.goes, other.goes)
+        self.assertEqual(len({said.goes, other.goes, said.high}), 2)
+        self.assertNotEqual(said.high, said.goes)
+        self.assertEqual(first.run(episode()), second.run(episode()))
+        self.assertNotEqual(first.run(episode()), second.run(episode(29)))
+
+
+class Refusing(unittest.TestCase):
+    def test_texts_that_are_none(self):
+        with tempfile.TemporaryDirectory() as folder:
+            spec = Path(folder) / "t.etl"
+            spec.write_text(SPEC)
+            monitor = etlc.Monitor(spec)
+            verdicts, steps = monitor.step(), monitor.run(episode())
+            monitor.reset()
+            for text in ("a\ud800b", "a\udcffb", "a\0b"):
+                mistakes = [
+                    lambda: etlc.Monitor(text), lambda: etlc.Monitor(Path(text)),
+                    lambda: etlc.Monitor(text=text), lambda: etlc.Monitor(spec, thresholds=text),
+                    lambda: etlc.Monitor(spec, fitted=text), lambda: monitor.measure(text),
+                    lambda: etlc.Monitor(spec, settings={"n": text}), lambda: verdicts[text],
+                    lambda: etlc.Monitor(spec, settings={text: 1}), lambda: monitor.let(text),
+                    lambda: etlc.Monitor(spec, recorder=text), lambda: steps[text],
+                    lambda: etlc.Monitor(spec, recorder=(text, 1, 1)),
+                    lambda: etlc.Monitor(spec, values=text), lambda: monitor.restart(text),
+                    lambda: etlc.Monitor(spec, targets_as=text), lambda: monitor.explain(text),
+                    lambda: monitor.step(**{text: 1}), lambda: monitor.run({text: [1.0]}),
+                    lambda: monitor.sample_counts(text), lambda: monitor.position(text),
+                    lambda: monitor.step(stop=text), lambda: etlc.evaluate(spec, text),
+                    lambda: etlc.calibrate(text, spec), lambda: etlc.calibrate(spec, [text]),
+                    lambda: etlc.fit(spec, spec, output=text), lambda: etlc.embed(text),
+                    lambda: etlc.fit(spec, spec, names={"x": text}), lambda: etlc.embed(spec, text),
+                    lambda: etlc.incident(spec, text), lambda: etlc.incident(spec, b"", form=text),
+                    lambda: etlc.calibrate(spec, spec, groups=text),
+                    lambda: etlc.calibrate(spec, spec, settings={"n": text}),
+                ]  # fmt: skip
+                refused = 0
+                for mistake in mistakes:
+                    try:  # a file that nothing asks for may be named as files can be
+                        mistake()
+                    except etlc.Error:
+                        refused += 1
+                self.assertGreaterEqual(refused, len(mistakes) - (2 if "\udcff" in text else 0))
+            with self.assertRaisesRegex(etlc.InputError, r"spec 'a\\ud800' has '\\ud800' in it"):
+                etlc.Monitor("a\ud800")
+
+    def test_options_that_are_none(self):
+        for options in (
+            {"history": 1.5}, {"history": "1"}, {"max_state": None}, {"values": None},
+            {"thresholds": 7}, {"text": 7}, {"text": b"spec"}, {"recorder": (1, 2)},
+        ):  # fmt: skip
+            with self.assertRaises(etlc.InputError, msg=options):
+                etlc.Monitor(**{"text": SPEC, **options})
+        self.assertEqual(etlc.Monitor(text=SPEC, history=np.int64(3)).name, "all_types")
+
+
+class Saying(unittest.TestCase):
+    def test_of_the_compiler_point_to_the_caller(self):
+        line = inspect.currentframe().f_lineno + 1
+        monitor, found = caught(lambda: etlc.Monitor("d.etl", text=DOUBTFUL))
+        self.assertEqual([one.category for one in found], [etlc.EtlcWarning])
+        self.assertEqual((found[0].filename, found[0].lineno), (__file__, line))
+        self.assertRegex(str(found[0].message), r"^d.etl:4:17: warning: .* \[W0501\]\n  note: ")
+        self.assertEqual(found[0].message.diagnostic.code, "W0501")
+        self.assertEqual(len(found[0].message.diagnostic.notes), 1)
+        self.assertIn("W0501", monitor.warnings)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error", etlc.EtlcWarning)
+            with self.assertRaises(etlc.EtlcWarning):
+                etlc.Monitor(text=DOUBTFUL)
+        self.assertEqual(caught(lambda: etlc.Monitor(text=SPEC))[1], [])
+
+        class Own(etlc.Monitor):
+            def __init__(self):
+                super().__init__(text=DOUBTFUL)
+
+        self.assertEqual(caught(Own)[1][0].filename, __file__)
+
+    def test_of_commands_point_to_the_caller(self):
+        with tempfile.TemporaryDirectory() as folder:
+            spec = Path(folder) / "d.etl"
+            spec.write_text("spec d; input x, y : f32; truth high = y > 0;"
+                            "predicate high = x > calibrated(f1); monitor m = F high;")  # fmt: skip
+            random = np.random.default_rng(1)
+            for name in range(8):
+                np.savez(f"{folder}/{name}.npz", **{
+                    of: random.normal(size=40).astype("f4") for of in ("x", "y")})  # fmt: skip
+            made, found = caught(lambda: etlc.calibrate(spec, folder))
+            said = [one.code for one in made.diagnostics if one.severity == "warning"]
+            self.assertIn("W0671", said)
+            self.assertEqual([one.message.diagnostic.code for one in found], said)
+            for one in found:
+                self.assertIs(one.category, etlc.EtlcWarning)
+                self.assertEqual(one.filename, __file__)
+
+    def test_notes_of_errors_are_said(self):
+        text = "spec t;\nrate 20 Hz;\ninput x : f32;\nmonitor m = F[0 s, 0.12 s] x > 1;\n"
+        with tempfile.TemporaryDirectory() as folder:
+            spec = Path(folder) / "t.etl"
+            spec.write_text(text)
+            for call in (lambda: etlc.Monitor(spec), lambda: etlc.evaluate(spec, folder)):
+                with self.assertRaises(etlc.SpecError) as raised:
+                    call()
+                (found,) = raised.exception.diagnostics
+                self.assertEqual(found.notes[0], f"{spec}:2:1: the rate is 20 Hz")
+                self.assertEqual(raised.exception.notes, list(found.notes))
+                self.assertIn("the rate is 20 Hz", str(raised.exception))
+                self.assertIn("durations up", str(raised.exception))
+
+    def test_of_runs_on_nothing(self):
+        arrays = episode()
+        nan = np.full_like(arrays["z"], np.nan)
+        masked = np.ma.masked_all_like(arrays["byte"])
+        monitor = etlc.Monitor(text=SPEC)
+        for others, words in (
+            ({"z": nan}, "of 'z' is missing or not finite"),
+            ({"x": np.full(30, np.inf)}, "of 'x' is missing or not finite"),
+            ({"x": np.full(30, 101.0)}, r"of 'x' is out of its range, \[-100, 100\]"),
+            ({"x": np.linspace(100, np.nan, 30) + 1}, "of 'x' is missing or"),
+            ({"byte": masked}, "of 'byte' is missing"),
+            ({"z": nan, "half": np.full((30, 2), np.nan)}, "of 'z'.*of 'half'"),
+        ):
+            said, found = caught(lambda: monitor.run({**arrays, **others}))
+            self.assertEqual(len(found), 1, words)
+            self.assertEqual((found[0].category, found[0].filename), (etlc.EtlcWarning, __file__))
+            self.assertRegex(str(found[0].message), "every sample " + words)
+        self.assertFalse(said.far.satisfied.any() or said.far.violated.any())
+        del arrays["stop"]
+        _, found = caught(lambda: monitor.run(arrays))
+        self.assertIn("every sample of 'stop' is missing: it is not given", str(found[0].message))
+        arrays["z"][1:] = np.nan
+        for quiet in ({"stop": None}, {"stop": np.zeros(30, "?")}):
+            self.assertEqual(caught(lambda: monitor.run({**arrays, **quiet}))[1], [])
+        none = {name: array[:0] for name, array in arrays.items()}
+        self.assertEqual(caught(lambda: monitor.run(none, stop=[]))[1], [])
+
+
+if __name__ == "__main__":
+    unittest.main()

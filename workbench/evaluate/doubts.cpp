@@ -1,0 +1,61 @@
+// What to doubt about an evaluation.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "episodes/label_doubts.hpp"
+#include "evaluate/evaluate.hpp"
+
+namespace etlc::evaluate {
+
+namespace {
+
+/// Fewer give no interval that can be relied on.
+constexpr std::uint64_t kFewEpisodes = 5;
+
+template <class Named>
+const Named* named(const std::vector<Named>& all, const std::string& name) {
+    const auto found =
+        std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
+    return found == all.end() ? nullptr : &*found;
+}
+
+/// Where both truths occur, and nearly no resample has a gain.
+void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
+                     diag::Sink& sink) {
+    const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
+    if (!both || !score.gain.interval || score.gain.interval->high > 0) return;
+    episodes::warn_of_data(
+        diag::Code::no_better_than_true,
+        fmt::format("'{}' has an F1 of {:.3f}, no better than the {:.3f} of saying true at every "
+                    "step",
+                    name, *score.f1.value, *score.f1.value - *score.gain.value),
+        span, sink)
+        .note("look at the threshold, which may be too wide, at the targets and at the labels");
+}
+
+}  // namespace
+
+void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink) {
+    const bool enough = evaluation.episodes >= kFewEpisodes;
+    for (const PredicateScore& score : evaluation.predicates) {
+        const check::Predicate* predicate = named(model.predicates, score.name);
+        if (predicate == nullptr) continue;
+        std::optional<episodes::Auroc> auroc;
+        if (enough && score.auroc.value && score.auroc.interval)
+            auroc = {*score.auroc.value, episodes::Auroc::Interval{score.auroc.interval->low,
+                                                                   score.auroc.interval->high}};
+        const Counts& counts = score.frames.counts;
+        if (!episodes::warn_of_labels(*predicate, {counts.positives(), counts.negatives()}, auroc,
+                                      sink) &&
+            enough)
+            warn_of_no_gain(score.name, score.frames, predicate->threshold.span, sink);
+    }
+    for (const MonitorScore& score : evaluation.monitors) {
+        const check::Monitor* monitor = named(model.monitors, score.name);
+        if (monitor != nullptr && score.lacking.empty() && enough)
+            warn_of_no_gain(score.name, score.steps, monitor->span, sink);
+    }
+}
+
+}  // namespace etlc::evaluate
