@@ -7,7 +7,7 @@
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "embedded/embedded.hpp"
 #include "thresholds/described.hpp"
 

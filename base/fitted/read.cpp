@@ -5,7 +5,7 @@
 #include "data/arrays/archive.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "fitted/fitted.hpp"
 #include "thresholds/described.hpp"
 #include "thresholds/items.hpp"

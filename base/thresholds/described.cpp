@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "data/arrays/npy.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "thresholds/thresholds.hpp"
 
 namespace etlc::thresholds {

@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 
 #include "data/files/hash.hpp"
-#include "data/number.hpp"
-#include "data/quote.hpp"
+#include "data/text/number.hpp"
+#include "data/text/quote.hpp"
 #include "thresholds/items.hpp"
 
 namespace etlc::thresholds {

@@ -3,8 +3,8 @@
 #include <fmt/format.h>
 
 #include "data/files/hash.hpp"
-#include "data/number.hpp"
-#include "data/quote.hpp"
+#include "data/text/number.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::thresholds {
 

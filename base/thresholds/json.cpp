@@ -8,7 +8,7 @@
 #include <optional>
 #include <unordered_set>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "source/source.hpp"
 
 namespace etlc::thresholds {

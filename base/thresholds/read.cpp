@@ -6,8 +6,8 @@
 
 #include "data/files/bytes.hpp"
 #include "data/files/hash.hpp"
-#include "data/number.hpp"
-#include "data/quote.hpp"
+#include "data/text/number.hpp"
+#include "data/text/quote.hpp"
 #include "thresholds/items.hpp"
 #include "thresholds/thresholds.hpp"
 

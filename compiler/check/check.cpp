@@ -1,8 +1,8 @@
 #include "check/check.hpp"
 
+#include "check/context/steps.hpp"
 #include "check/guarantees/retargetable.hpp"
 #include "check/inspect.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

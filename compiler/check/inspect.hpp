@@ -8,8 +8,8 @@
 #include <unordered_map>
 
 #include "check/check.hpp"
-#include "check/names/scope.hpp"
-#include "check/predicates/matrices.hpp"
+#include "check/context/matrix.hpp"
+#include "check/context/scope.hpp"
 
 namespace etlc::check {
 

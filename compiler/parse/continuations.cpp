@@ -6,8 +6,8 @@
 #include "EtlParser.h"
 #include "parse/expected.hpp"
 #include "parse/nesting.hpp"
-#include "parse/slices.hpp"
-#include "parse/tokens.hpp"
+#include "parse/stream/slices.hpp"
+#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

@@ -6,7 +6,7 @@
 
 #include <optional>
 
-#include "parse/slices.hpp"
+#include "parse/stream/slices.hpp"
 
 namespace etlc::parse {
 

@@ -5,10 +5,11 @@
 #include <algorithm>
 
 #include "parse/build.hpp"
+#include "parse/foreign/mistakes.hpp"
 #include "parse/nesting.hpp"
-#include "parse/slices.hpp"
+#include "parse/stream/slices.hpp"
+#include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
-#include "parse/tokens.hpp"
 #include "source/utf8.hpp"
 
 namespace etlc::parse {

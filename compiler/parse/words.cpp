@@ -1,7 +1,7 @@
 #include "parse/words.hpp"
 
 #include "EtlLexer.h"
-#include "parse/tokens.hpp"
+#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

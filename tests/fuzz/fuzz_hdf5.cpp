@@ -6,7 +6,7 @@
 
 #include <string>
 
-#include "data/traces/hdf5.hpp"
+#include "data/hdf5/hdf5.hpp"
 #include "fuzz_target.hpp"
 
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <limits>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <locale>
 
-#include "data/number.hpp"
+#include "data/text/number.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <set>
 
-#include "data/traces/episodes.hpp"
+#include "data/recordings/episodes.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {

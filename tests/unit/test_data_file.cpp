@@ -10,7 +10,7 @@
 #include "data/files/bytes.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "npy_bytes.hpp"
 
 namespace etlc::data {

@@ -9,8 +9,8 @@
 #include <fstream>
 #include <string>
 
-#include "data/traces/episodes.hpp"
-#include "data/traces/hdf5.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/recordings/episodes.hpp"
 
 namespace etlc::data {
 namespace {

@@ -7,9 +7,9 @@
 #include <limits>
 #include <optional>
 
-#include "data/quote.hpp"
+#include "data/recordings/open.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/csv.hpp"
-#include "data/traces/trace.hpp"
 
 namespace etlc::embed {
 

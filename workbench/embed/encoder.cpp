@@ -8,7 +8,7 @@
 #include <cmath>
 
 #include "data/frames/protocol.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "embedded/embedded.hpp"
 
 namespace etlc::embed {

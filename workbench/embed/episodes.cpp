@@ -9,7 +9,7 @@
 #include "data/arrays/npz_writer.hpp"
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "embed/beside.hpp"
 #include "embed/embed.hpp"
 

@@ -9,7 +9,7 @@
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
 #include "data/frames/images.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "embed/sets.hpp"
 
 namespace etlc::embed {

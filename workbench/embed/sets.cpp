@@ -7,9 +7,9 @@
 #include <set>
 
 #include "data/datasets/trace.hpp"
-#include "data/frames/arrays.hpp"
-#include "data/traces/hdf5.hpp"
-#include "data/traces/trace.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/recordings/image_arrays.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::embed {
 

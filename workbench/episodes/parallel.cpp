@@ -9,8 +9,8 @@
 #include <thread>
 #include <utility>
 
-#include "data/quote.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::episodes {
 

@@ -7,7 +7,7 @@
 
 #include "check/encoders/marks.hpp"
 #include "data/datasets/trace.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "embedded/embedded.hpp"
 #include "episodes/unmarked.hpp"
 

@@ -13,9 +13,9 @@
 
 #include "check/model/model.hpp"
 #include "data/files/hash.hpp"
+#include "data/recordings/episodes.hpp"
+#include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
-#include "data/traces/episodes.hpp"
-#include "data/traces/trace.hpp"
 #include "episodes/frames.hpp"
 #include "episodes/leaks.hpp"
 #include "episodes/seen.hpp"

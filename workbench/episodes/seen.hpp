@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "data/traces/episodes.hpp"
+#include "data/recordings/episodes.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::fit {
 

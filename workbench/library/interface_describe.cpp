@@ -3,7 +3,7 @@
 #include <string>
 
 #include "check/model/fingerprint.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "library/call.hpp"
 
 namespace etlc::library {

@@ -6,7 +6,7 @@
 #include <charconv>
 #include <cmath>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::library {
 

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <string_view>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::library {
 

@@ -11,7 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "evaluate/evaluate.hpp"
 #include "pipeline/compile.hpp"

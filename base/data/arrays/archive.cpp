@@ -15,7 +15,7 @@
 #include "data/arrays/zip_layout.hpp"
 #include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

@@ -6,7 +6,7 @@
 
 #include "data/arrays/elements.hpp"
 #include "data/arrays/npy_header.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

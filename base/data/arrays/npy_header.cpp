@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "data/arrays/elements.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

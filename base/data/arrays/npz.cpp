@@ -4,7 +4,7 @@
 #include "data/arrays/array.hpp"
 #include "data/arrays/npy.hpp"
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

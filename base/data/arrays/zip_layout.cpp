@@ -6,7 +6,7 @@
 #include <optional>
 #include <string_view>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

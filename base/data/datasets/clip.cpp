@@ -5,7 +5,7 @@
 
 #include "data/datasets/stored_images.hpp"
 #include "data/datasets/trace.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

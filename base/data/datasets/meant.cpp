@@ -5,7 +5,7 @@
 #include <regex>
 
 #include "data/datasets/dataset.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

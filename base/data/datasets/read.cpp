@@ -15,7 +15,7 @@
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
 #include "data/parquet/table.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

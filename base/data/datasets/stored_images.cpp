@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "data/parquet/table.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

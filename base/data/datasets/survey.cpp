@@ -6,7 +6,7 @@
 
 #include "data/datasets/dataset.hpp"
 #include "data/parquet/table.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

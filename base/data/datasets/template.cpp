@@ -6,7 +6,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

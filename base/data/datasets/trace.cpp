@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "data/parquet/table.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/array_trace.hpp"
 
 namespace etlc::data {

@@ -8,7 +8,7 @@
 #include "data/datasets/trace.hpp"
 #include "data/files/file.hpp"
 #include "data/files/lfs.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

@@ -12,7 +12,7 @@
 #include "data/files/file.hpp"
 #include "data/frames/images.hpp"
 #include "data/frames/protocol.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

@@ -8,7 +8,7 @@
 #include <system_error>
 
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 namespace {

@@ -9,7 +9,7 @@
 
 #include "data/arrays/npy.hpp"
 #include "data/arrays/npy_header.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::data {
 

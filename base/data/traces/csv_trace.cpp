@@ -6,8 +6,8 @@
 #include <map>
 #include <optional>
 
-#include "data/number.hpp"
-#include "data/quote.hpp"
+#include "data/text/number.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"
 

@@ -4,7 +4,7 @@
 // missing ones marked. Keeps true: memory does not grow with the number of steps (.csv is streamed;
 // of an .npz member only a buffer is held, a Fortran-ordered T x D array is first unpacked to an
 // unnamed temporary file in $TMPDIR or /tmp; .h5 is read by a process of its own,
-// data/traces/hdf5.hpp).
+// data/hdf5/hdf5.hpp).
 #pragma once
 
 #include <cstdint>
@@ -52,31 +52,5 @@ public:
 using NamesInFile = std::map<std::string, std::string>;
 std::vector<Channel> renamed(std::vector<Channel> channels, const NamesInFile& names);
 const std::string& name_in_file(const std::string& name, const NamesInFile& names);
-
-/// Whether the ending of a path is that of a trace.
-bool is_trace(const std::string& path);
-/// The endings of traces: ".csv, .npz, .h5 or .hdf5".
-std::string trace_endings();
-
-/// The path of a trace that comes on standard input, as CSV. It is read once.
-inline constexpr std::string_view kStandardInput = "-";
-
-/// Of FILE.h5:GROUP the file, of an episode of a data set its folder, of any other path the path
-/// itself.
-std::string trace_file(const std::string& path);
-
-/// A trace that ends before its first step: neither verdicts nor thresholds come of it.
-diag::Failure no_steps();
-
-/// The finding as a diagnostic whose place is the trace; where something is looked for by the wrong
-/// name, it says how to give another.
-diag::Diagnostic in_trace(const diag::Failure& failure, const std::string& path);
-
-/// Opens a trace. Every channel that is not optional must be there; extra columns and arrays are
-/// ignored, but not elements of a vector beyond its width. Shapes in .npz and .h5: T or T x 1 for
-/// scalars and bools, T x D for vectors (T too where D is 1). Failures, here and in `next`, are
-/// E08; their messages do not repeat the path: `in_trace` adds it.
-diag::Result<std::unique_ptr<Trace>> open_trace(const std::string& path,
-                                                const std::vector<Channel>& channels);
 
 }  // namespace etlc::data

@@ -3,8 +3,8 @@
 
 #include <filesystem>
 
+#include "check/context/steps.hpp"
 #include "check/encoders/settings.hpp"
-#include "check/steps.hpp"
 #include "data/files/file.hpp"
 
 namespace etlc::check {

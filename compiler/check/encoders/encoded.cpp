@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "check/steps.hpp"
+#include "check/context/steps.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/frames/images.hpp"

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "ast/ast.hpp"
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

@@ -3,8 +3,8 @@
 
 #include <set>
 
+#include "check/context/steps.hpp"
 #include "check/encoders/settings.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

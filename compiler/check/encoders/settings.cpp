@@ -9,7 +9,7 @@
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "thresholds/json.hpp"
 
 namespace etlc::check {

@@ -3,7 +3,7 @@
 // Keeps true: nothing is warned of that can be what someone wants: the message says why.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

@@ -5,8 +5,9 @@
 #include <algorithm>
 #include <cassert>
 
+#include "check/context/steps.hpp"
 #include "check/predicates/predicates.hpp"
-#include "check/steps.hpp"
+#include "check/time/time.hpp"
 
 namespace etlc::check {
 

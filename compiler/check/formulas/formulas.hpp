@@ -4,7 +4,7 @@
 // kMaxDepth.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "check/formulas/looks.hpp"
 
 namespace etlc::check {

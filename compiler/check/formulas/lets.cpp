@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
+#include "check/context/steps.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

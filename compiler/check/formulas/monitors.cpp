@@ -1,12 +1,12 @@
 // Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
 #include <fmt/format.h>
 
+#include "check/context/steps.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/guarantees.hpp"
 #include "check/points/project.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

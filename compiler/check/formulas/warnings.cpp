@@ -4,10 +4,11 @@
 #include <cmath>
 #include <optional>
 
+#include "check/context/steps.hpp"
 #include "check/formulas/formula_warnings.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/predicates/predicates.hpp"
-#include "check/steps.hpp"
+#include "check/time/time.hpp"
 
 namespace etlc::check {
 

@@ -7,7 +7,7 @@
 #include <optional>
 #include <string>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

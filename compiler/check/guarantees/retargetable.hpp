@@ -5,7 +5,7 @@
 // one.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

@@ -6,13 +6,13 @@
 #include <cmath>
 #include <filesystem>
 
-#include "check/check.hpp"
+#include "check/context/options.hpp"
+#include "check/context/steps.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/consistency.hpp"
 #include "check/guarantees/provenance.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/steps.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "thresholds/thresholds.hpp"

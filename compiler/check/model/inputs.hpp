@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "check/numbers/range.hpp"
 #include "source/source.hpp"
 
 namespace etlc::check {
@@ -21,14 +22,6 @@ inline constexpr Index kNone = std::numeric_limits<Index>::max();
 // ---- what the monitor sees ----------------------------------------------------------------------
 
 enum class InputType : std::uint8_t { scalar, boolean, f32, f16, i8 };
-
-/// Closed interval of float32 values, rounded outward from the decimal text.
-struct Range {
-    float low = -std::numeric_limits<float>::infinity();
-    float high = std::numeric_limits<float>::infinity();
-
-    bool contains(float x) const { return low <= x && x <= high; }
-};
 
 /// What makes an embedding of an image: a model, and what is done to the image before.
 struct Encoder {

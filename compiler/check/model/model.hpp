@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "check/model/inputs.hpp"
+#include "check/numbers/bounds.hpp"
 #include "source/source.hpp"
 
 namespace etlc::check {
@@ -207,9 +208,6 @@ struct Predicate {
 };
 
 // ---- what must hold -----------------------------------------------------------------------------
-
-inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
-inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
 
 struct Formula {
     /// The operators of the language after desugaring words; `next`, `previous`,

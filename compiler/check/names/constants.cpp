@@ -6,10 +6,10 @@
 
 #include <algorithm>
 
+#include "check/context/steps.hpp"
 #include "check/numbers/duration.hpp"
-#include "check/steps.hpp"
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::check {
 

@@ -1,8 +1,8 @@
 // First step: which names there are, and whether they can be borne.
 #include <fmt/format.h>
 
+#include "check/context/steps.hpp"
 #include "check/names/reserved.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

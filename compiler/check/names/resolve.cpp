@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cctype>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
 
 namespace etlc::check {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <utility>
 
-#include "check/model/model.hpp"
+#include "check/numbers/bounds.hpp"
 
 namespace etlc::check {
 

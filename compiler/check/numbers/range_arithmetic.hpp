@@ -7,7 +7,7 @@
 
 #include <vector>
 
-#include "check/model/model.hpp"
+#include "check/numbers/range.hpp"
 
 namespace etlc::check {
 

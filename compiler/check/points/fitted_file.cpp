@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
+#include "check/context/steps.hpp"
 #include "check/guarantees/provenance.hpp"
-#include "check/steps.hpp"
 #include "data/files/file.hpp"
 
 namespace etlc::check {

@@ -3,7 +3,7 @@
 // entry is taken only where it was fitted for what the spec says now.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "fitted/fitted.hpp"
 
 namespace etlc::check {

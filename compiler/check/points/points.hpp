@@ -6,7 +6,7 @@
 #pragma once
 
 #include "ast/ast.hpp"
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

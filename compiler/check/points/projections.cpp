@@ -1,11 +1,11 @@
 // The projections: matrices that are loaded, spelled out or fitted.
 #include <fmt/format.h>
 
+#include "check/context/steps.hpp"
+#include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
 #include "check/points/fitted_file.hpp"
 #include "check/points/project.hpp"
-#include "check/predicates/matrices.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

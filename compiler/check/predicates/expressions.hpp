@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

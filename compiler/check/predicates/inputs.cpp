@@ -3,9 +3,10 @@
 
 #include <cmath>
 
+#include "check/context/steps.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/rounding.hpp"
-#include "check/steps.hpp"
+#include "check/time/time.hpp"
 
 namespace etlc::check {
 

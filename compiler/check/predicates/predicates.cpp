@@ -5,11 +5,11 @@
 #include <cmath>
 #include <limits>
 
+#include "check/context/steps.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/range_arithmetic.hpp"
 #include "check/predicates/expressions.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

@@ -4,7 +4,7 @@
 // comparisons in formulas there is one predicate.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

@@ -3,12 +3,12 @@
 
 #include <limits>
 
+#include "check/context/steps.hpp"
 #include "check/encoders/encoded.hpp"
+#include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
 #include "check/points/fitted_file.hpp"
 #include "check/points/points.hpp"
-#include "check/predicates/matrices.hpp"
-#include "check/steps.hpp"
 #include "data/arrays/array.hpp"
 
 namespace etlc::check {

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 
+#include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "check/points/fitted.hpp"
 #include "check/points/fitted_file.hpp"
-#include "check/predicates/matrices.hpp"
 
 namespace etlc::check {
 

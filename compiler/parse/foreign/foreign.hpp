@@ -7,7 +7,7 @@
 #include <string>
 #include <string_view>
 
-#include "parse/syntax_error.hpp"
+#include "parse/stream/stuck.hpp"
 
 namespace etlc::parse {
 

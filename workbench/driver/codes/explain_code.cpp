@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 

@@ -9,7 +9,7 @@
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
 #include "library/version.hpp"

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "data/files/file.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/evaluate/crossvalidate.hpp"
 #include "driver/learn/fit.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
 #include "episodes/replay.hpp"

@@ -8,7 +8,7 @@
 #include <optional>
 #include <string>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile/compile.hpp"
 

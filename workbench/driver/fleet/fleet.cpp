@@ -13,7 +13,7 @@
 #include "data/files/descriptor.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/traces/episodes.hpp"
+#include "data/recordings/episodes.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"
 #include "library/version.hpp"

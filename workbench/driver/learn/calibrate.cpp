@@ -3,7 +3,7 @@
 #include "calibrate/shift.hpp"
 #include "check/check.hpp"
 #include "data/files/file.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/learn/fit.hpp"
 #include "driver/process/output_file.hpp"

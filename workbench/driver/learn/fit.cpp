@@ -1,7 +1,7 @@
 #include "driver/learn/fit.hpp"
 
-#include "data/traces/episodes.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/episodes.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/progress.hpp"

@@ -11,8 +11,8 @@
 #include <limits>
 
 #include "check/names/reserved.hpp"
-#include "data/quote.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
+#include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "driver/options/call.hpp"
 #include "driver/options/commands.hpp"

@@ -7,7 +7,7 @@
 #include <utility>
 #include <vector>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/options/forms.hpp"
 #include "driver/options/option.hpp"
 

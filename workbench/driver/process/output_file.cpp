@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "data/files/file.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::driver {
 

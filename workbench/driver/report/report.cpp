@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "data/traces/episodes.hpp"
+#include "data/recordings/episodes.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/evaluate/evaluate.hpp"
 #include "driver/process/output_file.hpp"

@@ -6,7 +6,7 @@
 #include <set>
 
 #include "data/files/file.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "driver/compile/names.hpp"
 #include "driver/process/output_file.hpp"
 #include "driver/process/process.hpp"

@@ -5,7 +5,7 @@
 
 #include <string>
 
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "diag/diag.hpp"
 #include "driver/compile/compile.hpp"
 

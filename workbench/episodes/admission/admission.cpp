@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "data/files/file.hpp"
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "episodes/admission/leak_evidence.hpp"
 #include "episodes/admission/overlaps.hpp"
 

@@ -6,8 +6,8 @@
 #include "data/files/atomic_file.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
+#include "data/recordings/open.hpp"
 #include "data/spill/pack.hpp"
-#include "data/traces/trace.hpp"
 
 namespace etlc::episodes {
 

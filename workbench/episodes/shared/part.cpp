@@ -8,8 +8,8 @@
 
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
-#include "data/quote.hpp"
 #include "data/spill/pack.hpp"
+#include "data/text/quote.hpp"
 
 namespace etlc::episodes {
 

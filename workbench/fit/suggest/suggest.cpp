@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <limits>
 
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 #include "diag/diag.hpp"
 #include "episodes/admission/admission.hpp"
 #include "episodes/unmarked.hpp"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <set>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "parse/words.hpp"
 
 namespace etlc::lsp {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "ast/ast.hpp"
-#include "check/names/scope.hpp"
+#include "check/context/scope.hpp"
 #include "source/source.hpp"
 
 namespace etlc::lsp {

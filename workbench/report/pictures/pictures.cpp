@@ -11,8 +11,8 @@
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"
 #include "data/frames/frames.hpp"
-#include "data/quote.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
+#include "data/text/quote.hpp"
 #include "report/packing/pack.hpp"
 #include "report/pictures/png.hpp"
 

@@ -1,4 +1,4 @@
-#include "data/frames/arrays.hpp"
+#include "data/recordings/image_arrays.hpp"
 
 #include <fmt/format.h>
 
@@ -11,8 +11,8 @@
 #include "data/arrays/npy.hpp"
 #include "data/arrays/npy_header.hpp"
 #include "data/frames/protocol.hpp"
-#include "data/quote.hpp"
-#include "data/traces/hdf5.hpp"
+#include "data/hdf5/hdf5.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/trace.hpp"
 #include "data/traces/trace_formats.hpp"
 

@@ -1,11 +1,9 @@
 // Text to tokens.
-// Takes: a file. Gives: its tokens without blanks and comments, ended by EOF; and what is wrong
-// with a token that the lexer found to be a mistake. Keeps true: a token's indices are byte offsets
-// of the file; any bytes can be lexed.
+// Takes: a file. Gives: its tokens without blanks and comments, ended by EOF. Keeps true: a token's
+// indices are byte offsets of the file; any bytes can be lexed.
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,11 +27,8 @@ std::string text_of(const Token& token, const source::File& file);
 /// 'word', cut where it is long; "the end of the file" for EOF.
 std::string quoted(const Token& token, const source::File& file);
 
+/// What the lexer found to be none of the language's words: parse/foreign/mistakes.hpp explains it.
 bool is_mistake(const Token& token);
-/// What to say of such a token, and of what it stands behind (null: of nothing); nothing where its
-/// bytes are not UTF-8, which has been said of the file as a whole.
-std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token* previous,
-                                                const source::File& file);
 
 /// Reserved words cannot be names; contextual words can.
 bool is_reserved_word(const Token& token, const source::File& file);

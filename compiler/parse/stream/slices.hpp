@@ -6,7 +6,7 @@
 
 #include <vector>
 
-#include "parse/tokens.hpp"
+#include "parse/stream/tokens.hpp"
 
 namespace etlc::parse {
 

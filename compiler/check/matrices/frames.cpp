@@ -6,11 +6,11 @@
 #include <filesystem>
 #include <map>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "check/encoders/marks.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::check {
 

@@ -7,17 +7,9 @@
 #include <optional>
 
 #include "ast/ast.hpp"
-#include "source/source.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
-
-struct Context;
-
-/// The length of one step as the spec gives it.
-struct StepLength {
-    const ast::Rate* rate = nullptr;  ///< none given, or none that can be used
-    bool broken = false;              ///< one was given and had an error
-};
 
 struct Steps {
     std::uint32_t low = 0;

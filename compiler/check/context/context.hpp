@@ -15,11 +15,10 @@
 #include <vector>
 
 #include "ast/ast.hpp"
-#include "check/check.hpp"
-#include "check/formulas/time.hpp"
+#include "check/context/matrix.hpp"
+#include "check/context/options.hpp"
+#include "check/context/scope.hpp"
 #include "check/model/model.hpp"
-#include "check/names/scope.hpp"
-#include "check/predicates/matrices.hpp"
 #include "diag/diag.hpp"
 #include "embedded/embedded.hpp"
 #include "fitted/fitted.hpp"
@@ -29,6 +28,12 @@ namespace etlc::check {
 /// Formulas that nest deeper, their lets written out, are refused, so that later stages may
 /// recurse.
 inline constexpr std::uint32_t kMaxDepth = 1000;
+
+/// The length of one step as the spec gives it.
+struct StepLength {
+    const ast::Rate* rate = nullptr;  ///< none given, or none that can be used
+    bool broken = false;              ///< one was given and had an error
+};
 
 struct Context {
     const ast::Spec& spec;

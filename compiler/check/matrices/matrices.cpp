@@ -1,11 +1,11 @@
-#include "check/predicates/matrices.hpp"
+#include "check/matrices/matrices.hpp"
 
 #include <fmt/format.h>
 
 #include <cmath>
 #include <filesystem>
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 #include "data/arrays/array.hpp"
 #include "data/files/file.hpp"
 #include "data/files/paths.hpp"

@@ -1,9 +1,9 @@
-#include "check/formulas/time.hpp"
+#include "check/time/time.hpp"
 
 #include <fmt/format.h>
 
+#include "check/context/steps.hpp"
 #include "check/numbers/duration.hpp"
-#include "check/steps.hpp"
 
 namespace etlc::check {
 

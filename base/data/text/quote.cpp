@@ -1,4 +1,4 @@
-#include "data/quote.hpp"
+#include "data/text/quote.hpp"
 
 #include <fmt/format.h>
 

@@ -3,7 +3,7 @@
 // another having succeeded, only on its having run.
 #pragma once
 
-#include "check/context.hpp"
+#include "check/context/context.hpp"
 
 namespace etlc::check {
 

@@ -1,4 +1,4 @@
-#include "parse/byte_stream.hpp"
+#include "parse/stream/byte_stream.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "parse/slices.hpp"
+#include "parse/stream/slices.hpp"
 
 #include <algorithm>
 

@@ -1,4 +1,4 @@
-#include "data/traces/episodes.hpp"
+#include "data/recordings/episodes.hpp"
 
 #include <fmt/format.h>
 
@@ -12,7 +12,7 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/files/paths.hpp"
-#include "data/traces/hdf5.hpp"
+#include "data/hdf5/hdf5.hpp"
 
 namespace etlc::data {
 namespace {

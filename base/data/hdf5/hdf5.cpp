@@ -1,4 +1,4 @@
-#include "data/traces/hdf5.hpp"
+#include "data/hdf5/hdf5.hpp"
 
 #include <fmt/format.h>
 
@@ -9,10 +9,10 @@
 
 #include "data/arrays/npy_header.hpp"
 #include "data/frames/protocol.hpp"
-#include "data/quote.hpp"
+#include "data/hdf5/protocol.hpp"
 #include "data/records/records.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/array_trace.hpp"
-#include "data/traces/hdf5_protocol.hpp"
 
 namespace etlc::data {
 namespace {

@@ -1,4 +1,4 @@
-#include "check/names/scope.hpp"
+#include "check/context/scope.hpp"
 
 #include "diag/diag.hpp"
 

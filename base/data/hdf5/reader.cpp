@@ -1,5 +1,5 @@
 // etlc-read-hdf5: the only program of ours that links libhdf5, which hostile files can crash.
-// Takes: arguments as hdf5_protocol.hpp says. Gives: records on standard output. Keeps true: its
+// Takes: arguments as protocol.hpp says. Gives: records on standard output. Keeps true: its
 // own memory, files and time are limited before a file is opened; no plugin is loaded; no link
 // leads to another file.
 #include <fnmatch.h>
@@ -14,8 +14,8 @@
 #include <utility>
 #include <vector>
 
+#include "data/hdf5/protocol.hpp"
 #include "data/records/sender.hpp"
-#include "data/traces/hdf5_protocol.hpp"
 
 namespace {
 

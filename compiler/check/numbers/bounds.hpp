@@ -1,0 +1,12 @@
+// Bounds of intervals, in steps.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+
+namespace etlc::check {
+
+inline constexpr std::uint32_t kUnbounded = std::numeric_limits<std::uint32_t>::max();
+inline constexpr std::uint32_t kMaxBound = (1U << 31U) - 2U;  ///< of interval bounds, in steps
+
+}  // namespace etlc::check
