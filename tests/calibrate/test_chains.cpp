@@ -259,6 +259,31 @@ private:
     std::map<std::string, std::vector<double>> chances_;  ///< by what was promised
 };
 
+/// The figures of the campaign can fail: here they do, of a monitor that keeps its shift although
+/// it now takes a missing sample for what it wants.
+TEST(Chains, ABrokenPromiseIsNoticed) {
+    World world;
+    world.missing = 0.3;
+    world.noise = 0.3;
+    Random random(41);
+    const Files demos = files_of(world, 200, random);
+    const std::string spec =
+        "spec t; input y : f32; input z : f32[2]; target g = [[1, 0]];\n"
+        "predicate a = l2(z, g) <= 0.7 missing false; truth a = y > 0.5;\n"
+        "monitor m = F[0, 2] a calibrated(conformal, alpha = 0.1, against = missed_alarm);";
+    const Calibrated made = calibrated(spec, demos.paths());
+    ASSERT_FALSE(made.thresholds.empty());
+    std::vector<std::string> fresh;
+    for (int i = 0; i < 300; ++i) fresh.push_back(episode_of(world, false, random));
+    check::Model model = *checked(spec, made.thresholds).model;
+    const check::Threshold shift = model.monitors[0].calibration->threshold;
+    const Misses before = misses_of_monitor(model, fresh, true);
+    EXPECT_GT(chance_of(before.missed, before.all, shift.n, shift.k), 1e-3);
+    model.predicates[predicate_of(model)].missing = true;
+    const Misses after = misses_of_monitor(model, fresh, true);
+    EXPECT_LT(chance_of(after.missed, after.all, shift.n, shift.k), kNoChance) << after.missed;
+}
+
 TEST(Chains, HoldWhatTheyPromiseOrAreRefused) {
     const char* asked = std::getenv("ETLC_CHAINS");
     const int chains = asked != nullptr ? std::atoi(asked) : 250;
