@@ -118,8 +118,8 @@ TEST(Overlap, OfShortEpisodesTwoFramesAreEnough) {
     const Numbers missing(20, NAN);
     EXPECT_FALSE(found(episode(joined(missing, piece(a, 0, 3))),
                        episode(joined(missing, piece(others, 0, 3)))));
-    EXPECT_TRUE(found(episode(joined(missing, piece(a, 0, 3))),
-                      episode(joined(piece(a, 0, 3), missing))));
+    EXPECT_TRUE(
+        found(episode(joined(missing, piece(a, 0, 3))), episode(joined(piece(a, 0, 3), missing))));
     // Where another input has more to say, a few frames of this one say nothing.
     const auto both = [](const Numbers& z, const Numbers& w) {
         return EpisodeContent{{"z", content_of(z, true)}, {"w", content_of(w, true)}};

@@ -237,7 +237,8 @@ std::vector<Broken> content() {
     const std::string at_a = "'predicates.at_a.";
     return {
         {"array", "[]", Code::invalid_thresholds, "the file is an array, expected an object"},
-        {"nothing in it", "{}", Code::invalid_thresholds, "key 'format' is missing, expected a number from 1 to 2"},
+        {"nothing in it", "{}", Code::invalid_thresholds,
+         "key 'format' is missing, expected a number from 1 to 2"},
         {"format 3", with("\"format\": 2", "\"format\": 3"), Code::unknown_thresholds_format,
          "'format' is '3', expected a number from 1 to 2, those this version reads"},
         {"format 3 with other keys", R"({"format": 3, "entries": []})",
