@@ -152,8 +152,8 @@ def images_are_named(stored):
     shutil.copytree("set2", "bad")
     for image, path, fault in (
             (jpeg[:-100], "a", "is cut: its end is missing"),
-            (png[:len(png) // 2], "a", "is no image, or a damaged one"),
-            (b"no image", "a", "is no image, or a damaged one"),
+            (png[:len(png) // 2], "a", "is cut: its end is missing"),
+            (b"no image", "a", "is no image, expected PNG or JPEG"),
             (deep, "a", "has 16 bits a channel, expected 8: save it with 8"),
             (clear, "a", "has transparent pixels, expected none: save it without"),
             (None, "images/a.png", "has no bytes and the path 'images/a.png', which is not read"),

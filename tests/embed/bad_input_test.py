@@ -154,8 +154,8 @@ def images_are_refused():
                     "row or column and 67108864 in all")
     for name, fault in (("deep_grey.png", "16 bits a channel"), ("deep.png", "16 bits a channel"),
                         ("half.png", "transparent"), ("hole.png", "transparent"),
-                        ("cut.png", "damaged"), ("cut.jpg", "cut"), ("changed.png", "damaged"),
-                        ("short.jpg", "damaged"), ("print.jpg", "CMYK"),
+                        ("cut.png", "is cut"), ("cut.jpg", "is cut"), ("changed.png", "is damaged"),
+                        ("short.jpg", "is damaged"), ("print.jpg", "CMYK"),
                         ("other.png", "is no image, expected PNG or JPEG"),
                         ("empty.png", "empty"), ("text.png", "no image"),
                         ("folder.png", "cannot be read"), ("none.png", "cannot be read"),

@@ -17,7 +17,7 @@
 #include "data/recordings/open.hpp"
 #include "data/spill/spool.hpp"
 #include "episodes/frames.hpp"
-#include "episodes/leaks.hpp"
+#include "episodes/leaks/leaks.hpp"
 #include "episodes/seen.hpp"
 #include "episodes/truth.hpp"
 #include "plan/evaluate/inputs.hpp"

@@ -13,14 +13,8 @@ namespace {
 /// Fewer give no interval that can be relied on.
 constexpr std::uint64_t kFewEpisodes = 5;
 
-template <class Named>
-const Named* named(const std::vector<Named>& all, const std::string& name) {
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const Named& one) { return one.name == name; });
-    return found == all.end() ? nullptr : &*found;
-}
-
-/// Where both truths occur, and nearly no resample has a gain.
+/// Where both truths occur, and nearly no resample has a gain. Predicates alone: a monitor that may
+/// not miss an alarm gives many, which is what it is for.
 void warn_of_no_gain(const std::string& name, const Score& score, source::Span span,
                      diag::Sink& sink) {
     const bool both = score.counts.positives() > 0 && score.counts.negatives() > 0;
@@ -28,7 +22,7 @@ void warn_of_no_gain(const std::string& name, const Score& score, source::Span s
     episodes::warn_of_data(
         diag::Code::no_better_than_true,
         fmt::format("'{}' has an F1 of {:.3f}, no better than the {:.3f} of saying true at every "
-                    "step",
+                    "frame",
                     name, *score.f1.value, *score.f1.value - *score.gain.value),
         span, sink)
         .note("look at the threshold, which may be too wide, at the targets and at the labels");
@@ -39,8 +33,10 @@ void warn_of_no_gain(const std::string& name, const Score& score, source::Span s
 void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink) {
     const bool enough = evaluation.episodes >= kFewEpisodes;
     for (const PredicateScore& score : evaluation.predicates) {
-        const check::Predicate* predicate = named(model.predicates, score.name);
-        if (predicate == nullptr) continue;
+        const auto predicate =
+            std::find_if(model.predicates.begin(), model.predicates.end(),
+                         [&](const check::Predicate& one) { return one.name == score.name; });
+        if (predicate == model.predicates.end()) continue;
         std::optional<episodes::Auroc> auroc;
         if (enough && score.auroc.value && score.auroc.interval)
             auroc = {*score.auroc.value, episodes::Auroc::Interval{score.auroc.interval->low,
@@ -50,11 +46,6 @@ void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, dia
                                       sink) &&
             enough)
             warn_of_no_gain(score.name, score.frames, predicate->threshold.span, sink);
-    }
-    for (const MonitorScore& score : evaluation.monitors) {
-        const check::Monitor* monitor = named(model.monitors, score.name);
-        if (monitor != nullptr && score.lacking.empty() && enough)
-            warn_of_no_gain(score.name, score.steps, monitor->span, sink);
     }
 }
 

@@ -157,8 +157,8 @@ std::optional<Judgement> judge(const std::vector<Trial>& trials, const Request& 
 
 Evaluation summarise(const Judgement& judgement);
 
-/// Warns of labels that are all alike or the wrong way round, and of what is no better than saying
-/// true every time. `model`: of the spec.
+/// Warns of labels that are all alike or the wrong way round, and of predicates that are no better
+/// than saying true every time. `model`: of the spec.
 void warn_of_doubts(const check::Model& model, const Evaluation& evaluation, diag::Sink& sink);
 
 /// Specs on the same episodes.

@@ -1,5 +1,5 @@
-# A threshold that every frame is within, a monitor that is satisfied from the first step on, and
-# beside them a predicate that tells. Few episodes leave it open.
+# A threshold that every frame is within, and beside it one that tells. Few episodes leave it open,
+# and of a monitor that is careful nothing is said.
 cat > dock.etl <<'END2'
 spec dock;
 input x : f32;

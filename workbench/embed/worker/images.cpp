@@ -48,7 +48,11 @@ Bytes bytes_of(const std::string& path) {
 }
 
 [[noreturn]] void refuse_damaged(const char* why) {
-    refuse(kRefused, std::string("is no image, or a damaged one: ") + why);
+    refuse(kRefused, std::string("is damaged: ") + why);
+}
+
+[[noreturn]] void refuse_cut() {
+    refuse(kRefused, "is cut: its end is missing");
 }
 
 /// Before anything is allocated for its pixels.
@@ -125,7 +129,7 @@ private:
 
     static void read(png_structp png, png_bytep to, std::size_t size) {
         View& rest = static_cast<Png*>(png_get_io_ptr(png))->rest_;
-        if (size > rest.size()) refuse_damaged("its end is missing");
+        if (size > rest.size()) refuse_cut();
         std::copy_n(rest.begin(), size, to);
         rest = rest.subspan(size);
     }
@@ -205,7 +209,7 @@ private:
         if (level >= 0 || code == JWRN_EXTRANEOUS_DATA || code == JWRN_JFIF_MAJOR ||
             code == JWRN_NOT_SEQUENTIAL)
             return;
-        if (code == JWRN_JPEG_EOF) refuse(kRefused, "is cut: its end is missing");
+        if (code == JWRN_JPEG_EOF) refuse_cut();
         fail(state);
     }
 

@@ -1,4 +1,4 @@
-#include "episodes/admission/leak_evidence.hpp"
+#include "episodes/leaks/evidence.hpp"
 
 #include <cmath>
 #include <cstdint>

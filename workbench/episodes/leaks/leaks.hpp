@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "check/model/model.hpp"
-#include "episodes/near_rows.hpp"
+#include "episodes/leaks/near_rows.hpp"
 #include "plan/evaluate/inputs.hpp"
 
 namespace etlc::episodes {

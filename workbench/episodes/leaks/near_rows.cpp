@@ -1,4 +1,4 @@
-#include "episodes/near_rows.hpp"
+#include "episodes/leaks/near_rows.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "episodes/leaks.hpp"
+#include "episodes/leaks/leaks.hpp"
 
 #include <algorithm>
 #include <cmath>
