@@ -8,7 +8,7 @@
 
 #include "data/files/file.hpp"
 #include "episodes/admission/admission.hpp"
-#include "episodes/leaks/evidence.hpp"
+#include "episodes/admission/leak_evidence.hpp"
 #include "episodes/unmarked.hpp"
 
 namespace etlc::evaluate {

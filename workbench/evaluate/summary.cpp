@@ -4,7 +4,7 @@
 
 #include "episodes/admission/overlaps.hpp"
 #include "episodes/auroc.hpp"
-#include "episodes/leaks/evidence.hpp"
+#include "episodes/admission/leak_evidence.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {

@@ -12,6 +12,7 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/files/paths.hpp"
+#include "data/recordings/open.hpp"
 #include "data/hdf5/hdf5.hpp"
 
 namespace etlc::data {

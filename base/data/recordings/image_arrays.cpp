@@ -13,7 +13,7 @@
 #include "data/frames/protocol.hpp"
 #include "data/hdf5/hdf5.hpp"
 #include "data/text/quote.hpp"
-#include "data/traces/trace.hpp"
+#include "data/recordings/open.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {

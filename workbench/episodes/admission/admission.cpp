@@ -7,7 +7,7 @@
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
 #include "episodes/admission/overlaps.hpp"
-#include "episodes/leaks/evidence.hpp"
+#include "episodes/admission/leak_evidence.hpp"
 
 namespace etlc::episodes {
 

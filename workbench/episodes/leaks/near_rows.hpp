@@ -4,7 +4,7 @@
 // the frame is within rounding of, and how many frames as near as this one's neighbourhood would be
 // so by chance. Keeps true: the bounds are above what rounding does, so what was taken from a frame
 // is found; whether it was taken, one frame cannot tell where the point has few dimensions, and
-// LeakEvidence (episodes/leaks/evidence.hpp) decides from all.
+// LeakEvidence (episodes/admission/leak_evidence.hpp) decides from all.
 #pragma once
 
 #include <cstdint>

@@ -1,4 +1,4 @@
-#include "episodes/leaks/evidence.hpp"
+#include "episodes/admission/leak_evidence.hpp"
 
 #include <cmath>
 #include <cstdint>
