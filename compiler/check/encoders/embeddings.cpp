@@ -5,6 +5,7 @@
 
 #include "check/context/steps.hpp"
 #include "check/encoders/settings.hpp"
+#include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 
 namespace etlc::check {

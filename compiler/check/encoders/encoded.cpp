@@ -6,6 +6,8 @@
 #include <filesystem>
 
 #include "check/context/steps.hpp"
+#include "check/encoders/frames.hpp"
+#include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/frames/images.hpp"

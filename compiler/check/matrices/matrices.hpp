@@ -21,10 +21,4 @@ std::optional<Matrix> read_matrix(Context& context, const ast::Load& load);
 std::optional<Matrix> read_matrix(Context& context, const ast::MatrixLiteral& literal);
 std::optional<Matrix> read_matrix(Context& context, const ast::VectorLiteral& literal);
 
-/// Frames of a recording: samples of the embedding input whose name is the key.
-std::optional<Matrix> read_frames(Context& context, const ast::Frames& frames);
-
-/// The frames listed, or from the first to the last by the stride, in the order of the spec.
-std::optional<std::vector<std::uint64_t>> frames_of(Context& context, const ast::Frames& frames);
-
 }  // namespace etlc::check

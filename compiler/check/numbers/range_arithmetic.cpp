@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "check/numbers/rounding.hpp"
-#include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
 
@@ -123,18 +122,6 @@ Range max(const std::vector<Range>& ranges) {
     for (const Range& range : ranges)
         result = {std::max(result.low, range.low), std::max(result.high, range.high)};
     return result;
-}
-
-Range range_of(Metric metric) {
-    switch (metric) {
-#define DISTANCE(id, Type, prepared, zero_is_unknown) \
-    case Metric::id:                                  \
-        return {0.0F, etlmon::Type::kHighest};
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-    }
-    return {0.0F, kInfinity};
 }
 
 }  // namespace etlc::check

@@ -25,7 +25,4 @@ Range sqrt(const Range& a);
 Range min(const std::vector<Range>& ranges);
 Range max(const std::vector<Range>& ranges);
 
-/// What an aggregated distance can be: cosine [0, 2], angular [0, pi], the others [0, inf].
-Range range_of(Metric metric);
-
 }  // namespace etlc::check

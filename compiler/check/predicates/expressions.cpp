@@ -2,10 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <limits>
 #include <set>
 
 #include "check/numbers/decimal.hpp"
 #include "check/numbers/range_arithmetic.hpp"
+#include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
 
@@ -87,6 +89,23 @@ bool is_zero(const Range& range) {
 std::optional<Expr> check_expression(Context& context, const ast::Expr& expression) {
     return build(context, expression);
 }
+
+namespace {
+
+/// What an aggregated distance can be: cosine [0, 2], angular [0, pi], the others [0, inf].
+Range range_of(Metric metric) {
+    switch (metric) {
+#define DISTANCE(id, Type, prepared, zero_is_unknown) \
+    case Metric::id:                                  \
+        return {0.0F, etlmon::Type::kHighest};
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+    }
+    return {0.0F, std::numeric_limits<float>::infinity()};
+}
+
+}  // namespace
 
 Range range_of(const Model& model, const Expr& expression, const Expr*& undefined) {
     std::vector<Range> arguments;

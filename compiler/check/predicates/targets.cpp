@@ -5,6 +5,7 @@
 
 #include "check/context/steps.hpp"
 #include "check/encoders/encoded.hpp"
+#include "check/encoders/frames.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
 #include "check/points/fitted_file.hpp"

@@ -1,4 +1,5 @@
-// frames("demos/03.npz", "z", [120, 180]): rows that are samples of a recording.
+#include "check/encoders/frames.hpp"
+
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -6,8 +7,8 @@
 #include <filesystem>
 #include <map>
 
-#include "check/context/context.hpp"
 #include "check/encoders/marks.hpp"
+#include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"
 #include "data/recordings/open.hpp"
