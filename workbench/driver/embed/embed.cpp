@@ -144,13 +144,13 @@ bool embed(const source::File& file, const EmbedRequest& request, diag::Sink& si
     auto model = check::check_encoded(std::move(spec), file, options, sink);
     if (!model || !has_work(*model, !request.data.empty(), sink) || sink.refused()) return false;
 
+    if (!check_inputs(*model, request, sink)) return false;
+    auto recordings = embed::find_recordings(search_of(*model, request), sink);
+    if (sink.refused() || !has_inputs(*model, recordings, sink)) return false;
     embed::Request asked = request.embed;
     asked.version = library::kVersion;
     auto embeddings = embed::describe_encoders(*model, asked, sink);
     if (!embeddings) return false;
-    if (!check_inputs(*model, request, sink)) return false;
-    auto recordings = embed::find_recordings(search_of(*model, request), sink);
-    if (sink.refused() || !has_inputs(*model, recordings, sink)) return false;
     const ShardRequest& shard = request.shard;
     if (shard.shards > 0)
         std::erase_if(recordings, [&](const embed::Recording& recording) {
