@@ -6,6 +6,7 @@
 #include <cmath>
 #include <locale>
 
+#include "data/recordings/open.hpp"
 #include "data/text/number.hpp"
 #include "data/traces/csv.hpp"
 #include "data/traces/trace_formats.hpp"

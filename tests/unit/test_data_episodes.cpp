@@ -8,6 +8,7 @@
 #include <set>
 
 #include "data/recordings/episodes.hpp"
+#include "data/recordings/open.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {

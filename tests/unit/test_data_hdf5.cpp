@@ -11,6 +11,7 @@
 
 #include "data/hdf5/hdf5.hpp"
 #include "data/recordings/episodes.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

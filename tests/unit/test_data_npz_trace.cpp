@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "data/recordings/open.hpp"
 #include "data/traces/trace_formats.hpp"
 #include "npy_bytes.hpp"
 

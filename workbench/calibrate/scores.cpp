@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "calibrate/bounds.hpp"
+#include "plan/plan.hpp"
 
 namespace etlc::calibrate {
 

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "plan/plan.hpp"
+
 namespace etlc::evaluate {
 
 namespace {
