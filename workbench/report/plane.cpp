@@ -6,6 +6,7 @@
 
 #include "episodes/replay.hpp"
 #include "fit/algebra/eigenvectors.hpp"
+#include "plan/plan.hpp"
 
 namespace etlc::report {
 
