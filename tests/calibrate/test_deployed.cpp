@@ -14,6 +14,7 @@
 #include "generated_program.hpp"
 #include "loading.hpp"
 #include "plan/evaluate/evaluator.hpp"
+#include "plan/plan.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {

@@ -12,6 +12,7 @@
 #include "ir/lower.hpp"
 #include "parse/parse.hpp"
 #include "plan/evaluate/evaluator.hpp"
+#include "plan/plan.hpp"
 #include "random.hpp"
 
 namespace etlc::tests {
