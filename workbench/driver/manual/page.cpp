@@ -2,21 +2,29 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+#include <string_view>
+
 #include "driver/manual/manual.hpp"
 
 namespace etlc::driver {
 
 namespace {
 
-/// For a cell of a table: on one line, and no '|' ends it.
+/// For a cell of a table, in which no '|' ends it: what --help indents begins a line.
 std::string cell(const std::string& text) {
     std::string result;
-    bool after_blank = false;
-    for (const char c : text) {
-        const bool blank = c == ' ' || c == '\n';
-        if (c == '|') result += '\\';
-        if (!(blank && after_blank)) result += blank ? ' ' : c;
-        after_blank = blank;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find_first_not_of(" \n", at), text.size());
+        const std::string_view blank = std::string_view(text).substr(at, end - at);
+        if (blank.size() > 2 && blank.starts_with('\n'))
+            result += "<br>";
+        else if (!blank.empty())
+            result += ' ';
+        if (end == text.size()) break;
+        if (text[end] == '|') result += '\\';
+        result += text[end];
+        at = end + 1;
     }
     return result;
 }

@@ -15,7 +15,7 @@ Paths paths_of(const OptionHelp& option) {
     const std::string& value = option.value;
     if (value == "SPEC.etl") return Paths::specs;
     if (value == "FOLDER") return Paths::folders;
-    for (const char* const path : {"FILE", "PART..."})
+    for (const char* const path : {"FILE", "PART...", "PATH"})
         if (value.rfind(path, 0) == 0) return Paths::files;
     return Paths::none;
 }
