@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "check/numbers/decimal.hpp"
 #include "episodes/auroc.hpp"
 #include "episodes/label_doubts.hpp"
 
@@ -26,9 +27,23 @@ double false_part(const check::Predicate& predicate, const Evidence& evidence,
 
 }  // namespace
 
+void warn_of_large_alpha(const std::string& name, const check::Threshold& threshold,
+                         diag::Sink& sink) {
+    using check::Decimal;
+    if (threshold.alpha.empty() || !(Decimal::parse("0.5") < Decimal::parse(threshold.alpha)))
+        return;
+    episodes::warn_of_data(diag::Code::large_alpha,
+                           fmt::format("alpha = {} of '{}' is the share that may be missed, more "
+                                       "than half",
+                                       threshold.alpha, name),
+                           threshold.span, sink)
+        .note("it is an error rate, not a coverage: alpha = 0.1 misses at most a tenth");
+}
+
 void warn_of_doubts(const check::Predicate& predicate, const Evidence& evidence,
                     const Fitted& fitted, diag::Sink& sink) {
     constexpr double kNearlyEvery = 0.95;
+    warn_of_large_alpha(predicate.name, predicate.threshold, sink);
     const auto warn = [&](std::string message) -> diag::Diagnostic& {
         return episodes::warn_of_data(diag::Code::doubtful_threshold, std::move(message),
                                       predicate.threshold.span, sink);

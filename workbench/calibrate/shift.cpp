@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <set>
 
+#include "calibrate/doubts.hpp"
 #include "calibrate/folds.hpp"
 #include "calibrate/shift_scores.hpp"
 #include "check/guarantees/calibrated.hpp"
@@ -213,6 +214,7 @@ std::optional<Calibration> calibrate_monitors(const check::Model& model, thresho
         auto& fitted = std::get<Fitted>(fit);
         fitted.scores = totals.scores;
         mirror(fitted, against_alarms(monitor));
+        warn_of_large_alpha(monitor.name, monitor.calibration->threshold, sink);
         result.file.monitors[monitor.name] = entry_of(model, monitor, fitted, recorded, labelling);
         result.report += monitor_report(model, monitor, totals, fitted, scored.size());
     }

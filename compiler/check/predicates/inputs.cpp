@@ -146,6 +146,7 @@ private:
                 report(Code::hold_out_of_range, hold.span,
                        fmt::format("hold {} is not a whole number of steps from 0 to {}",
                                    shown(hold.number), kMaxHold));
+            if (hold.unit == ast::kStepsUnit) c_.steps_on_purpose = true;
             return static_cast<std::uint32_t>(steps.value_or(0));
         }
         const auto steps = bound_steps(c_, hold);
