@@ -66,6 +66,7 @@ ShiftedSpec random_shifted_spec(std::uint64_t seed, const SpecShape& shape) {
         entry.predicate = provenance.predicate;
         entry.truth = provenance.truth;
         entry.targets = provenance.targets;
+        entry.reads = provenance.reads;
         entry.against = check::word(monitor.calibration->against);
     }
     result.thresholds = thresholds::write(file);

@@ -120,6 +120,10 @@ TEST(Overlap, OfShortEpisodesTwoFramesAreEnough) {
                        episode(joined(missing, piece(others, 0, 3)))));
     EXPECT_TRUE(
         found(episode(joined(missing, piece(a, 0, 3))), episode(joined(piece(a, 0, 3), missing))));
+    // A world of few images: they come again in every episode.
+    const Numbers world = random_numbers(3, 4);
+    EXPECT_FALSE(found(episode(joined(joined(world, world), world)),
+                       episode(joined(joined(world, piece(world, 0, 1)), joined(world, world)))));
     // Where another input has more to say, a few frames of this one say nothing.
     const auto both = [](const Numbers& z, const Numbers& w) {
         return EpisodeContent{{"z", content_of(z, true)}, {"w", content_of(w, true)}};

@@ -79,6 +79,7 @@ void ContentReader::add(const std::uint32_t* bits, std::size_t n, bool present) 
         run_[steps_ % kRun] = n == 1 ? bits[0] : static_cast<std::uint32_t>(sample >> 32U);
     ++steps_;
     if (tells_alone_) {
+        present_ += present ? 1 : 0;
         if (present) add_unit(sample);
     } else if (steps_ >= kRun && run_tells()) {
         std::array<std::uint32_t, kRun> in_order{};
@@ -109,8 +110,10 @@ InputContent ContentReader::content() const {
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
     result.sketch = units_;
     sift(result.sketch);
-    // A few runs are mostly the same samples over again.
-    if (!tells_alone_ && result.sketch.size() < kLeastUnits) result.sketch.clear();
+    // A few runs are mostly the same samples over again, and a few samples that come often are those
+    // of a world with few images. Of an episode that is short, a few are all that there is.
+    const bool is_short = tells_alone_ && present_ < kLeastUnits;
+    if (!is_short && result.sketch.size() < kLeastUnits) result.sketch.clear();
     return result;
 }
 

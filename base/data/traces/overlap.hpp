@@ -65,6 +65,7 @@ private:
 
     bool tells_alone_;
     std::uint64_t steps_ = 0;
+    std::uint64_t present_ = 0;  ///< samples that are not missing
     std::uint64_t hash_ = 0;
     /// The last samples, by step modulo kRun: a number, or the hash of several.
     std::array<std::uint32_t, kRun> run_{};
