@@ -1,5 +1,5 @@
 // The area under the ROC curve, held to its definition: pairs of frames, counted one by one.
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 #include <gtest/gtest.h>
 

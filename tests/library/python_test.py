@@ -37,7 +37,7 @@ predicate small  = l1(half, origin) + l1(byte, origin) <= 8;
 let docked = at_bay && !stop;
 monitor returns = G (is_low -> F[0 s, 0.2 s] docked);
 restartable monitor visits = F docked;
-sliding monitor calm = G[0, 2] small;
+sliding monitor calm = G[0, 2 steps] small;
 """
 
 #: To a run: there are none of these.

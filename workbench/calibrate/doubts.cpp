@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "check/numbers/decimal.hpp"
-#include "episodes/auroc.hpp"
 #include "episodes/label_doubts.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 namespace etlc::calibrate {
 

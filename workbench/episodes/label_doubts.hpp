@@ -9,7 +9,7 @@
 
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 namespace etlc::episodes {
 

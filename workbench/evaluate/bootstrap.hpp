@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "episodes/weights.hpp"
+#include "episodes/ranking/weights.hpp"
 
 namespace etlc::evaluate {
 

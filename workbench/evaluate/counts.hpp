@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
+#include "episodes/ranking/weights.hpp"
 #include "episodes/truth.hpp"
-#include "episodes/weights.hpp"
 
 namespace etlc::evaluate {
 

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {

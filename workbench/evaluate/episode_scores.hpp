@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "episodes/replay.hpp"
 #include "evaluate/counts.hpp"
 #include "evaluate/duration.hpp"

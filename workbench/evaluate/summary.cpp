@@ -2,9 +2,9 @@
 #include <algorithm>
 #include <functional>
 
-#include "episodes/admission/overlaps.hpp"
-#include "episodes/auroc.hpp"
 #include "episodes/admission/leak_evidence.hpp"
+#include "episodes/admission/overlaps.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "evaluate/evaluate.hpp"
 
 namespace etlc::evaluate {

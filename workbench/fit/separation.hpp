@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "episodes/auroc.hpp"
 #include "episodes/label_doubts.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "fit/collect.hpp"
 #include "fit/fill.hpp"
 

@@ -86,6 +86,14 @@ etlc_status take(const etlc_options& options, Wish& wish) {
     return take_choices(options, wish);
 }
 
+/// Without what only those have to know who write C++ for a generated class.
+diag::Sink told_here(const diag::Sink& sink) {
+    diag::Sink result;
+    for (const diag::Diagnostic& found : sink.sorted())
+        if (found.code != diag::Code::macro_elsewhere) result.report(found);
+    return result;
+}
+
 /// The session, or nothing where the sink says why not.
 std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, source::File& file,
                               diag::Sink& sink) {
@@ -96,6 +104,7 @@ std::unique_ptr<Session> open(const etlc_options& options, const Wish& wish, sou
         return nullptr;
     auto compiled = compile(file, wish.check, wish.plan, sink);
     if (!compiled) return nullptr;
+    sink = told_here(sink);
     return std::make_unique<Session>(file, std::move(*compiled), sink, options.history);
 }
 

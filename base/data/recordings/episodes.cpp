@@ -12,8 +12,8 @@
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
 #include "data/files/paths.hpp"
-#include "data/recordings/open.hpp"
 #include "data/hdf5/hdf5.hpp"
+#include "data/recordings/open.hpp"
 
 namespace etlc::data {
 namespace {

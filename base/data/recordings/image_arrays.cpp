@@ -12,8 +12,8 @@
 #include "data/arrays/npy_header.hpp"
 #include "data/frames/protocol.hpp"
 #include "data/hdf5/hdf5.hpp"
-#include "data/text/quote.hpp"
 #include "data/recordings/open.hpp"
+#include "data/text/quote.hpp"
 #include "data/traces/trace_formats.hpp"
 
 namespace etlc::data {

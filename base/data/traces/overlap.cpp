@@ -110,8 +110,8 @@ InputContent ContentReader::content() const {
     result.hash = fmt::format("{:016x}", xxh64(fmt::format("{} steps", steps_), hash_));
     result.sketch = units_;
     sift(result.sketch);
-    // A few runs are mostly the same samples over again, and a few samples that come often are those
-    // of a world with few images. Of an episode that is short, a few are all that there is.
+    // A few runs are mostly the same samples over again, and a few samples that come often are
+    // those of a world with few images. A short episode has no more than a few.
     const bool is_short = tells_alone_ && present_ < kLeastUnits;
     if (!is_short && result.sketch.size() < kLeastUnits) result.sketch.clear();
     return result;

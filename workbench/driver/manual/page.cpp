@@ -29,6 +29,22 @@ std::string cell(const std::string& text) {
     return result;
 }
 
+/// Broken into lines of at most 100 columns.
+std::string wrapped(const std::string& text) {
+    constexpr std::size_t kColumns = 100;
+    std::string result;
+    std::size_t column = 0;
+    for (std::size_t at = 0; at < text.size();) {
+        const std::size_t end = std::min(text.find_first_of(" \n", at), text.size());
+        const bool breaks = column > 0 && column + 1 + end - at > kColumns;
+        if (column > 0) result += breaks ? '\n' : ' ';
+        column = (breaks || column == 0 ? 0 : column + 1) + end - at;
+        result.append(text, at, end - at);
+        at = end + 1;
+    }
+    return result;
+}
+
 std::string form_of(const OptionHelp& option) {
     const std::string words = fmt::format("{}", fmt::join(option.words, "|"));
     const std::string& value = option.words.empty() ? option.value : words;
@@ -56,7 +72,8 @@ rewrites it. [diagnostics.md](diagnostics.md) has the exit statuses.
 )";
     for (const CommandHelp& command : all_help()) {
         const std::string first = command.text.substr(0, command.text.find("\nOther commands:"));
-        text += fmt::format("\n## {}\n\n{}\n\n| option | |\n| --- | --- |\n", command.name, first);
+        text += fmt::format("\n## {}\n\n{}\n\n| option | |\n| --- | --- |\n", command.name,
+                            wrapped(first));
         for (const OptionHelp& option : command.options) text += row(option);
     }
     return text;

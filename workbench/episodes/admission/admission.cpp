@@ -6,8 +6,8 @@
 
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"
-#include "episodes/admission/overlaps.hpp"
 #include "episodes/admission/leak_evidence.hpp"
+#include "episodes/admission/overlaps.hpp"
 
 namespace etlc::episodes {
 

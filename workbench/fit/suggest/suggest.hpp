@@ -11,7 +11,7 @@
 
 #include "check/model/model.hpp"
 #include "diag/diag.hpp"
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 #include "fit/request.hpp"
 
 namespace etlc::fit {

@@ -11,8 +11,8 @@
 #include <optional>
 #include <vector>
 
-#include "episodes/frames_by_score.hpp"
-#include "episodes/weights.hpp"
+#include "episodes/ranking/frames_by_score.hpp"
+#include "episodes/ranking/weights.hpp"
 
 namespace etlc::episodes {
 

@@ -1,4 +1,4 @@
-#include "episodes/auroc.hpp"
+#include "episodes/ranking/auroc.hpp"
 
 #include <algorithm>
 #include <cmath>
