@@ -108,6 +108,33 @@ void NearRows::add_moves(const check::Target& rows) {
     }
 }
 
+bool NearRows::may_be_near(const std::vector<float>& sample) const {
+    constexpr std::size_t kProbes = 4;
+    const check::Input& input = model_.inputs[model_.points[point_].inputs[0]];
+    const std::size_t n = sample.size();
+    const double per_length = by_direction_ ? 1 / length(sample.data(), n) : 1;
+    if (!std::isfinite(per_length)) return true;
+    float largest = 0;
+    for (const float x : sample) largest = std::max(largest, std::abs(x));
+    const double least = kWideOfSize * static_cast<double>(largest) * per_length;
+    const double grain = input.type == InputType::i8 ? static_cast<double>(input.scale) / 2 : 0;
+    for (std::size_t row = 0; row < is_half_.size(); ++row) {
+        const float* g = model_.targets[target_].values.data() + row * n;
+        const double per_row = by_direction_ ? per_length_[row] : 1;
+        bool near = true;
+        for (std::size_t i = 0; near && i < std::min(n, kProbes); ++i) {
+            const auto x = static_cast<double>(sample[i]);
+            const auto y = static_cast<double>(g[i]);
+            // No less than what add_row() allows.
+            const double bound = (half_rounding(x) + grain) * per_length +
+                                 half_rounding(y) * per_row + kDeviations * kUnit;
+            near = std::abs(x * per_length - y * per_row) <= std::max(kWide * bound, least);
+        }
+        if (near) return true;
+    }
+    return false;
+}
+
 /// What was recorded, and how far from what it was before it was stored.
 NearRows::Rounded NearRows::taken(Index index, const std::vector<plan::Sample>& samples) const {
     const check::Point& point = model_.points[index];
@@ -186,6 +213,9 @@ void NearRows::weigh(Rounded& at) const {
 }
 
 NearRows::Found NearRows::find(const std::vector<plan::Sample>& samples) const {
+    const check::Point& point = model_.points[point_];
+    const bool is_plain = !point.is_projected() && point.inputs.size() == 1 && weights_.empty();
+    if (is_plain && !may_be_near(samples[point.inputs[0]].values)) return {};
     Index from = point_;
     while (model_.points[from].is_projected()) from = model_.points[from].inner;
     Rounded at = projected(point_, from, taken(from, samples));

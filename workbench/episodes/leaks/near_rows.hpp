@@ -61,6 +61,8 @@ private:
     };
 
     void add_moves(const check::Target& rows);
+    /// False where the first elements of a sample tell that it is near no row, as they mostly do.
+    bool may_be_near(const std::vector<float>& sample) const;
     /// `at`: what `from` is, through which the point goes.
     Rounded projected(Index point, Index from, const Rounded& at) const;
     Rounded taken(Index point, const std::vector<plan::Sample>& samples) const;
