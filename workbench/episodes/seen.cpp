@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <utility>
 
 namespace etlc::episodes {
@@ -48,16 +48,24 @@ std::vector<data::HashedInput> hashed(const check::Model& model, const std::vect
     return result;
 }
 
+/// In a form that compilers turn into vectors.
+bool are_finite(const std::vector<float>& values) {
+    bool finite = true;
+    for (const float x : values) finite &= std::abs(x) <= std::numeric_limits<float>::max();
+    return finite;
+}
+
 bool is_there(const Input& input, const plan::Sample& sample) {
-    return sample.present && !sample.values.empty() &&
-           std::all_of(sample.values.begin(), sample.values.end(),
-                       [](float x) { return std::isfinite(x); }) &&
+    return sample.present && !sample.values.empty() && are_finite(sample.values) &&
            (input.type != InputType::scalar || input.range.contains(sample.values[0]));
 }
 
-float seen_as(const Input& input, float x) {
-    if (input.type == InputType::boolean) return x != 0 ? 1 : 0;
-    return x == 0 ? 0 : x;  // which -0 is too
+void see_as(const Input& input, const std::vector<float>& values, std::vector<float>& seen) {
+    seen.resize(values.size());
+    const bool is_bool = input.type == InputType::boolean;
+    if (is_bool) seen[0] = values[0] != 0 ? 1 : 0;
+    for (std::size_t i = is_bool ? 1 : 0; i < values.size(); ++i)
+        seen[i] = values[i] + 0.0F;  // -0 becomes 0
 }
 
 }  // namespace
@@ -80,7 +88,7 @@ void Seen::see(const Input& input, const plan::Sample& sample, Held& held,
                std::vector<float>& seen) const {
     seen.clear();
     if (is_there(input, sample)) {
-        for (const float x : sample.values) seen.push_back(seen_as(input, x));
+        see_as(input, sample.values, seen);
         if (input.hold > 0) held = {seen, 0};
         return;
     }

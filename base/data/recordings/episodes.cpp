@@ -125,12 +125,16 @@ std::vector<std::string> find_episodes(const std::vector<std::string>& arguments
 
 namespace {
 
-/// The bits of each number in the order of bytes of a file.
+/// In the order of bytes of a file.
+std::uint32_t bits_of(float number) {
+    const auto bits = std::bit_cast<std::uint32_t>(number);
+    return std::endian::native == std::endian::big ? __builtin_bswap32(bits) : bits;
+}
+
 void append_bits(const std::vector<float>& numbers, std::vector<std::uint32_t>& bits) {
-    for (const float number : numbers) {
-        const auto one = std::bit_cast<std::uint32_t>(number);
-        bits.push_back(std::endian::native == std::endian::big ? __builtin_bswap32(one) : one);
-    }
+    const std::size_t begin = bits.size();
+    bits.resize(begin + numbers.size());
+    for (std::size_t i = 0; i < numbers.size(); ++i) bits[begin + i] = bits_of(numbers[i]);
 }
 
 }  // namespace
@@ -145,8 +149,10 @@ void EpisodeHash::add(const std::vector<std::vector<float>>& samples) {
     for (std::size_t i = 0; i < inputs_.size(); ++i) {
         const std::size_t begin = bits_.size();
         const bool present = !samples[i].empty();
-        append_bits(present ? samples[i] : std::vector<float>(inputs_[i].dimension, kMissing),
-                    bits_);
+        if (present)
+            append_bits(samples[i], bits_);
+        else
+            bits_.resize(begin + inputs_[i].dimension, bits_of(kMissing));
         readers_[i].add(bits_.data() + begin, bits_.size() - begin, present);
     }
     hash_ = xxh64({reinterpret_cast<const char*>(bits_.data()), 4 * bits_.size()}, hash_);

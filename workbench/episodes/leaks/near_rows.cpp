@@ -1,7 +1,9 @@
 #include "episodes/leaks/near_rows.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
+#include <cstdint>
 
 #include "plan/targets/kernels.hpp"
 #include "plan/targets/narrow_targets.hpp"
@@ -114,9 +116,11 @@ bool NearRows::may_be_near(const std::vector<float>& sample) const {
     const std::size_t n = sample.size();
     const double per_length = by_direction_ ? 1 / length(sample.data(), n) : 1;
     if (!std::isfinite(per_length)) return true;
-    float largest = 0;
-    for (const float x : sample) largest = std::max(largest, std::abs(x));
-    const double least = kWideOfSize * static_cast<double>(largest) * per_length;
+    std::uint32_t largest = 0;  // in bits, whose order is that of sizes
+    for (const float x : sample)
+        largest = std::max(largest, std::bit_cast<std::uint32_t>(x) & 0x7fff'ffffU);
+    const auto size = static_cast<double>(std::bit_cast<float>(largest));
+    const double least = kWideOfSize * size * per_length;
     const double grain = input.type == InputType::i8 ? static_cast<double>(input.scale) / 2 : 0;
     for (std::size_t row = 0; row < is_half_.size(); ++row) {
         const float* g = model_.targets[target_].values.data() + row * n;
