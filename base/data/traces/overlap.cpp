@@ -174,9 +174,10 @@ std::optional<Overlap> Recordings::find(const EpisodeContent& content) const {
         std::unordered_map<std::uint32_t, std::uint32_t> in_common;
         const EpisodesByKey& units = by_unit_.at(name);
         const std::uint32_t fewest = fewest_in_common(of_input.sketch);
+        const std::string& input = name;  // clang 14 captures no structured binding
         for (const std::uint32_t unit : of_input.sketch)
             units.for_each(unit, [&](std::uint32_t episode) {
-                const Sketch& there = all_[episode].at(name).sketch;
+                const Sketch& there = all_[episode].at(input).sketch;
                 if (++in_common[episode] == std::min(fewest, fewest_in_common(there)))
                     perhaps.insert(episode);
             });
