@@ -7,27 +7,27 @@
 
 namespace etlc::parse {
 
-using Kind = ast::Expr::Kind;
+using ExprKind = ast::Expr::Kind;
 
 namespace {
 
-ast::ExprPtr node(Kind kind, source::Span span) {
+ast::ExprPtr expr_node(ExprKind kind, source::Span span) {
     auto result = std::make_unique<ast::Expr>();
     result->kind = kind;
     result->span = span;
     return result;
 }
 
-Kind kind_of(const Token& op) {
+ExprKind expr_kind(const Token& op) {
     switch (op.getType()) {
-        case Grammar::PLUS: return Kind::add;
-        case Grammar::MINUS: return Kind::subtract;
-        case Grammar::TIMES: return Kind::multiply;
-        case Grammar::DIVIDE: return Kind::divide;
-        case Grammar::ABS: return Kind::abs;
-        case Grammar::SQRT: return Kind::sqrt;
-        case Grammar::MIN: return Kind::min;
-        default: return Kind::max;
+        case Grammar::PLUS: return ExprKind::add;
+        case Grammar::MINUS: return ExprKind::subtract;
+        case Grammar::TIMES: return ExprKind::multiply;
+        case Grammar::DIVIDE: return ExprKind::divide;
+        case Grammar::ABS: return ExprKind::abs;
+        case Grammar::SQRT: return ExprKind::sqrt;
+        case Grammar::MIN: return ExprKind::min;
+        default: return ExprKind::max;
     }
 }
 
@@ -68,7 +68,7 @@ Builder::Expression Builder::chain(const ParserRuleContext& context) const {
         auto& operand = *dynamic_cast<Operand*>(context.children[i + 1]);
         Expression right = expression(operand);
         ast::ExprPtr both =
-            node(kind_of(op), source::join(span_of(*context.start), span_of(operand)));
+            expr_node(expr_kind(op), source::join(span_of(*context.start), span_of(operand)));
         both->arguments.push_back(std::move(left.root));
         both->arguments.push_back(std::move(right.root));
         left = {std::move(both), 1 + std::max(left.height, right.height)};
@@ -90,7 +90,7 @@ Builder::Expression Builder::expression(Grammar::FactorContext& context) const {
         return expression(*plain->primary());
     auto& negation = dynamic_cast<Grammar::NegationContext&>(context);
     Expression operand = expression(*negation.factor());
-    ast::ExprPtr result = node(Kind::negate, span_of(context));
+    ast::ExprPtr result = expr_node(ExprKind::negate, span_of(context));
     result->arguments.push_back(std::move(operand.root));
     if (operand.height >= kMaxHeight) too_high(span_of(*context.start));
     return {std::move(result), operand.height + 1};
@@ -107,14 +107,14 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
         fail(diag::Code::mixed_up_kinds, span_of(context),
              fmt::format("expected an expression, found the formula '{}'", text(context)));
 
-    ast::ExprPtr result = node(Kind::name, span_of(context));
+    ast::ExprPtr result = expr_node(ExprKind::name, span_of(context));
     if (auto* const measured = dynamic_cast<Grammar::DistancePrimaryContext*>(&context)) {
-        result->kind = Kind::distance;
+        result->kind = ExprKind::distance;
         result->distance = distance(*measured->distance());
         return {std::move(result), 1};
     }
     if (dynamic_cast<Grammar::NumberPrimaryContext*>(&context) != nullptr)
-        result->kind = Kind::number;
+        result->kind = ExprKind::number;
     result->text = text(context);
     return {std::move(result), 1};
 }
@@ -122,7 +122,7 @@ Builder::Expression Builder::expression(Grammar::PrimaryContext& context) const 
 Builder::Expression Builder::call(const Token& function,
                                   const std::vector<Grammar::FormulaContext*>& arguments,
                                   const ParserRuleContext& whole) const {
-    Expression result{node(kind_of(function), span_of(whole)), 1};
+    Expression result{expr_node(expr_kind(function), span_of(whole)), 1};
     for (Grammar::FormulaContext* const argument : arguments) {
         Expression value = expression(*argument);
         result.root->arguments.push_back(std::move(value.root));

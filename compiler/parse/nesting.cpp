@@ -33,7 +33,7 @@ bool ends_operand(const Token& token) {
     }
 }
 
-bool begins_operand(const Token& token) {
+bool may_begin_operand(const Token& token) {
     switch (token.getType()) {
         case EtlLexer::NUMBER:
         case EtlLexer::TRUE:
@@ -54,7 +54,7 @@ bool begins_operand(const Token& token) {
 bool is_prefix_word(const Token& token, const Token& next) {
     if (token.getType() == EtlLexer::HELD) return next.getType() == EtlLexer::LBRACKET;
     const bool edge = token.getType() == EtlLexer::RISE || token.getType() == EtlLexer::FALL;
-    return edge && begins_operand(next);
+    return edge && may_begin_operand(next);
 }
 
 void operator_seen(Level& level, std::size_t type, bool after_operand) {

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <limits>
 #include <utility>
 
 #include "reference/atoms.hpp"
@@ -12,8 +11,6 @@ namespace etlc::reference {
 namespace {
 
 using check::Values;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 Unseen negate(const Unseen& range) {
     return {-range.highest, -range.lowest};

@@ -1,12 +1,10 @@
 #include "reference/prefix.hpp"
 
 #include <algorithm>
-#include <limits>
 
 namespace etlc::reference {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr Value kTrue{kInfinity, kInfinity, kInfinity, kInfinity};
 constexpr Value kFalse{-kInfinity, -kInfinity, -kInfinity, -kInfinity};
 

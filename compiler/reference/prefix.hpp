@@ -5,12 +5,15 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <vector>
 
 #include "reference/normal_form.hpp"
 
 namespace etlc::reference {
+
+inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What is said about a formula at a position of a prefix.
 struct Value {

@@ -7,7 +7,7 @@ namespace demo {
 namespace {
 
 constexpr double kCell = 0.06;  // m
-constexpr int kSide =
+constexpr int kCells =
     57;  // grid points along x and y: the world and a rim of three cells around it
 constexpr double kOrigin = -kHalfWidth - 3 * kCell;
 constexpr int kHeadings = 40;
@@ -19,22 +19,22 @@ constexpr int kMaxSweeps = 300;
 constexpr double kRates[] = {-kMaxTurnRate, 0.0, kMaxTurnRate};
 
 int index_of(int x, int y, int heading) {
-    return (heading * kSide + y) * kSide + x;
+    return (heading * kCells + y) * kCells + x;
 }
 
 }  // namespace
 
 TimeField::TimeField(const std::function<bool(const Car&)>& reached,
                      const std::function<bool(Point)>& free)
-    : values_(kSide * kSide * kHeadings, static_cast<float>(kNever)) {
+    : values_(kCells * kCells * kHeadings, static_cast<float>(kNever)) {
     std::vector<Stencil> moves;  // per heading and turn rate, from the grid's origin
     for (int heading = 0; heading < kHeadings; ++heading) {
         for (const double rate : kRates) {
             const Car start{{kOrigin, kOrigin}, heading * kHeadingStep};
             moves.push_back(stencil(start.moved(rate, kStep)));
         }
-        for (int y = 0; y < kSide; ++y) {
-            for (int x = 0; x < kSide; ++x) {
+        for (int y = 0; y < kCells; ++y) {
+            for (int x = 0; x < kCells; ++x) {
                 const Car car{{kOrigin + x * kCell, kOrigin + y * kCell}, heading * kHeadingStep};
                 const auto index = static_cast<std::size_t>(index_of(x, y, heading));
                 if (!inside_world(car.position) || !free(car.position)) continue;
@@ -56,8 +56,8 @@ TimeField::TimeField(const std::function<bool(const Car&)>& reached,
 float TimeField::relax(const std::vector<Stencil>& moves) {
     float change = 0;
     for (const std::size_t index : open_) {
-        const std::size_t heading = index / (kSide * kSide);
-        const std::size_t corner = index % (kSide * kSide);
+        const std::size_t heading = index / (kCells * kCells);
+        const std::size_t corner = index % (kCells * kCells);
         for (std::size_t rate = 0; rate < std::size(kRates); ++rate) {
             const float there = static_cast<float>(kStep) +
                                 interpolate(moves[heading * std::size(kRates) + rate], corner);

@@ -20,7 +20,7 @@ constexpr std::uint32_t kMaxHeaderBytes = 1U << 16U;  ///< a shape and a type ne
 constexpr std::size_t kMaxRank = 32;                  ///< as in numpy 1
 constexpr std::uint64_t kMaxBytes = std::numeric_limits<std::int64_t>::max();
 
-Failure malformed(std::string message) {
+Failure malformed_header(std::string message) {
     return {Code::malformed_array, std::move(message)};
 }
 
@@ -171,7 +171,7 @@ private:
     }
 
     void fail(std::string message) {
-        if (!failure_) failure_ = malformed(std::move(message));
+        if (!failure_) failure_ = malformed_header(std::move(message));
     }
     void fail_elements(const std::string& what) {
         if (!failure_)
@@ -213,7 +213,7 @@ diag::Result<std::string> read_exactly(ByteSource& source, std::size_t n, std::s
     const auto got = source.read(bytes.data(), n);
     if (!got) return got.failure();
     if (*got < n)
-        return malformed(fmt::format("ends within the {}: {} bytes of {}", what, *got, n));
+        return malformed_header(fmt::format("ends within the {}: {} bytes of {}", what, *got, n));
     return bytes;
 }
 
@@ -231,13 +231,13 @@ diag::Result<NpyHeader> read_npy_header(ByteSource& source) {
     auto start = read_exactly(source, kMagic.size() + 2, "magic word");
     if (!start) return start.failure();
     if (!start->starts_with(kMagic))
-        return malformed(fmt::format("is no .npy array: begins with {}, expected {}",
-                                     in_quotes(std::string_view(*start).substr(0, kMagic.size())),
-                                     in_quotes(kMagic)));
+        return malformed_header(fmt::format(
+            "is no .npy array: begins with {}, expected {}",
+            in_quotes(std::string_view(*start).substr(0, kMagic.size())), in_quotes(kMagic)));
     const int major = static_cast<unsigned char>((*start)[6]);
     const int minor = static_cast<unsigned char>((*start)[7]);
     if (major < 1 || major > 3 || minor != 0)
-        return malformed(
+        return malformed_header(
             fmt::format("has .npy version {}.{}, expected 1.0, 2.0 or 3.0", major, minor));
     auto length_bytes = read_exactly(source, major == 1 ? 2 : 4, "length of the header");
     if (!length_bytes) return length_bytes.failure();
@@ -246,7 +246,7 @@ diag::Result<NpyHeader> read_npy_header(ByteSource& source) {
         length |= static_cast<std::uint32_t>(static_cast<unsigned char>((*length_bytes)[i]))
                   << (8 * i);
     if (length > kMaxHeaderBytes)
-        return malformed(
+        return malformed_header(
             fmt::format("has a header of {} bytes, at most {} are read", length, kMaxHeaderBytes));
     auto text = read_exactly(source, length, "header");
     if (!text) return text.failure();

@@ -30,20 +30,20 @@ constexpr std::uint64_t kIn64 =
     0xffffffff;  ///< a field of 32 bits whose value stands elsewhere, in 64
 constexpr std::uint64_t kCountIn64 = 0xffff;
 
-Failure malformed(std::string message) {
+Failure damaged(std::string message) {
     return {Code::malformed_archive, std::move(message)};
 }
 
 Failure no_archive() {
-    return malformed("is no .npz file: not a zip archive");
+    return damaged("is no .npz file: not a zip archive");
 }
 
 Failure damaged() {
-    return malformed("archive is damaged: its directory makes no sense");
+    return damaged("archive is damaged: its directory makes no sense");
 }
 
 Failure not_one_archive(std::string_view where) {
-    return malformed(fmt::format("has bytes {}, expected one archive and nothing else", where));
+    return damaged(fmt::format("has bytes {}, expected one archive and nothing else", where));
 }
 
 /// The little-endian number of `n` bytes at `at`, which are there.
@@ -89,7 +89,7 @@ private:
         if (auto failure = find_directory64(end)) return failure;
         if (directory_ > directory_end_ || directory_bytes_ > directory_end_) return damaged();
         if (directory_bytes_ > kMostDirectoryBytes)
-            return malformed("has a directory that is too large");
+            return damaged("has a directory that is too large");
         if (directory_ + directory_bytes_ != directory_end_)
             return not_one_archive("around its directory");
         return {};
@@ -192,8 +192,8 @@ private:
         const auto again = read(member.offset + kLocalBytes, name);
         if (!again) return unreadable();
         if (*again != member.name)
-            return malformed(fmt::format("has a member that is {} in one place and {} in another",
-                                         in_quotes(*again), in_quotes(member.name)));
+            return damaged(fmt::format("has a member that is {} in one place and {} in another",
+                                       in_quotes(*again), in_quotes(member.name)));
         // Behind the data its checksum and sizes, in 32 or 64 bits, with or without a signature.
         const std::uint64_t behind = room - before - member.packed_bytes;
         const bool descriptor = behind == 12 || behind == 16 || behind == 20 || behind == 24;

@@ -8,7 +8,7 @@
 namespace etlc::data::parquet {
 namespace {
 
-enum Codec : std::int64_t { kPlain = 0, kSnappy = 1, kZstd = 6 };
+enum Codec : std::int64_t { kUncompressed = 0, kSnappy = 1, kZstd = 6 };
 
 [[noreturn]] void damaged() {
     refuse("is damaged: a page of it cannot be unpacked");
@@ -23,7 +23,7 @@ void check_size(std::uint64_t found, std::uint64_t claimed) {
 }  // namespace
 
 void check_codec(std::int64_t codec) {
-    if (codec == kPlain || codec == kSnappy || codec == kZstd) return;
+    if (codec == kUncompressed || codec == kSnappy || codec == kZstd) return;
     static const char* const kNames[] = {"", "", "GZIP", "LZO", "BROTLI", "LZ4", "", "LZ4_RAW"};
     const bool known = codec >= 0 && codec < 8;
     refuse("is packed by " +

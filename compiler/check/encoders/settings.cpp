@@ -24,19 +24,19 @@ constexpr std::uint64_t kMaxExtent = 1U << 14U;  ///< of an image, rows or colum
 constexpr std::uint64_t kMaxSettingsBytes = 1U << 20U;
 constexpr std::uint64_t kMaxSettingsValues = 1000;
 
-struct Setting {
+struct Key {
     std::string_view key;
     std::vector<float> Encoder::*values;
     std::size_t count;
     std::string_view expected;
 };
 
-constexpr Setting kSettings[] = {
+constexpr Key kSettings[] = {
     {"image", &Encoder::image, 2, "its rows and columns, whole numbers from 1 to 16384"},
     {"mean", &Encoder::mean, 3, "a number each for red, green and blue"},
     {"deviation", &Encoder::deviation, 3, "a positive number each for red, green and blue"}};
 
-bool fits(const Setting& setting, const std::string& number, float& value) {
+bool fits(const Key& setting, const std::string& number, float& value) {
     if (to_float(number, value) != Fit::fits) return false;
     if (setting.key == "image") {
         const auto extent = Decimal::parse(number).whole(kMaxExtent);
@@ -47,7 +47,7 @@ bool fits(const Setting& setting, const std::string& number, float& value) {
 
 std::string known_keys() {
     std::vector<std::string> keys;
-    for (const Setting& setting : kSettings) keys.push_back(data::in_quotes(setting.key));
+    for (const Key& setting : kSettings) keys.push_back(data::in_quotes(setting.key));
     return diag::alternatives(keys);
 }
 
@@ -74,7 +74,7 @@ std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json
 std::optional<std::string> set_setting(Encoder& encoder, const std::string& key,
                                        const std::vector<std::string>& numbers) {
     const auto* const setting = std::find_if(std::begin(kSettings), std::end(kSettings),
-                                             [&](const Setting& s) { return s.key == key; });
+                                             [&](const Key& s) { return s.key == key; });
     if (setting == std::end(kSettings))
         return fmt::format("there is no setting {}; expected {}", data::in_quotes(key),
                            known_keys());

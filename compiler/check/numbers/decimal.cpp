@@ -13,7 +13,7 @@ namespace etlc::check {
 namespace {
 
 constexpr std::int64_t kExponentLimit = std::int64_t{1} << 40;
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
+constexpr float kFloatInfinity = std::numeric_limits<float>::infinity();
 
 std::int64_t parse_exponent(std::string_view text) {
     const bool negative = text.starts_with('-');
@@ -127,8 +127,8 @@ double to_double(std::string_view text) {
 namespace {
 
 float rounded(std::string_view text, float towards) {
-    if (text == "inf") return kInfinity;
-    if (text == "-inf") return -kInfinity;
+    if (text == "inf") return kFloatInfinity;
+    if (text == "-inf") return -kFloatInfinity;
     float value = 0;
     to_float(text, value);
     if (value == towards) return value;
@@ -141,11 +141,11 @@ float rounded(std::string_view text, float towards) {
 }  // namespace
 
 float round_down(std::string_view text) {
-    return rounded(text, -kInfinity);
+    return rounded(text, -kFloatInfinity);
 }
 
 float round_up(std::string_view text) {
-    return rounded(text, kInfinity);
+    return rounded(text, kFloatInfinity);
 }
 
 }  // namespace etlc::check

@@ -43,7 +43,7 @@ Exact product(float a, float b) {
 
 /// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound
 /// them.
-Exact quotient(float a, float b) {
+Exact exact_quotient(float a, float b) {
     if (std::isinf(b)) return {0};
     const double x = a, y = b, q = x / y;
     if (std::isinf(q)) return {q};
@@ -96,7 +96,7 @@ Range multiply(const Range& a, const Range& b) {
 
 Range divide(const Range& a, const Range& b) {
     if (b.contains(0.0F)) return kEverything;
-    return hull_of_corners(a, b, quotient);
+    return hull_of_corners(a, b, exact_quotient);
 }
 
 Range abs(const Range& a) {

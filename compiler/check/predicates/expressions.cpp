@@ -14,24 +14,24 @@ namespace etlc::check {
 namespace {
 
 using diag::Code;
-using Kind = Expr::Kind;
+using ExprKind = Expr::Kind;
 
-Kind kind_of(ast::Expr::Kind kind) {
+ExprKind kind_of(ast::Expr::Kind kind) {
     switch (kind) {
-        case ast::Expr::Kind::number: return Kind::number;
-        case ast::Expr::Kind::name: return Kind::scalar;
-        case ast::Expr::Kind::distance: return Kind::distance;
-        case ast::Expr::Kind::negate: return Kind::negate;
-        case ast::Expr::Kind::add: return Kind::add;
-        case ast::Expr::Kind::subtract: return Kind::subtract;
-        case ast::Expr::Kind::multiply: return Kind::multiply;
-        case ast::Expr::Kind::divide: return Kind::divide;
-        case ast::Expr::Kind::abs: return Kind::abs;
-        case ast::Expr::Kind::sqrt: return Kind::sqrt;
-        case ast::Expr::Kind::min: return Kind::min;
-        case ast::Expr::Kind::max: return Kind::max;
+        case ast::Expr::Kind::number: return ExprKind::number;
+        case ast::Expr::Kind::name: return ExprKind::scalar;
+        case ast::Expr::Kind::distance: return ExprKind::distance;
+        case ast::Expr::Kind::negate: return ExprKind::negate;
+        case ast::Expr::Kind::add: return ExprKind::add;
+        case ast::Expr::Kind::subtract: return ExprKind::subtract;
+        case ast::Expr::Kind::multiply: return ExprKind::multiply;
+        case ast::Expr::Kind::divide: return ExprKind::divide;
+        case ast::Expr::Kind::abs: return ExprKind::abs;
+        case ast::Expr::Kind::sqrt: return ExprKind::sqrt;
+        case ast::Expr::Kind::min: return ExprKind::min;
+        case ast::Expr::Kind::max: return ExprKind::max;
     }
-    return Kind::number;
+    return ExprKind::number;
 }
 
 bool set_number(Context& c, Expr& result, const ast::Expr& written) {
@@ -66,9 +66,9 @@ std::optional<Expr> build(Context& c, const ast::Expr& written) {
     result.kind = kind_of(written.kind);
     result.span = written.span;
     bool good = true;
-    if (result.kind == Kind::number) good = set_number(c, result, written);
-    if (result.kind == Kind::scalar) good = set_scalar(c, result, written);
-    if (result.kind == Kind::distance) {
+    if (result.kind == ExprKind::number) good = set_number(c, result, written);
+    if (result.kind == ExprKind::scalar) good = set_scalar(c, result, written);
+    if (result.kind == ExprKind::distance) {
         result.index = check_distance(c, *written.distance);
         good = result.index != kNone;
     }
@@ -112,22 +112,22 @@ Range range_of(const Model& model, const Expr& expression, const Expr*& undefine
     for (const Expr& argument : expression.arguments)
         arguments.push_back(range_of(model, argument, undefined));
     switch (expression.kind) {
-        case Kind::number: return {expression.number32, expression.number32};
-        case Kind::scalar: return model.inputs[expression.index].range;
-        case Kind::distance: return range_of(model.distances[expression.index].metric);
-        case Kind::negate: return negate(arguments[0]);
-        case Kind::add: return add(arguments[0], arguments[1]);
-        case Kind::subtract: return subtract(arguments[0], arguments[1]);
-        case Kind::multiply: return multiply(arguments[0], arguments[1]);
-        case Kind::divide:
+        case ExprKind::number: return {expression.number32, expression.number32};
+        case ExprKind::scalar: return model.inputs[expression.index].range;
+        case ExprKind::distance: return range_of(model.distances[expression.index].metric);
+        case ExprKind::negate: return negate(arguments[0]);
+        case ExprKind::add: return add(arguments[0], arguments[1]);
+        case ExprKind::subtract: return subtract(arguments[0], arguments[1]);
+        case ExprKind::multiply: return multiply(arguments[0], arguments[1]);
+        case ExprKind::divide:
             if (is_zero(arguments[1])) undefined = &expression;
             return divide(arguments[0], arguments[1]);
-        case Kind::abs: return abs(arguments[0]);
-        case Kind::sqrt:
+        case ExprKind::abs: return abs(arguments[0]);
+        case ExprKind::sqrt:
             if (arguments[0].high < 0) undefined = &expression;
             return sqrt(arguments[0]);
-        case Kind::min: return min(arguments);
-        case Kind::max: return max(arguments);
+        case ExprKind::min: return min(arguments);
+        case ExprKind::max: return max(arguments);
     }
     return kEverything;
 }
@@ -135,7 +135,7 @@ Range range_of(const Model& model, const Expr& expression, const Expr*& undefine
 std::vector<Index> inputs_of(const Model& model, const Expr& expression) {
     std::set<Index> inputs;
     for_each(expression, [&](const Expr& e) {
-        if (e.kind == Kind::scalar) inputs.insert(e.index);
+        if (e.kind == ExprKind::scalar) inputs.insert(e.index);
     });
     for_each_distance(expression, [&](Index distance) {
         const std::vector<Index>& point = model.point_of(distance).inputs;

@@ -13,7 +13,7 @@ namespace etlc::emit {
 
 namespace {
 
-bool is_word(char c) {
+bool in_word(char c) {
     return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_';
 }
 
@@ -32,9 +32,9 @@ std::set<std::string> macros_in(std::string_view code) {
             at = end_of_string(code, at);
         } else if (code.substr(at, 2) == "//") {
             at = std::min(code.find('\n', at), code.size());
-        } else if (is_word(code[at])) {
+        } else if (in_word(code[at])) {
             const std::size_t begin = at;
-            while (at < code.size() && is_word(code[at])) ++at;
+            while (at < code.size() && in_word(code[at])) ++at;
             const std::string_view word = code.substr(begin, at - begin);
             if (check::macro_elsewhere(word)) found.emplace(word);
         } else {

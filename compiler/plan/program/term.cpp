@@ -67,7 +67,8 @@ std::size_t combinations(const Term& term) {
 
 bool asks_position(const Term& term) {
     return term.kind == Term::Kind::before ||
-           std::any_of(term.operands.begin(), term.operands.end(), asks_position);
+           std::any_of(term.operands.begin(), term.operands.end(),
+                       [](const Term& operand) { return asks_position(operand); });
 }
 
 }  // namespace etlc::plan

@@ -17,7 +17,7 @@ std::string quoted(const std::string& text) {
     return result + "'";
 }
 
-std::string values_of(const OptionHelp& option) {
+std::string fish_values(const OptionHelp& option) {
     if (option.is_flag && option.words.empty()) return "";
     if (!option.words.empty()) {
         // A flag may stand alone.
@@ -55,7 +55,7 @@ std::string completion_of_fish(const std::vector<CommandHelp>& commands) {
             for (const std::string& name : option.names)
                 spelt += name.starts_with("--") ? " -l " + name.substr(2) : " -s " + name.substr(1);
             text += fmt::format("complete -c etlc -n {}{}{} -d {}\n", where, spelt,
-                                values_of(option), quoted(first_sentence(option.text)));
+                                fish_values(option), quoted(first_sentence(option.text)));
         }
     }
     text += fmt::format(

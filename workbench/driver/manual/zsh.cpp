@@ -9,7 +9,7 @@ namespace etlc::driver {
 namespace {
 
 /// In quotes for the shell, with what _arguments reads escaped.
-std::string quoted(const std::string& text) {
+std::string zsh_quoted(const std::string& text) {
     std::string result;
     for (const char c : text) {
         if (c == '\'') {
@@ -36,7 +36,7 @@ std::string action_of(const OptionHelp& option) {
 /// What _arguments is told of an option; one line for each name.
 std::string argument(const OptionHelp& option) {
     const std::string what = option.value.empty() ? "word" : option.value;
-    const std::string takes = fmt::format(":{}:{}", quoted(what), action_of(option));
+    const std::string takes = fmt::format(":{}:{}", zsh_quoted(what), action_of(option));
     if (option.names.empty())
         return fmt::format("            '{}{}'\n", option.repeats ? "*" : "", takes);
     std::string text;
@@ -45,7 +45,7 @@ std::string argument(const OptionHelp& option) {
             option.repeats ? "*" : fmt::format("({})", fmt::join(option.names, " "));
         const bool behind_sign = option.is_flag && !option.words.empty();
         text += fmt::format("            '{}{}{}[{}]{}'\n", times, name, behind_sign ? "=-" : "",
-                            quoted(first_sentence(option.text)),
+                            zsh_quoted(first_sentence(option.text)),
                             option.is_flag && !behind_sign ? "" : (behind_sign ? ":" : "") + takes);
     }
     return text;
@@ -69,7 +69,7 @@ std::string completion_of_zsh(const std::vector<CommandHelp>& commands) {
     for (const CommandHelp& command : commands) {
         const std::string word = word_of(command);
         if (word.empty()) continue;
-        names += fmt::format("        '{}:{}'\n", word, quoted(first_sentence(command.text)));
+        names += fmt::format("        '{}:{}'\n", word, zsh_quoted(first_sentence(command.text)));
         branches +=
             fmt::format("    {})\n        shift words\n        (( CURRENT-- ))\n{}        ;;\n",
                         word, arguments(command));

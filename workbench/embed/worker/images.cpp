@@ -30,7 +30,7 @@ using data::frames::kWrongCall;
 using Bytes = std::vector<std::uint8_t>;
 using View = std::span<const std::uint8_t>;
 
-constexpr std::size_t kChannels = 3;
+constexpr std::size_t kRgb = 3;
 
 struct Image {
     std::size_t height = 0;
@@ -135,12 +135,12 @@ private:
     }
 
     static Bytes opaque(Bytes pixels, std::size_t channels) {
-        if (channels == kChannels) return pixels;
+        if (channels == kRgb) return pixels;
         std::size_t to = 0;
-        for (std::size_t from = 0; from < pixels.size(); from += channels, to += kChannels) {
-            if (pixels[from + kChannels] != 255)
+        for (std::size_t from = 0; from < pixels.size(); from += channels, to += kRgb) {
+            if (pixels[from + kRgb] != 255)
                 refuse(kRefused, "has transparent pixels, expected none: save it without");
-            std::copy_n(pixels.begin() + std::ptrdiff_t(from), kChannels,
+            std::copy_n(pixels.begin() + std::ptrdiff_t(from), kRgb,
                         pixels.begin() + std::ptrdiff_t(to));
         }
         pixels.resize(to);
@@ -177,9 +177,9 @@ public:
         state_.out_color_space = JCS_RGB;
         image.orientation = orientation();
         jpeg_start_decompress(&state_);
-        image.rgb.resize(image.height * image.width * kChannels);
+        image.rgb.resize(image.height * image.width * kRgb);
         while (state_.output_scanline < state_.output_height) {
-            JSAMPROW row = image.rgb.data() + state_.output_scanline * image.width * kChannels;
+            JSAMPROW row = image.rgb.data() + state_.output_scanline * image.width * kRgb;
             jpeg_read_scanlines(&state_, &row, 1);
         }
         jpeg_finish_decompress(&state_);
@@ -232,8 +232,8 @@ Image upright(Image image) {
             const std::size_t down = swaps ? c : r, along = swaps ? r : c;
             const std::size_t row = from_bottom ? image.height - 1 - down : down;
             const std::size_t column = from_right ? image.width - 1 - along : along;
-            const std::size_t from = kChannels * (row * image.width + column);
-            to = std::copy_n(image.rgb.begin() + std::ptrdiff_t(from), kChannels, to);
+            const std::size_t from = kRgb * (row * image.width + column);
+            to = std::copy_n(image.rgb.begin() + std::ptrdiff_t(from), kRgb, to);
         }
     return turned;
 }

@@ -27,7 +27,7 @@ namespace fs = std::filesystem;
 using data::frames::kNoRuntime;
 using Paths = std::vector<fs::path>;
 
-constexpr std::string_view kName = "libonnxruntime.so";
+constexpr std::string_view kLibrary = "libonnxruntime.so";
 constexpr char kExpected[] = ", expected ONNX Runtime 1.13 or later";
 #if defined(__aarch64__)
 constexpr std::string_view kNodeMachine = "arm64";
@@ -68,7 +68,7 @@ Paths of_pip() {
     while (std::fgets(part.data(), part.size(), asked) != nullptr) folder += part.data();
     ::pclose(asked);
     while (!folder.empty() && folder.back() == '\n') folder.pop_back();
-    return folder.empty() ? Paths{} : named(fs::path(folder) / "capi", kName);
+    return folder.empty() ? Paths{} : named(fs::path(folder) / "capi", kLibrary);
 }
 
 /// The folders in which node looks for packages, and npm installs them: here and further up, and
@@ -93,7 +93,7 @@ Paths of_npm() {
     Paths found;
     for (const fs::path& folder : folders_of_npm())
         for (const fs::path& version : named(folder / "onnxruntime-node" / "bin", "napi-v"))
-            add(found, named(version / "linux" / kNodeMachine, kName));
+            add(found, named(version / "linux" / kNodeMachine, kLibrary));
     return found;
 }
 
@@ -102,7 +102,7 @@ Paths of_system() {
     Paths found;
     for (const char* const folder :
          {"/usr/local/lib", "/usr/lib/" ETLC_LIBRARY_ARCHITECTURE, "/usr/lib64", "/usr/lib"})
-        add(found, named(folder, kName));
+        add(found, named(folder, kLibrary));
     return found;
 }
 
@@ -112,9 +112,9 @@ fs::path library_at(const std::string& where) {
     if (!fs::exists(where, none)) refuse_library("there is no '" + where + "'");
     if (!fs::is_directory(where, none)) return where;
     for (const char* const inner : {"", "lib", "capi"})
-        if (const Paths found = named(fs::path(where) / inner, kName); !found.empty())
+        if (const Paths found = named(fs::path(where) / inner, kLibrary); !found.empty())
             return found.front();
-    refuse_library("'" + where + "' holds no " + std::string(kName) + kExpected);
+    refuse_library("'" + where + "' holds no " + std::string(kLibrary) + kExpected);
 }
 
 using Head = ElfW(Ehdr);

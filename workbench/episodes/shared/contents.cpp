@@ -15,7 +15,7 @@ namespace {
 
 using diag::Code;
 
-constexpr std::uint64_t kLargest = std::uint64_t{1} << 40U;
+constexpr std::uint64_t kLargestContents = std::uint64_t{1} << 40U;
 
 struct Kept {
     std::vector<std::string> episodes;
@@ -28,7 +28,7 @@ void fields(Archive& archive, Kept& kept) {
 }
 
 std::optional<Kept> read(const std::string& path) {
-    const auto bytes = data::read_file(path, kLargest, Code::unreadable_part);
+    const auto bytes = data::read_file(path, kLargestContents, Code::unreadable_part);
     return bytes ? data::unpacked<Kept>(*bytes) : std::nullopt;
 }
 
