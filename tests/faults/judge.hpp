@@ -1,9 +1,9 @@
 // Checks what etlc must do under every fault:
 // - it ends by a signal only if it was sent SIGKILL;
 // - exit status 0 means that all outputs exist, complete and correct; otherwise it is 1, with a
-// message;
+//   message;
 // - each file is old or new; if the process could end by itself, all files are old, or all are new
-// and only diagnostics were lost;
+//   and only diagnostics were lost;
 // - no temporary file remains, except if the process was killed while it exchanged names;
 // - a header and a targets file of different calls do not match.
 #pragma once

@@ -1,6 +1,6 @@
-// Thresholds files, and the descriptions in files of fitted things and of embeddings: any text is a
-// message, or a file that is the same after writing and reading it again, and of which every
-// threshold agrees with itself or is told why not.
+// Reads thresholds files, and the descriptions in files of fits and embeddings: any text gives an
+// error, or a file that is the same after writing and reading it again, with every threshold
+// consistent or reported.
 #include <string>
 #include <vector>
 
@@ -15,7 +15,7 @@ namespace {
 
 using namespace etlc;
 
-/// What `parse` made of `bytes` is a message, or reads and writes the same again.
+/// Checks that the result of `parse` for `bytes` is an error, or survives writing and reading.
 template <class Parse>
 void read_archive(const std::vector<data::ArchiveMember>& members, Parse parse) {
     const auto file = parse(data::npz_bytes(members), "x");

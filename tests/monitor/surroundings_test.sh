@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# surroundings_test.sh ETLC SOURCE CXX...: the headers of one spec that has everything, in every
-# form, compile where <windows.h>, <Arduino.h>, Qt and X11 have been included, whose macros its
-# names are, and leave these macros as they were. A monitor at namespace scope is initialised before
-# any code runs, on the host and on the boards, and is what a constructor makes at run time; after
-# reset() a monitor answers as a new one.
+# surroundings_test.sh ETLC SOURCE CXX...: the headers of one spec with all features, in every form,
+# compile after <windows.h>, <Arduino.h>, Qt and X11, whose macros are its names, and leave these
+# macros unchanged. A monitor at namespace scope is initialised before any code runs, on the host
+# and on the boards, and equals one constructed at run time; after reset() a monitor equals a new
+# one.
 set -euo pipefail
 etlc=$1 source=$2
 shift 2

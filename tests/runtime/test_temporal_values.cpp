@@ -1,5 +1,5 @@
-// Keys, values and verdicts: order and round trip over every kind of float, classification of every
-// kind of verdict. Written without a float comparison, so that it means the same under -ffast-math
+// Tests keys, values and verdicts: order and round trip over every kind of float, classification of
+// every kind of verdict. No float is compared, so the test has the same meaning under -ffast-math
 // and with denormals flushed.
 #include <gtest/gtest.h>
 
@@ -20,8 +20,8 @@ using etlmon::Verdict;
 
 constexpr uint32_t kSignBit = 0x80000000u;
 
-/// Bit patterns of floats from -inf to +inf, ascending, one zero: every exponent, with its first,
-/// second, middle and last mantissas.
+/// Bit patterns of floats from -inf to +inf, ascending, with one zero: every exponent, with its
+/// first, second, middle and last mantissas.
 std::vector<uint32_t> ascending_floats() {
     std::vector<uint32_t> magnitudes;
     for (uint32_t exponent = 0; exponent < 255; ++exponent)
@@ -125,14 +125,14 @@ TEST(TemporalValue, KnownAndBetween) {
     }
 }
 
-/// What a compiler that sees a zero leaves out is what a subtraction of one gives.
+/// A compiler that sees a zero may omit the subtraction of it.
 TEST(TemporalValue, ThresholdsOfZero) {
     volatile float zero = 0.0f;
     for (const uint32_t bits : ascending_floats()) {
         const float delta = etlmon::float_of_bits(bits);
         const bool denormal = (bits & 0x7f800000u) == 0 && (bits << 1) != 0;
         if (denormal || !etlmon::is_finite(delta))
-            continue;  // some tests run where differences of these are flushed
+            continue;  // some tests run with differences of these flushed
         const float unseen = zero;
         ASSERT_TRUE(temporal::same(etlmon::at_least(delta, 0.0f, etlmon::kTrue),
                                    etlmon::at_least(delta, unseen, etlmon::kTrue)));
