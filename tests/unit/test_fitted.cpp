@@ -1,5 +1,5 @@
-// The file of fitted things: it reads back to the same bits, is an archive that numpy reads, and
-// every fault has its key, what is there and what should be.
+// Tests the file of fits: it reads back to the same bits, numpy can read it, and every fault is
+// reported with its key, the value found and the value expected.
 #include "fitted/fitted.hpp"
 
 #include <fmt/format.h>
@@ -87,7 +87,7 @@ std::string replaced(std::string text, const std::string& from, const std::strin
     return text.replace(at, from.size(), to);
 }
 
-/// Of the description with `from` replaced by `to`.
+/// Replaces `from` by `to` in the description.
 diag::Failure failure_of(const std::string& from, const std::string& to) {
     const auto file = parse(archive(replaced(kDescription, from, to)), "x.fitted.npz");
     EXPECT_FALSE(file) << to;

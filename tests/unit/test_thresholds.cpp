@@ -1,5 +1,5 @@
-// The thresholds file: it reads back to the same bits, and every fault has its key, what is there
-// and what should be.
+// Tests the thresholds file: it reads back to the same bits, and every fault is reported with its
+// key, the value found and the value expected.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -124,7 +124,7 @@ TEST(Thresholds, WritingWhatWasReadChangesNothing) {
     ASSERT_TRUE(file);
     EXPECT_EQ(write(*file), kWhole);
     const std::string old = patched(kWhole, "\"format\": 2", "\"format\": 1");
-    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are told apart as they were
+    EXPECT_EQ(write(*parse(old, "x")), old);  // its episodes are identified by their stored bytes
 }
 
 TEST(Thresholds, SmallestFile) {
@@ -199,7 +199,7 @@ struct Broken {
     std::uint32_t column = 0;
 };
 
-/// kWhole with one place changed.
+/// Returns kWhole with one change.
 std::string with(const std::string& from, const std::string& to) {
     std::string json = kWhole;
     const std::size_t at = json.find(from);
@@ -327,7 +327,7 @@ TEST(Thresholds, EveryFaultHasItsMessage) {
 }
 
 TEST(Thresholds, CutAnywhere) {
-    // The line feed at the end is not missed.
+    // A missing line feed at the end is not an error.
     for (std::size_t n = 0; n + 1 < kWhole.size(); ++n)
         EXPECT_FALSE(parse(kWhole.substr(0, n), "x")) << n;
 }

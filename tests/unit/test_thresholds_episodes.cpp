@@ -1,5 +1,5 @@
-// What a thresholds file has of every episode: much of it, read and written a piece at a time, with
-// the messages and places of files that are read whole.
+// Tests the episodes in a thresholds file: many of them, read and written piece by piece, with the
+// messages and places of files that are read whole.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -96,7 +96,7 @@ TEST(ThresholdsOfEpisodes, PlacesBehindTheFirstPiece) {
     }
 }
 
-/// So many that their text is more than 64 MB.
+/// So many that their text exceeds 64 MB.
 File many_episodes() {
     File file;
     file.spec = "s";
