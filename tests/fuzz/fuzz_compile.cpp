@@ -46,8 +46,7 @@ void compile(const source::File& file, check::Values values) {
 int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
     const std::string_view text = fuzz::text(bytes, size).substr(0, fuzz::kMostSpecBytes);
     const bool is_text = text.starts_with("spec");
-    if (is_text && text.find("load") != std::string_view::npos)
-        return 0;  // only files of the test
+    if (is_text && text.find("load") != std::string_view::npos) return 0;  // only files of the test
     const source::File file("a.etl", is_text ? std::string(text) : fuzz::deep_spec(bytes, size));
     compile(file, check::Values::robustness);
     compile(file, check::Values::boolean);

@@ -150,8 +150,8 @@ TEST(Enclosed, WhatIsNotFiniteIsDoubtful) {
     const etlmon::Cut far[] = {1.0F, {2.0F, 3.0F}};
     for (const float delta : {HUGE_VALF, etlmon::kMissing, 3e38F})
         EXPECT_TRUE(etlmon::enclose<etlmon::L2Sq>({delta, 0}, 1e30F, 384).doubtful(far)) << delta;
-    EXPECT_TRUE(etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384)
-                    .doubtful(far));  // its square overflows
+    EXPECT_TRUE(
+        etlmon::enclose<etlmon::L2>({1.0F, 0}, 2e18F, 384).doubtful(far));  // its square overflows
     EXPECT_TRUE(etlmon::enclose<etlmon::Angular>({0.5F, 0}, 0.3F, 384)
                     .doubtful(far));  // the bound is for small moves
     EXPECT_FALSE(etlmon::enclose<etlmon::L2>({0.5F, 0}, 0.1F, 384).doubtful(far));

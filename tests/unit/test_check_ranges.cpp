@@ -19,8 +19,7 @@ float value_of(const Expr& e, const std::vector<float>& inputs) {
     std::vector<float> a;
     for (const Expr& argument : e.arguments) a.push_back(value_of(argument, inputs));
     for (const float argument : a)
-        if (std::isnan(argument))
-            return argument;  // NaN stays NaN, also under min and max
+        if (std::isnan(argument)) return argument;  // NaN stays NaN, also under min and max
     switch (e.kind) {
         case Expr::Kind::number: return e.number32;
         case Expr::Kind::scalar: return inputs[e.index];
