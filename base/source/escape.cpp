@@ -1,20 +1,14 @@
 #include "source/escape.hpp"
 
-#include <array>
+#include <fmt/format.h>
+
 #include <cctype>
-#include <cstdio>
 
 #include "source/utf8.hpp"
 
 namespace etlc::source {
 
 namespace {
-
-std::string hexadecimal(const char* format, unsigned value) {
-    std::array<char, 16> text;
-    const int size = std::snprintf(text.data(), text.size(), format, value);
-    return {text.data(), static_cast<std::size_t>(size)};
-}
 
 /// Calls `take` with each character, or byte that is no part of one, and whether it is a character.
 template <class Take>
@@ -35,9 +29,9 @@ std::string visible(std::string_view text) {
         if (!is_hidden(value))
             result += character;
         else if (character.size() == 1)
-            result += hexadecimal("\\x%02x", static_cast<unsigned char>(character[0]));
+            result += fmt::format("\\x{:02x}", static_cast<unsigned char>(character[0]));
         else
-            result += hexadecimal("\\u{%X}", static_cast<unsigned>(value));
+            result += fmt::format("\\u{{{:X}}}", static_cast<unsigned>(value));
     });
     return result;
 }
@@ -70,7 +64,7 @@ std::string json_string(std::string_view text) {
         if (!valid)
             result += "\\ufffd";
         else if (byte < 0x20)
-            result += hexadecimal("\\u%04x", byte);
+            result += fmt::format("\\u{:04x}", byte);
         else
             result.append(byte == '"' || byte == '\\' ? "\\" : "").append(character);
     });

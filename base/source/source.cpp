@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <limits>
 
+#include "source/utf8.hpp"
+
 namespace etlc::source {
 
 namespace {
@@ -12,8 +14,8 @@ namespace {
 constexpr std::uint32_t kBlock = 1024;
 
 std::uint32_t count_code_points(std::string_view text) {
-    const auto begins_one = [](char c) { return (static_cast<unsigned char>(c) & 0xC0U) != 0x80U; };
-    return static_cast<std::uint32_t>(std::count_if(text.begin(), text.end(), begins_one));
+    return static_cast<std::uint32_t>(
+        std::count_if(text.begin(), text.end(), [](char c) { return !is_continuation(c); }));
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <variant>
 #include <vector>
 
+#include "ast/operators.hpp"
 #include "source/source.hpp"
 
 namespace etlc::ast {
@@ -100,7 +101,7 @@ struct Fitted {
 using Weights = std::variant<Load, MatrixLiteral, VectorLiteral, Fitted, Name>;
 
 struct Aggregation {
-    enum class Kind : std::uint8_t { min, max, mean, kth };
+    using Kind = AggregationKind;
     Kind kind = Kind::min;
     std::optional<Number> n;  ///< of kth(n)
     Span span;
@@ -120,20 +121,7 @@ struct Expr;
 using ExprPtr = std::unique_ptr<Expr>;
 
 struct Expr {
-    enum class Kind : std::uint8_t {
-        number,
-        name,
-        distance,
-        negate,
-        add,
-        subtract,
-        multiply,
-        divide,
-        abs,
-        sqrt,
-        min,
-        max
-    };
+    using Kind = ExprKind;
     Kind kind = Kind::number;
     std::string text;                    ///< number: its digits; name: the input or constant
     std::string constant;                ///< number: the name that stood for it, as in Number
@@ -144,15 +132,6 @@ struct Expr {
 };
 
 // ---- formulas -----------------------------------------------------------------------------------
-
-enum class Comparison : std::uint8_t {
-    less_equal,
-    less,
-    greater_equal,
-    greater,
-    equal,
-    not_equal,
-};
 
 /// The unit of what says that it is a number of steps: `2 steps`, `1 step`.
 inline constexpr std::string_view kStepsUnit = "steps";
@@ -176,24 +155,9 @@ struct Formula {
         constant_false,
         name,
         comparison,
-        negation,
-        conjunction,
-        disjunction,
-        implication,
-        equivalence,
-        next,
-        eventually,
-        always,
-        until,
-        weak_until,
-        release,
-        previous,
-        once,
-        historically,
-        since,
-        rise,
-        fall,
-        held,
+#define OPERATOR(name, ...) name,
+#include "ast/operators.def"
+#undef OPERATOR
     };
     Kind kind = Kind::constant_true;
     std::string name;  ///< kind name

@@ -54,6 +54,8 @@ private:
     ast::Monitor monitor(Grammar::MonitorDeclarationContext& context, source::Span span) const;
     ast::Calibrated calibrated(Grammar::CalibratedContext& context) const;
     std::string content(const Token& string) const;  ///< without its quotes
+    template <class Named, class Context>
+    void set_file(Named& to, const Context& context) const;  ///< path and key
     ast::Load load(Grammar::LoadContext& context) const;
     ast::Frames frames(Grammar::FramesContext& context) const;
     ast::Fitted fitted(Grammar::FittedContext& context) const;
@@ -74,6 +76,8 @@ private:
     Expression expression(Grammar::PrimaryContext& context) const;
     Expression call(const Token& function, const std::vector<Grammar::FormulaContext*>& arguments,
                     const ParserRuleContext& whole) const;
+    static Expression combined(ast::ExprKind kind, source::Span span, source::Span op,
+                               std::vector<Expression> arguments);
     /// Operands of one level of precedence, grouped to the left.
     template <class Operand>
     Expression chain(const ParserRuleContext& context) const;
@@ -92,9 +96,9 @@ private:
     Formula formula(Grammar::ComparisonContext& context) const;
     Formula formula(Grammar::PrimaryContext& context) const;
     template <class Operand>
-    Formula n_ary(const ParserRuleContext& context, ast::Formula::Kind kind) const;
-    Formula combined(ast::Formula::Kind kind, const Token& op, source::Span span, Formula left,
-                     Formula right) const;
+    Formula n_ary(const ParserRuleContext& context) const;
+    static Formula combined(const Token& op, source::Span span, std::vector<Formula> operands);
+    static Formula combined(const Token& op, source::Span span, Formula left, Formula right);
     Formula prefix(const Token& op, Grammar::PrefixedContext& operand,
                    const ParserRuleContext& whole) const;
     Formula compared(Grammar::SumContext& left, Grammar::ComparisonContext& context) const;

@@ -5,7 +5,6 @@
 #include "EtlLexer.h"
 #include "EtlParser.h"
 #include "parse/expected.hpp"
-#include "parse/nesting.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 
@@ -24,24 +23,8 @@ struct Stopped {
     const Token* at;
 };
 
-class Stop final : public antlr4::ANTLRErrorStrategy {
-public:
-    void reset(antlr4::Parser* /*parser*/) override {}
-    Token* recoverInline(antlr4::Parser* parser) override {
-        throw Stopped{parser->getCurrentToken()};
-    }
-    void recover(antlr4::Parser* /*parser*/, std::exception_ptr error) override {
-        try {
-            std::rethrow_exception(error);
-        } catch (const antlr4::RecognitionException& e) {
-            throw Stopped{e.getOffendingToken()};
-        }
-    }
-    void sync(antlr4::Parser* /*parser*/) override {}
-    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
-    void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/,
-                     const antlr4::RecognitionException& /*error*/) override {}
+class Stop final : public StopAtError {
+    void stop(antlr4::Parser* /*parser*/, const Token* found) override { throw Stopped{found}; }
 };
 
 /// Where the last token was taken.
@@ -138,38 +121,18 @@ Role role_in(const std::vector<std::size_t>& rules, std::size_t declaration) {
     }
 }
 
-/// Of a token that has one spelling.
-std::string keyword(std::size_t type) {
-    const std::string quoted = EtlLexer(nullptr).getVocabulary().getLiteralName(type);
-    return quoted.size() > 2 ? quoted.substr(1, quoted.size() - 2) : "";
-}
-
 /// The spellings of a token: of an operator two.
 std::vector<std::string> spellings(std::size_t type) {
-    switch (type) {
-        case EtlLexer::IFF: return {"<->", "iff"};
-        case EtlLexer::IMPLIES: return {"->", "implies"};
-        case EtlLexer::OR: return {"||", "or"};
-        case EtlLexer::AND: return {"&&", "and"};
-        case EtlLexer::NOT: return {"!", "not"};
-        case EtlLexer::UNTIL: return {"U", "until"};
-        case EtlLexer::WEAK_UNTIL: return {"W", "weak_until"};
-        case EtlLexer::RELEASE: return {"R", "release"};
-        case EtlLexer::SINCE: return {"S", "since"};
-        case EtlLexer::NEXT: return {"X", "next"};
-        case EtlLexer::EVENTUALLY: return {"F", "eventually"};
-        case EtlLexer::ALWAYS: return {"G", "always"};
-        case EtlLexer::PREVIOUS: return {"Y", "previous"};
-        case EtlLexer::ONCE: return {"O", "once"};
-        case EtlLexer::HISTORICALLY: return {"H", "historically"};
-        case EtlLexer::STEPS: return {"steps", "step"};
-        case EtlLexer::DISTANCE: {
-            std::vector<std::string> words = distance_words();
-            std::erase(words, keyword(EtlLexer::MAHALANOBIS));
-            return words;
-        }
-        default: return {keyword(type)};
+    if (const auto kind = operator_kind(type)) {
+        const ast::Operator& op = *ast::operator_of(*kind);
+        if (op.symbol == op.word) return {std::string(op.word)};
+        return {std::string(op.symbol), std::string(op.word)};
     }
+    if (type == EtlLexer::STEPS) return {"steps", "step"};
+    if (type != EtlLexer::DISTANCE) return {keyword(type)};
+    std::vector<std::string> words = distance_words();
+    std::erase(words, keyword(EtlLexer::MAHALANOBIS));
+    return words;
 }
 
 /// Whether the text up to `offset` ends in a comment, which is no token.

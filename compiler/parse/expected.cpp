@@ -5,9 +5,8 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <string_view>
-
-#include "EtlParser.h"
 
 namespace etlc::parse {
 
@@ -57,51 +56,43 @@ const std::vector<Group>& groups() {
     return all;
 }
 
-bool has(const Stuck& stuck, std::size_t type) {
-    return stuck.expected.contains(type);
-}
-
 bool has_all(const Stuck& stuck, const Types& types) {
     return std::all_of(types.begin(), types.end(),
-                       [&stuck](std::size_t t) { return has(stuck, t); });
-}
-
-bool is_one_of(const Token* token, std::initializer_list<std::size_t> types) {
-    return token != nullptr &&
-           std::find(types.begin(), types.end(), token->getType()) != types.end();
+                       [&stuck](std::size_t t) { return stuck.expects(t); });
 }
 
 bool expects_name(const Stuck& stuck) {
-    return has(stuck, EtlParser::IDENTIFIER);
+    return stuck.expects(EtlParser::IDENTIFIER);
 }
 
 bool expects_operand(const Stuck& stuck) {
-    return expects_name(stuck) && has(stuck, EtlParser::NUMBER) && has(stuck, EtlParser::LPAREN);
+    return expects_name(stuck) && stuck.expects(EtlParser::NUMBER) &&
+           stuck.expects(EtlParser::LPAREN);
 }
 
 /// Formulas and expressions share rules; what stands before the place tells which of them was
 /// begun.
 std::string operand_words(const Stuck& stuck) {
-    if (is_one_of(stuck.previous, {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL,
-                                   EtlParser::GREATER, EtlParser::EQUAL, EtlParser::NOT_EQUAL}))
-        return has(stuck, EtlParser::CALIBRATED) && stuck.declaration == EtlParser::PREDICATE
+    if (is(stuck.previous, {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL,
+                            EtlParser::GREATER, EtlParser::EQUAL, EtlParser::NOT_EQUAL}))
+        return stuck.expects(EtlParser::CALIBRATED) && stuck.declaration == EtlParser::PREDICATE
                    ? "a threshold (a number, an expression or calibrated(...))"
                    : "a number or an expression";
-    const bool in_call = is_one_of(stuck.previous, {EtlParser::COMMA}) ||
-                         (is_one_of(stuck.previous, {EtlParser::LPAREN}) &&
-                          is_one_of(stuck.before_previous, {EtlParser::ABS, EtlParser::SQRT,
-                                                            EtlParser::MIN, EtlParser::MAX}));
-    if (in_call || !has(stuck, EtlParser::NOT)) return "an expression";
-    const bool bracket = is_one_of(stuck.previous, {EtlParser::LPAREN});
+    const bool in_call = is(stuck.previous, {EtlParser::COMMA}) ||
+                         (is(stuck.previous, {EtlParser::LPAREN}) &&
+                          is(stuck.before_previous,
+                             {EtlParser::ABS, EtlParser::SQRT, EtlParser::MIN, EtlParser::MAX}));
+    if (in_call || !stuck.expects(EtlParser::NOT)) return "an expression";
+    const bool bracket = is(stuck.previous, {EtlParser::LPAREN});
     if (bracket && stuck.declaration == EtlParser::PREDICATE) return "an expression";
     return bracket ? "a formula or an expression" : "a formula";
 }
 
 std::string name_words(const Stuck& stuck) {
-    switch (stuck.rule == EtlParser::RuleName ? stuck.parent_rule : stuck.rule) {
+    switch (stuck.rule_around()) {
         case EtlParser::RuleDistance: return "the name of a target";
         case EtlParser::RulePoint:
-            return has(stuck, EtlParser::LBRACKET)
+            return stuck.expects(EtlParser::LBRACKET)
                        ? "the name of an input or a projection, or a vector [x, y] of scalar inputs"
                        : "the name of a scalar input";
         case EtlParser::RuleWeights:
@@ -120,56 +111,31 @@ std::string name_words(const Stuck& stuck) {
 /// The operators that could follow an operand are tried by loops, so the parser does not expect
 /// them any more.
 bool operators_could_follow(const Stuck& stuck) {
-    const bool in_formula =
-        stuck.declaration == EtlParser::LET || stuck.declaration == EtlParser::TRUTH ||
-        stuck.declaration == EtlParser::MONITOR || stuck.declaration == EtlParser::SLIDING ||
-        stuck.declaration == EtlParser::RESTARTABLE || stuck.declaration == EtlParser::REPEATING;
     if (stuck.rule == EtlParser::RulePrimary) return true;
-    return stuck.rule == EtlParser::RuleDeclaration && in_formula &&
-           has(stuck, EtlParser::SEMICOLON);
+    return stuck.rule == EtlParser::RuleDeclaration && stuck.in_formula() &&
+           stuck.expects(EtlParser::SEMICOLON);
 }
 
-std::string spelling(std::size_t type) {
-    switch (type) {
-        case EtlParser::ASSIGN: return "=";
-        case EtlParser::LPAREN: return "(";
-        case EtlParser::RPAREN: return ")";
-        case EtlParser::LBRACKET: return "[";
-        case EtlParser::RBRACKET: return "]";
-        case EtlParser::COMMA: return ",";
-        case EtlParser::COLON: return ":";
-        case EtlParser::SEMICOLON: return ";";
-        case EtlParser::MONITOR: return "monitor";
-        case EtlParser::SCALE: return "scale";
-        case EtlParser::IN: return "in";
-        case EtlParser::HOLD: return "hold";
-        case EtlParser::MISSING: return "missing";
-        case EtlParser::OFFSET: return "offset";
-        case EtlParser::FITTED: return "fitted";
-        case EtlParser::FRAMES: return "frames";
-        case EtlParser::STRIDE: return "stride";
-        case EtlParser::BY: return "by";
-        case EtlParser::IMAGES: return "images";
-        case EtlParser::IMAGE: return "image";
-        case EtlParser::MEAN: return "mean";
-        case EtlParser::DEVIATION: return "deviation";
-        case EtlParser::OF: return "of";
-        case EtlParser::WHERE: return "where";
-        default: return {};
-    }
-}
+/// Tokens that are named by their spelling.
+constexpr std::array kSpelled = std::to_array<std::size_t>(
+    {EtlParser::MONITOR,  EtlParser::IN,     EtlParser::HOLD,      EtlParser::MISSING,
+     EtlParser::SCALE,    EtlParser::OFFSET, EtlParser::FITTED,    EtlParser::FRAMES,
+     EtlParser::STRIDE,   EtlParser::OF,     EtlParser::WHERE,     EtlParser::BY,
+     EtlParser::IMAGES,   EtlParser::IMAGE,  EtlParser::DEVIATION, EtlParser::MEAN,
+     EtlParser::ASSIGN,   EtlParser::LPAREN, EtlParser::RPAREN,    EtlParser::LBRACKET,
+     EtlParser::RBRACKET, EtlParser::COMMA,  EtlParser::COLON,     EtlParser::SEMICOLON});
 
 /// Lists are read by loops too, so another item is not expected any more where the list may end.
 bool another_item_could_follow(const Stuck& stuck) {
     switch (stuck.rule) {
-        case EtlParser::RuleDeclaration: return has(stuck, EtlParser::COLON);
+        case EtlParser::RuleDeclaration: return stuck.expects(EtlParser::COLON);
         case EtlParser::RuleCalibrated:
         case EtlParser::RulePoint:
         case EtlParser::RuleLiteral:
         case EtlParser::RuleSetting:
         case EtlParser::RuleRow:
         case EtlParser::RuleLoad:
-            return has(stuck, EtlParser::RPAREN) || has(stuck, EtlParser::RBRACKET);
+            return stuck.expects(EtlParser::RPAREN) || stuck.expects(EtlParser::RBRACKET);
         default: return false;
     }
 }
@@ -192,11 +158,9 @@ std::vector<std::string> listed(const Stuck& stuck) {
         words.emplace_back(group.words);
         covered.insert(covered.end(), group.types.begin(), group.types.end());
     }
-    for (std::size_t type = EtlParser::SPEC; type <= EtlParser::SEMICOLON; ++type) {
-        const std::string text = spelling(type);
-        if (has(stuck, type) && !contains(covered, type) && !text.empty())
-            words.push_back(fmt::format("'{}'", text));
-    }
+    for (const std::size_t type : kSpelled)
+        if (stuck.expects(type) && !contains(covered, type))
+            words.push_back(fmt::format("'{}'", keyword(type)));
     return words;
 }
 
@@ -209,9 +173,9 @@ std::string expected_words(const Stuck& stuck) {
     if (expects_operand(stuck)) return operand_words(stuck);
     // A name that stands where a number can is that of a constant, or a word of an argument.
     const bool in_argument =
-        is_one_of(stuck.previous, {EtlParser::ASSIGN}) && stuck.rule != EtlParser::RuleDeclaration;
-    if (in_argument && has(stuck, EtlParser::NUMBER)) return "a number or a word";
-    if (expects_name(stuck) && !has(stuck, EtlParser::NUMBER)) return name_words(stuck);
+        is(stuck.previous, {EtlParser::ASSIGN}) && stuck.rule != EtlParser::RuleDeclaration;
+    if (in_argument && stuck.expects(EtlParser::NUMBER)) return "a number or a word";
+    if (expects_name(stuck) && !stuck.expects(EtlParser::NUMBER)) return name_words(stuck);
     std::vector<std::string> words = listed(stuck);
     if (operators_could_follow(stuck)) words.insert(words.begin(), "an operator");
     if (another_item_could_follow(stuck)) words.emplace_back("','");
@@ -227,10 +191,8 @@ bool expects_keyword(const Stuck& stuck) {
 std::vector<std::string> expected_spellings(const Stuck& stuck) {
     std::vector<std::string> words;
     for (std::size_t type = EtlParser::SPEC; type <= EtlParser::SQRT; ++type) {
-        if (!has(stuck, type)) continue;
-        std::string literal = stuck.vocabulary->getLiteralName(type);
-        literal.erase(std::remove(literal.begin(), literal.end(), '\''), literal.end());
-        if (!literal.empty()) words.push_back(std::move(literal));
+        if (!stuck.expects(type)) continue;
+        if (std::string word = keyword(type); !word.empty()) words.push_back(std::move(word));
     }
     if (operators_could_follow(stuck))
         for (const char* word : {"and", "or", "implies", "iff", "until", "weak_until", "release",
@@ -263,24 +225,11 @@ const std::vector<std::string>& callable_words() {
 }
 
 std::string description_of_reserved(std::size_t type) {
-    switch (type) {
-        case EtlParser::IFF: return "the operator '<->'";
-        case EtlParser::IMPLIES: return "the operator '->'";
-        case EtlParser::OR: return "the operator '||'";
-        case EtlParser::AND: return "the operator '&&'";
-        case EtlParser::NOT: return "the operator '!'";
-        case EtlParser::UNTIL: return "the operator 'until'";
-        case EtlParser::WEAK_UNTIL: return "the operator 'weak_until'";
-        case EtlParser::RELEASE: return "the operator 'release'";
-        case EtlParser::SINCE: return "the operator 'since'";
-        case EtlParser::NEXT: return "the operator 'next'";
-        case EtlParser::EVENTUALLY: return "the operator 'eventually'";
-        case EtlParser::ALWAYS: return "the operator 'always'";
-        case EtlParser::PREVIOUS: return "the operator 'previous'";
-        case EtlParser::ONCE: return "the operator 'once'";
-        case EtlParser::HISTORICALLY: return "the operator 'historically'";
-        default: return "a word of the language";
-    }
+    const auto kind = operator_kind(type);
+    if (!kind) return "a word of the language";
+    const ast::Operator& op = *ast::operator_of(*kind);
+    const bool is_letter = std::isalpha(static_cast<unsigned char>(op.symbol[0])) != 0;
+    return fmt::format("the operator '{}'", is_letter ? op.word : op.symbol);
 }
 
 }  // namespace etlc::parse

@@ -5,8 +5,7 @@
 #include <algorithm>
 
 #include "parse/build.hpp"
-#include "parse/foreign/mistakes.hpp"
-#include "parse/nesting.hpp"
+#include "parse/foreign/foreign.hpp"
 #include "parse/stream/slices.hpp"
 #include "parse/stream/tokens.hpp"
 #include "parse/syntax_error.hpp"
@@ -38,21 +37,15 @@ private:
         const std::string_view text = file_.text();
         if (text.size() > kMaxSpecBytes) {
             sink_
-                .report({Code::spec_too_large,
-                         fmt::format("a spec of {} bytes; at most {} are read", text.size(),
-                                     kMaxSpecBytes),
-                         {},
-                         {},
-                         0,
-                         0,
-                         {}})
+                .report(
+                    {Code::spec_too_large, fmt::format("a spec of {} bytes; at most {} are read",
+                                                       text.size(), kMaxSpecBytes)})
                 .note("target sets of that size belong in .npy files");
             return false;
         }
         const bool utf16 = text.substr(0, 2) == "\xFF\xFE" || text.substr(0, 2) == "\xFE\xFF";
         if (utf16) {
-            sink_.report(
-                {Code::invalid_utf8, "this file is UTF-16; save it as UTF-8", {}, {}, 0, 0, {}});
+            sink_.report({Code::invalid_utf8, "this file is UTF-16; save it as UTF-8"});
             return false;
         }
         if (const std::size_t nul = text.find('\0'); nul != std::string_view::npos) {
@@ -101,7 +94,7 @@ private:
             std::optional<Diagnostic> explained = explain_mistake(
                 *tokens_[i], i > slice.begin ? tokens_[i - 1].get() : nullptr, file_);
             if (!explained) throw Unexplained{};
-            throw SyntaxError{std::move(*explained), {}, {}};
+            throw SyntaxError{std::move(*explained)};
         }
     }
 
@@ -111,13 +104,9 @@ private:
         Diagnostic error{
             Code::nesting_too_deep,
             fmt::format("brackets and operators are nested more than {} deep", kMaxNesting),
-            span_of(*tokens_[*at]),
-            {},
-            0,
-            0,
-            {}};
+            span_of(*tokens_[*at])};
         error.note("name parts of the formula with 'let'");
-        throw SyntaxError{std::move(error), {}, {}};
+        throw SyntaxError{std::move(error)};
     }
 
     std::variant<ast::Name, ast::Declaration> parsed(Slice slice) const {

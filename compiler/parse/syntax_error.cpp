@@ -2,9 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <initializer_list>
-
-#include "EtlParser.h"
 #include "parse/expected.hpp"
 #include "parse/foreign/foreign.hpp"
 
@@ -15,13 +12,6 @@ using diag::Diagnostic;
 using grammar::EtlParser;
 
 namespace {
-
-bool is(const Token* token, std::initializer_list<std::size_t> types) {
-    if (token == nullptr) return false;
-    for (const std::size_t type : types)
-        if (token->getType() == type) return true;
-    return false;
-}
 
 const std::vector<std::string>& units() {
     static const std::vector<std::string> all{"us", "ms", "s", "min", "steps"};
@@ -65,10 +55,6 @@ private:
         return next_line || slice_ended() ? source::Span{end, end} : found;
     }
 
-    Diagnostic at(Code code, source::Span span, std::string message) const {
-        return {code, std::move(message), span, {}, 0, 0, {}};
-    }
-
     void add_nearest(Diagnostic& to, const Token& word,
                      const std::vector<std::string>& candidates) const {
         const auto nearest = diag::nearest_name(text(word), candidates);
@@ -87,16 +73,12 @@ private:
     }
 
     Diagnostic no_declaration() const {
-        static const std::vector<std::string> kWords{
-            "spec",  "rate",       "period",  "const",       "encoder",
-            "input", "projection", "target",  "predicate",   "truth",
-            "let",   "monitor",    "sliding", "restartable", "repeating"};
         const bool word = found_is_word();
-        Diagnostic result =
-            at(word ? Code::unknown_keyword : Code::syntax_error, span_of(found_),
-               fmt::format("expected a declaration, found {}", quoted(found_, file_)));
+        Diagnostic result{word ? Code::unknown_keyword : Code::syntax_error,
+                          fmt::format("expected a declaration, found {}", quoted(found_, file_)),
+                          span_of(found_)};
         if (word && !add_native(result, Foreign::declaration, found_))
-            add_nearest(result, found_, kWords);
+            add_nearest(result, found_, own_words(Foreign::declaration));
         if (is(&found_, {EtlParser::NOT, EtlParser::NEXT, EtlParser::EVENTUALLY, EtlParser::ALWAYS,
                          EtlParser::PREVIOUS, EtlParser::ONCE, EtlParser::HISTORICALLY,
                          EtlParser::LPAREN, EtlParser::LBRACKET}))
@@ -115,16 +97,16 @@ private:
     }
 
     Diagnostic reserved() const {
-        Diagnostic result =
-            at(Code::reserved_name, span_of(found_),
-               fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)));
+        Diagnostic result{Code::reserved_name,
+                          fmt::format("{} is reserved and cannot be a name", quoted(found_, file_)),
+                          span_of(found_)};
         result.note(fmt::format("{} is {}; choose another name", quoted(found_, file_),
                                 description_of_reserved(found_.getType())));
         return result;
     }
 
-    /// A word before '(' that is neither a distance nor a function, or a word after an aggregation
-    /// that is no distance.
+    /// A word before '(' that is neither a distance nor a function, or a word after an
+    /// aggregation that is no distance.
     bool unknown_call() const {
         if (is_aggregation(stuck_.previous) && found_is_word()) return true;
         const bool after_operand = stuck_.rule == EtlParser::RulePrimary ||
@@ -138,12 +120,13 @@ private:
     Diagnostic no_such_callable() const {
         const bool aggregated = is_aggregation(stuck_.previous);
         const Token& word = aggregated ? found_ : *stuck_.previous;
-        Diagnostic result =
-            at(Code::unknown_keyword, span_of(word),
-               aggregated
-                   ? fmt::format("expected a distance after {}, found {}",
-                                 quoted(*stuck_.previous, file_), quoted(word, file_))
-                   : fmt::format("{} is neither a distance nor a function", quoted(word, file_)));
+        Diagnostic result{
+            Code::unknown_keyword,
+            aggregated
+                ? fmt::format("expected a distance after {}, found {}",
+                              quoted(*stuck_.previous, file_), quoted(word, file_))
+                : fmt::format("{} is neither a distance nor a function", quoted(word, file_)),
+            span_of(word)};
         if (word.getType() == EtlParser::IDENTIFIER && !add_native(result, Foreign::callable, word))
             add_nearest(result, word, callable_words());
         if (result.notes.empty())
@@ -161,15 +144,16 @@ private:
     }
 
     Diagnostic no_interval() const {
-        Diagnostic result =
-            at(Code::syntax_error, span_of(found_),
-               fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)));
+        Diagnostic result{Code::syntax_error,
+                          fmt::format("{} takes no interval", quoted(*stuck_.previous, file_)),
+                          span_of(found_)};
         result.note("intervals stand after F, G, O, H, U, R and S");
         return result;
     }
 
-    /// A word after a bound is a unit where the interval goes on behind it, or where it is close to
-    /// one; else the interval should have ended before it, as in "F[0, 5 q".
+    /// A word after a bound is a unit where the interval goes on behind it, or where it
+    /// is close to one; else the interval should have ended before it, as in "F[0, 5
+    /// q".
     bool unknown_unit() const {
         const bool word = is_name(found_) || is_reserved_word(found_, file_);
         if (!is(stuck_.previous, {EtlParser::NUMBER}) || !word) return false;
@@ -181,19 +165,21 @@ private:
     }
 
     Diagnostic no_such_unit() const {
-        Diagnostic result =
-            at(Code::unknown_keyword, span_of(found_),
-               fmt::format("expected a unit (us, ms, s, min or steps) after {}, found {}",
-                           quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        Diagnostic result{
+            Code::unknown_keyword,
+            fmt::format("expected a unit (us, ms, s, min or steps) after {}, found {}",
+                        quoted(*stuck_.previous, file_), quoted(found_, file_)),
+            span_of(found_)};
         if (!add_native(result, Foreign::unit, found_)) add_nearest(result, found_, units());
         return result;
     }
 
     Diagnostic expected_found() const {
         const bool unknown = found_is_word() && expects_keyword(stuck_);
-        return at(unknown ? Code::unknown_keyword : Code::syntax_error, place(),
-                  fmt::format("expected {} after {}, found {}", expected_words(stuck_),
-                              quoted(*stuck_.previous, file_), quoted(found_, file_)));
+        return {unknown ? Code::unknown_keyword : Code::syntax_error,
+                fmt::format("expected {} after {}, found {}", expected_words(stuck_),
+                            quoted(*stuck_.previous, file_), quoted(found_, file_)),
+                place()};
     }
 
     void add_notes(Diagnostic& to) const {
@@ -202,28 +188,28 @@ private:
             add_nearest(to, found_, expected_spellings(stuck_));
         if (to.notes.empty()) add_note_on_words(to);
         if (to.notes.empty()) add_note_on_rule(to);
-        if (slice_ended() && to.meant.empty() &&
-            stuck_.expected.contains(std::size_t{EtlParser::SEMICOLON}))
+        if (slice_ended() && to.meant.empty() && stuck_.expects(EtlParser::SEMICOLON))
             to.meant = ";";
     }
 
     /// What the words found and before suggest was meant.
     void add_note_on_words(Diagnostic& to) const {
         const std::size_t found = found_.getType();
-        const bool in_brackets = stuck_.rule == EtlParser::RulePrimary &&
-                                 stuck_.expected.contains(std::size_t{EtlParser::COMMA});
+        const bool in_brackets =
+            stuck_.rule == EtlParser::RulePrimary && stuck_.expects(EtlParser::COMMA);
         if (found == EtlParser::INF)
             to.note("inf stands only in the bounds of intervals and ranges");
         else if (found == EtlParser::ASSIGN && stuck_.rule != EtlParser::RuleName)
             to.note("a comparison is '<=', '<', '>=', '>', '==' or '!='");
         else if (found == EtlParser::RPAREN && in_brackets)
             to.note(
-                "min(...) and max(...) of expressions take two or more; over a target set it is "
+                "min(...) and max(...) of expressions take two or more; over a "
+                "target set it is "
                 "'min l2(z, goal)'");
         else if (is(stuck_.previous, {EtlParser::KTH}))
             to.note("kth takes its rank in brackets: kth(3) l2(z, goal)");
-        else if (is_reserved_word(found_, file_) &&
-                 stuck_.expected.contains(std::size_t{EtlParser::IDENTIFIER}) && !slice_ended())
+        else if (is_reserved_word(found_, file_) && stuck_.expects(EtlParser::IDENTIFIER) &&
+                 !slice_ended())
             to.note(fmt::format("{} is reserved: it is {}", quoted(found_, file_),
                                 description_of_reserved(found)));
     }
@@ -234,13 +220,16 @@ private:
                                  stuck_.parent_rule == EtlParser::RuleDuration ||
                                  is(stuck_.previous, {EtlParser::HELD});
         if (in_duration) {
-            to.note("'held' takes one bound, for how long: held[20 steps] f, held[2 s] f");
+            to.note(
+                "'held' takes one bound, for how long: held[20 steps] f, held[2 s] "
+                "f");
             return;
         }
         switch (stuck_.rule) {
             case EtlParser::RuleDimension:
                 to.note(
-                    "only f32 and bool can be scalars; an embedding has its dimension in brackets");
+                    "only f32 and bool can be scalars; an embedding has its "
+                    "dimension in brackets");
                 break;
             case EtlParser::RuleMetric:
             case EtlParser::RuleWeights:
@@ -249,18 +238,21 @@ private:
             case EtlParser::RuleInterval:
             case EtlParser::RuleBound:
                 to.note(
-                    "an interval is written [a, b] or [a, inf], in steps or with units of time: "
+                    "an interval is written [a, b] or [a, inf], in steps or with "
+                    "units of time: "
                     "[0, 20 steps], [0s, 2s]");
                 break;
             case EtlParser::RuleThreshold:
                 to.note(
-                    "what is compared stands on the left, its threshold on the right: x - y <= "
+                    "what is compared stands on the left, its threshold on the "
+                    "right: x - y <= "
                     "0.5");
                 break;
             case EtlParser::RuleComparisonOperator:
                 if (stuck_.declaration == EtlParser::PREDICATE)
                     to.note(
-                        "a predicate compares one expression with a threshold; a formula is named "
+                        "a predicate compares one expression with a threshold; a "
+                        "formula is named "
                         "with 'let'");
                 break;
             default: break;
@@ -283,19 +275,7 @@ SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& f
     return {Explanation(stuck, found, file).make(), text_of(found, file), previous};
 }
 
-Token* Strategy::recoverInline(antlr4::Parser* parser) {
-    give_up(parser, parser->getCurrentToken());
-}
-
-void Strategy::recover(antlr4::Parser* parser, std::exception_ptr error) {
-    try {
-        std::rethrow_exception(error);
-    } catch (const antlr4::RecognitionException& e) {
-        give_up(parser, e.getOffendingToken());
-    }
-}
-
-void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
+void Strategy::stop(antlr4::Parser* parser, const Token* found) {
     const auto index = [this](const Token* token) {
         // Tokens of a slice are in the order of their offsets.
         std::size_t i = slice_.begin;
@@ -316,8 +296,7 @@ void Strategy::give_up(antlr4::Parser* parser, const Token* found) {
                       context->getRuleIndex(),
                       parent != nullptr ? parent->getRuleIndex() : context->getRuleIndex(),
                       tokens_[slice_.begin]->getType(),
-                      found != parser->getCurrentToken(),
-                      &parser->getVocabulary()};
+                      found != parser->getCurrentToken()};
     throw explain(stuck, *tokens_[slice_.end], file_);
 }
 

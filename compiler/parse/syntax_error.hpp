@@ -15,26 +15,17 @@ struct SyntaxError {
     diag::Diagnostic diagnostic;
     /// The words at the place: an error that only follows from a reserved word used as a name is
     /// told by them.
-    std::string found;
-    std::string previous;
+    std::string found{};
+    std::string previous{};
 };
 
-class Strategy final : public antlr4::ANTLRErrorStrategy {
+class Strategy final : public StopAtError {
 public:
     Strategy(const source::File& file, const Tokens& tokens, Slice slice)
         : file_(file), tokens_(tokens), slice_(slice) {}
 
-    void reset(antlr4::Parser* /*parser*/) override {}
-    Token* recoverInline(antlr4::Parser* parser) override;
-    void recover(antlr4::Parser* parser, std::exception_ptr error) override;
-    void sync(antlr4::Parser* /*parser*/) override {}
-    bool inErrorRecoveryMode(antlr4::Parser* /*parser*/) override { return false; }
-    void reportMatch(antlr4::Parser* /*parser*/) override {}
-    void reportError(antlr4::Parser* /*parser*/,
-                     const antlr4::RecognitionException& /*error*/) override {}
-
 private:
-    [[noreturn]] void give_up(antlr4::Parser* parser, const Token* found);
+    void stop(antlr4::Parser* parser, const Token* found) override;
 
     const source::File& file_;
     const Tokens& tokens_;

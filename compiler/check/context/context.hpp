@@ -5,6 +5,7 @@
 // marked broken in `scope`.
 #pragma once
 
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <set>
@@ -12,6 +13,7 @@
 #include <unordered_map>
 #include <unordered_set>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "ast/ast.hpp"
@@ -19,6 +21,7 @@
 #include "check/context/options.hpp"
 #include "check/context/scope.hpp"
 #include "check/model/model.hpp"
+#include "data/files/file.hpp"
 #include "diag/diag.hpp"
 #include "embedded/embedded.hpp"
 #include "fitted/fitted.hpp"
@@ -83,6 +86,13 @@ struct Context {
     diag::Diagnostic& report(diag::Code code, Span span, std::string message) {
         return sink.report(code, span, std::move(message));
     }
+    /// `is_missing`: a file or a part of it is not there, which --check allows; nothing is then
+    /// built on it.
+    diag::Diagnostic& report_data(diag::Diagnostic found, bool is_missing) {
+        found.is_allowed = is_missing && options.allow_missing;
+        lacks_data = lacks_data || found.is_allowed;
+        return sink.report(std::move(found));
+    }
 };
 
 /// Declarations of one alternative, in file order.
@@ -96,21 +106,19 @@ void for_each_declaration(const ast::Spec& spec, Visit visit) {
 /// The names that a declaration declares, with the kind of each.
 template <class Visit>
 void for_each_name(const ast::Declaration& declaration, const Visit& visit) {
-    if (const auto* constant = std::get_if<ast::Constant>(&declaration))
-        visit(NameKind::constant, constant->name);
-    if (const auto* encoder = std::get_if<ast::Encoder>(&declaration))
-        visit(NameKind::encoder, encoder->name);
-    if (const auto* input = std::get_if<ast::Input>(&declaration))
-        for (const ast::Name& name : input->names) visit(NameKind::input, name);
-    if (const auto* projection = std::get_if<ast::Projection>(&declaration))
-        visit(NameKind::projection, projection->name);
-    if (const auto* target = std::get_if<ast::Target>(&declaration))
-        visit(NameKind::target, target->name);
-    if (const auto* predicate = std::get_if<ast::Predicate>(&declaration))
-        visit(NameKind::predicate, predicate->name);
-    if (const auto* let = std::get_if<ast::Let>(&declaration)) visit(NameKind::let, let->name);
-    if (const auto* monitor = std::get_if<ast::Monitor>(&declaration))
-        visit(NameKind::monitor, monitor->name);
+    using enum NameKind;  // in the order of ast::Declaration; a rate and a truth declare none
+    constexpr NameKind kKinds[] = {unreadable, constant,  encoder,    input, projection,
+                                   target,     predicate, unreadable, let,   monitor};
+    static_assert(std::size(kKinds) == std::variant_size_v<ast::Declaration>);
+    const NameKind kind = kKinds[declaration.index()];
+    std::visit(
+        [&](const auto& d) {
+            if constexpr (requires { d.names; })
+                for (const ast::Name& name : d.names) visit(kind, name);
+            else if constexpr (requires { d.name; })
+                visit(kind, d.name);
+        },
+        declaration);
 }
 
 /// What `name` means; null, with a diagnostic at the first such use, where nothing declares it.
@@ -122,10 +130,60 @@ const Reference* find(Context& context, const ast::Name& name, const std::vector
 /// declaration is broken.
 Index resolve(Context& context, const ast::Name& name, NameKind kind);
 
+/// An error at a word that is none of `words`: "'w' is no METHOD; expected WORDS".
+void report_unknown_word(Context& context, diag::Code code, const ast::Name& word,
+                         std::string_view why, const std::vector<std::string>& words);
+
+/// Whether something made from the spec is still what the spec asks for; else an error with what
+/// differs, and how to make it again.
+bool is_up_to_date(Context& context, diag::Code code, Span span, std::string message,
+                   const std::vector<std::string>& differences, std::string_view again);
+
+/// Reads a file that etlc made; nothing, with a diagnostic that says what it is for, where it is
+/// damaged.
+template <class File>
+std::optional<File> read_made(Context& context, const std::string& path,
+                              diag::Result<File> (*read)(const std::string&), Span user,
+                              std::string what_for) {
+    auto file = read(path);
+    if (file) {
+        context.dependencies.insert(path);
+        return std::move(*file);
+    }
+    std::error_code error;
+    diag::Diagnostic found = data::in_file(file.failure(), path);
+    found.is_allowed = context.options.allow_missing && !std::filesystem::exists(path, error);
+    context.sink.report(std::move(found)).note(user, std::move(what_for));
+    return std::nullopt;
+}
+
 /// The number for messages, with the name that stands for it: "limit = 0.5".
 std::string shown(const ast::Number& number);
 
 /// The number rounded once to float32; overflow and underflow are reported, with 1 in its place.
 float number32(Context& context, const ast::Number& number);
+
+// The steps of check, in the order in which check.cpp runs them. Each adds its part to the model
+// and reports what it finds; none depends on another having succeeded, only on its having run.
+void set_constants(Context& context, ast::Spec& spec);
+void declare_names(Context& context);
+void check_rate(Context& context);
+void check_encoders(Context& context);
+void check_inputs(Context& context);
+void collect_encoded(Context& context);
+void check_embeddings(Context& context);
+void check_projections(Context& context);
+void check_targets(Context& context);
+void check_predicates(Context& context);
+void check_lets(Context& context);
+void check_truths(Context& context);
+void check_fitted_frames(Context& context);
+void check_fitted_entries(Context& context);
+void check_monitors(Context& context);
+void choose_telemetry(Context& context);
+void check_thresholds(Context& context);
+void set_robustness(Context& context);
+void warn(Context& context);
+void make_retargetable(Context& context);
 
 }  // namespace etlc::check

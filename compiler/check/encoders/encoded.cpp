@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "check/context/steps.hpp"
-#include "check/encoders/frames.hpp"
+#include "check/context/context.hpp"
+#include "check/encoders/settings.hpp"
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -17,6 +17,56 @@ namespace etlc::check {
 namespace {
 
 using diag::Code;
+
+constexpr std::string_view kEmbedAgain = "embed again with 'etlc embed'";
+
+std::optional<embedded::File> read_file(Context& c, const Encoder& first) {
+    const std::string& given = c.options.embedded_path;
+    const std::string path = given.empty() ? embedded::default_path(c.file.path()) : given;
+    if (exists(path))
+        return read_made(c, path, embedded::read, first.span,
+                         fmt::format("'{}' makes embeddings", first.name));
+    c.report_data({Code::embedded_missing,
+                   fmt::format("'{}' makes embeddings, and there is no file {}", first.name, path),
+                   first.span},
+                  true)
+        .note("'etlc embed' makes it, of the images that the spec names; --embedded names another");
+    return std::nullopt;
+}
+
+std::string then_and_now(std::string_view what, const std::string& then, const std::string& now) {
+    return fmt::format("{} then: {}; now: {}", what, then, now);
+}
+
+/// What is not as it was. A model that is not here is not missed: where a monitor is built there
+/// need be none.
+std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::Encoder& then) {
+    std::vector<std::string> found;
+    if (then.declaration != encoder.declaration)
+        found.push_back(then_and_now("the declaration", then.declaration, encoder.declaration));
+    if (encoder.dimension != 0 && then.dimension != encoder.dimension)
+        found.push_back(then_and_now("the dimension", std::to_string(then.dimension),
+                                   std::to_string(encoder.dimension)));
+    if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
+        found.emplace_back(
+            "an earlier etlc ran it, by OpenCV, whose numbers may be others than the model's, or "
+            "by "
+            "ONNX Runtime without its version");
+    const std::string path = beside_spec(c, encoder.model);
+    if (!found.empty() || !exists(path)) return found;
+    c.dependencies.insert(path);
+    if (exists(settings_path(path))) c.dependencies.insert(settings_path(path));
+    std::string place;
+    const auto now = describe(encoder, path, place);
+    if (!now) {
+        c.sink.report(data::in_file(now.failure(), place));
+        return found;
+    }
+    if (now->model != then.model) found.push_back(fmt::format("{} has changed", encoder.model));
+    if (now->settings != then.settings)
+        found.push_back(then_and_now("the settings", then.settings, now->settings));
+    return found;
+}
 
 Span span_of(const ast::Target::Source& source) {
     return std::visit([](const auto& s) { return s.span; }, source);
@@ -86,6 +136,15 @@ std::vector<std::string> changes(Context& c, const Encoded& encoded, const embed
     return found;
 }
 
+/// Of Model::encoded, where equal ones stand once.
+Index add(Model& model, const Encoded& encoded) {
+    const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
+    const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);
+    const auto index = static_cast<Index>(at - model.encoded.begin());
+    if (at == model.encoded.end()) model.encoded.push_back(encoded);
+    return index;
+}
+
 }  // namespace
 
 bool is_encoded(const ast::Target::Source& source) {
@@ -103,19 +162,6 @@ diag::Result<std::vector<std::string>> files_of(const Encoded& encoded,
     return std::vector<std::string>{encoded.path};
 }
 
-namespace {
-
-/// Of Model::encoded, where equal ones stand once.
-Index add(Model& model, const Encoded& encoded) {
-    const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
-    const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);
-    const auto index = static_cast<Index>(at - model.encoded.begin());
-    if (at == model.encoded.end()) model.encoded.push_back(encoded);
-    return index;
-}
-
-}  // namespace
-
 std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source,
                                    const std::optional<ast::Name>& encoder) {
     const auto encoded = encoded_of(c, source, encoder);
@@ -123,31 +169,26 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     const std::string& path = c.embedded_file->path;
     const auto found = c.embedded_file->entries.find(encoded->text);
     if (found == c.embedded_file->entries.end()) {
-        diag::Diagnostic missing{Code::embedded_missing,
-                                 fmt::format("{} has nothing for {}", path, encoded->text),
-                                 encoded->span,
-                                 {},
-                                 0,
-                                 0,
-                                 {}};
-        missing.is_allowed = c.options.allow_missing;
-        c.lacks_data = c.lacks_data || missing.is_allowed;
-        c.sink.report(std::move(missing)).note("'etlc embed' makes it");
+        c.report_data({Code::embedded_missing,
+                       fmt::format("{} has nothing for {}", path, encoded->text), encoded->span},
+                      true)
+            .note("'etlc embed' makes it");
         return std::nullopt;
     }
     const embedded::Entry& entry = found->second;
-    if (const auto differences = changes(c, *encoded, entry); !differences.empty()) {
-        constexpr std::size_t kMostTold = 5;
-        auto& error = c.report(Code::embedded_stale, encoded->span,
-                               fmt::format("{} holds embeddings of other {} than there are now",
-                                           path, encoded->is_video ? "frames" : "images"));
-        for (std::size_t i = 0; i < std::min(differences.size(), kMostTold); ++i)
-            error.note(differences[i]);
-        if (differences.size() > kMostTold)
-            error.note(fmt::format("and {} more", differences.size() - kMostTold));
-        error.note("embed again with 'etlc embed'");
-        return std::nullopt;
+    std::vector<std::string> differences = changes(c, *encoded, entry);
+    constexpr std::size_t kMostShown = 5;
+    if (differences.size() > kMostShown) {
+        const std::string more = fmt::format("and {} more", differences.size() - kMostShown);
+        differences.resize(kMostShown);
+        differences.push_back(more);
     }
+    const bool is_current =
+        is_up_to_date(c, Code::embedded_stale, encoded->span,
+                      fmt::format("{} holds embeddings of other {} than there are now", path,
+                                  encoded->is_video ? "frames" : "images"),
+                      differences, kEmbedAgain);
+    if (!is_current) return std::nullopt;
     Matrix matrix;
     matrix.rows = entry.rows;
     matrix.columns = entry.columns;
@@ -157,6 +198,30 @@ std::optional<Matrix> read_encoded(Context& c, const ast::Target::Source& source
     matrix.hash = entry.hash;
     matrix.encoded = {{add(c.model, *encoded), 0, entry.rows}};
     return matrix;
+}
+
+void check_embeddings(Context& c) {
+    if (c.model.encoders.empty()) return;
+    c.embedded_file = read_file(c, c.model.encoders.front());
+    if (!c.embedded_file) return;
+    for (Encoder& encoder : c.model.encoders) {
+        const auto found = c.embedded_file->encoders.find(encoder.name);
+        if (found == c.embedded_file->encoders.end()) {
+            c.report_data(
+                 {Code::embedded_missing,
+                  fmt::format("{} has nothing by '{}'", c.embedded_file->path, encoder.name),
+                  encoder.span},
+                 true)
+                .note(std::string(kEmbedAgain));
+            continue;
+        }
+        encoder.fingerprint = embedded::fingerprint(found->second);
+        encoder.otherwise = embedded::fingerprints_otherwise(found->second);
+        is_up_to_date(c, Code::embedded_stale, encoder.span,
+                      fmt::format("'{}' is not the encoder that made {}", encoder.name,
+                                  c.embedded_file->path),
+                      changes(c, encoder, found->second), kEmbedAgain);
+    }
 }
 
 void collect_encoded(Context& c) {

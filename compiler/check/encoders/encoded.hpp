@@ -4,7 +4,9 @@
 // where it was made by this encoder, of these images.
 #pragma once
 
+#include <cstdint>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "ast/ast.hpp"
@@ -22,5 +24,11 @@ std::optional<Matrix> read_encoded(Context& context, const ast::Target::Source& 
 /// Its files, as the spec names them, sorted; an image, those of a folder or pattern, or a video.
 diag::Result<std::vector<std::string>> files_of(const Encoded& encoded,
                                                 const std::string& spec_path);
+
+/// Frames of a recording: samples of the embedding input whose name is the key.
+std::optional<Matrix> read_frames(Context& context, const ast::Frames& frames);
+
+/// The frames listed, or from the first to the last by the stride, in the order of the spec.
+std::optional<std::vector<std::uint64_t>> frames_of(Context& context, const ast::Frames& frames);
 
 }  // namespace etlc::check

@@ -1,10 +1,10 @@
-#include "check/encoders/frames.hpp"
+// Frames of a recording as rows, frames("ep.npz", "z", [120, 180]).
+#include "check/encoders/encoded.hpp"
 
 #include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <map>
 
 #include "check/encoders/marks.hpp"
@@ -65,11 +65,7 @@ void report(Context& c, const ast::Frames& written, const std::string& path,
     diag::Diagnostic diagnostic = data::in_trace(failure, path);
     diagnostic.notes.clear();  // of --map, which is for the episodes of the command
     diagnostic.span = written.span;
-    std::error_code unknown;
-    diagnostic.is_allowed = c.options.allow_missing &&
-                            !std::filesystem::exists(data::trace_file(path), unknown) && !unknown;
-    c.lacks_data = c.lacks_data || diagnostic.is_allowed;
-    c.sink.report(std::move(diagnostic));
+    c.report_data(std::move(diagnostic), !exists(data::trace_file(path)));
 }
 
 }  // namespace

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
+#include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -67,6 +69,22 @@ std::optional<Failure> take(Encoder& encoder, const std::string& key, const Json
     for (const Json& item : value.items) texts.push_back(item.text);
     const auto mistake = set_setting(encoder, key, texts);
     return mistake ? std::optional(wrong(*mistake)) : std::nullopt;
+}
+
+bool set_settings(Context& c, const ast::Encoder& declaration, Encoder& encoder) {
+    std::set<std::string> given;
+    for (const ast::Encoder::Setting& setting : declaration.settings) {
+        std::vector<std::string> numbers;
+        for (const ast::Number& number : setting.values) numbers.push_back(number.text);
+        const auto mistake =
+            given.insert(setting.key.text).second
+                ? set_setting(encoder, setting.key.text, numbers)
+                : std::optional(fmt::format("{} is given twice", setting.key.text));
+        if (!mistake) continue;
+        c.report(Code::encoder_form, setting.span, *mistake);
+        return false;
+    }
+    return true;
 }
 
 }  // namespace
@@ -133,6 +151,25 @@ diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& mo
     place = settings_path(model_path);
     if (auto failure = take_settings_file(encoder, model_path)) return *failure;
     return embedded::Encoder{encoder.declaration, std::move(*hash), settings_text(encoder), "", 0};
+}
+
+void check_encoders(Context& c) {
+    for_each_declaration<ast::Encoder>(c.spec, [&](const ast::Encoder& declaration, Index index) {
+        Encoder encoder;
+        encoder.name = declaration.name.text;
+        encoder.model = declaration.model.path;
+        encoder.span = declaration.name.span;
+        bool good = set_settings(c, declaration, encoder);
+        if (!declaration.model.key.empty()) {
+            c.report(Code::encoder_form, declaration.model.key_span,
+                     "a model is a file of its own; expected load(\"FILE\") without a key");
+            good = false;
+        }
+        if (!good) c.scope.entity(NameKind::encoder, index).broken = true;
+        encoder.declaration =
+            fmt::format("load(\"{}\"), {}", encoder.model, settings_text(encoder));
+        c.model.encoders.push_back(std::move(encoder));
+    });
 }
 
 }  // namespace etlc::check

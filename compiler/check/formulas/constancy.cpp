@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "check/formulas/formulas.hpp"
-
 namespace etlc::check {
 
 namespace {

@@ -5,13 +5,10 @@
 #pragma once
 
 #include "check/context/context.hpp"
-#include "check/formulas/looks.hpp"
 
 namespace etlc::check {
 
 /// kNone where the formula had an error, which is reported, or names something broken.
 Index check_formula(Context& context, const ast::Formula& formula);
-
-std::string_view operator_word(Formula::Kind kind);  ///< "F", "U", ...
 
 }  // namespace etlc::check

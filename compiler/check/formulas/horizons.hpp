@@ -4,6 +4,7 @@
 // bounds along the deepest path as written.
 #pragma once
 
+#include <limits>
 #include <vector>
 
 #include "check/model/model.hpp"
@@ -19,5 +20,19 @@ struct Reach {
 
 /// Parallel to model.formulas.
 std::vector<Reach> reaches(const Model& model);
+
+/// What a missing sample may do to the verdicts of a monitor, at worst; another sample may decide
+/// the verdict earlier.
+struct Gap {
+    static constexpr std::uint64_t kForGood = std::numeric_limits<std::uint64_t>::max();
+
+    /// Those that stand for nothing where they are missing (`missing false`); empty: the monitor
+    /// is never unknown.
+    std::vector<Index> inputs;
+    std::uint64_t steps = 0;  ///< of unknown verdicts; kForGood
+};
+
+/// Parallel to model.monitors.
+std::vector<Gap> gaps(const Model& model);
 
 }  // namespace etlc::check

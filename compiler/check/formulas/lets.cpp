@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 

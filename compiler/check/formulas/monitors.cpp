@@ -1,7 +1,7 @@
 // Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/formulas/formulas.hpp"
 #include "check/formulas/horizons.hpp"
 #include "check/guarantees/calibrated.hpp"
@@ -56,7 +56,7 @@ public:
 
 private:
     std::string_view word(Index formula) const {
-        return operator_word(c_.model.formulas[formula].kind);
+        return ast::operator_of(c_.model.formulas[formula].kind)->symbol;
     }
 
     /// Where the operator stands in a let, where it is used as well.
@@ -119,18 +119,18 @@ private:
 /// The node of a predicate that `is` so, at or below `root`; kNone where there is none.
 template <class Is>
 Index predicate_node(const Model& model, Index root, Is is) {
-    std::vector<bool> visited(model.formulas.size());
-    std::vector<Index> pending{root};
-    while (!pending.empty()) {
-        const Index at = pending.back();
-        pending.pop_back();
-        if (visited[at]) continue;
-        visited[at] = true;
+    for (const Index at : parts_of(model, root)) {
         const Formula& formula = model.formulas[at];
         if (formula.kind == Formula::Kind::predicate && is(formula.index)) return at;
-        pending.insert(pending.end(), formula.operands.begin(), formula.operands.end());
     }
     return kNone;
+}
+
+/// The node of a comparison without a name, and so of one whose truth nothing says.
+Index node_without_truth(const Model& model, Index root) {
+    return predicate_node(model, root, [&](Index predicate) {
+        return model.predicates[predicate].name.empty() && !is_own_truth(model, predicate);
+    });
 }
 
 /// A shift is guaranteed for the thresholds that it was fitted with.
@@ -148,9 +148,7 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
 
 /// A predicate over an embedding has its truth by its name. Compared with itself, it always agrees.
 void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
-    const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
-        return c.model.predicates[predicate].name.empty() && !is_own_truth(c.model, predicate);
-    });
+    const Index at = node_without_truth(c.model, monitor.formula);
     if (at == kNone) return;
     const std::string comparison = c.model.predicates[c.model.formulas[at].index].shown();
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,
@@ -222,6 +220,31 @@ void check_truths(Context& c) {
                      c.model.predicates[c.model.formulas[calibrated].index].name));
     }
     c.model.truths = std::move(truths);
+}
+
+/// Which frames something is fitted on: `where` of fitted(...), as a formula.
+void check_fitted_frames(Context& c) {
+    for (Index i = 0; i < c.model.fitted.size(); ++i) {
+        const ast::Formula& written = *c.fitted_where[i];
+        if (written.kind == ast::Formula::Kind::constant_true) continue;
+        const Index where = check_formula(c, written);
+        c.model.fitted[i].where = where;
+        if (where == kNone) continue;
+        const std::vector<Reach> all = reaches(c.model);
+        if (const Index future = all[where].future; future != kNone)
+            c.report(Code::future_in_truth, c.operator_spans[future],
+                     fmt::format("{} looks ahead; frames are chosen by what is true in the present "
+                                 "and the past",
+                                 ast::operator_of(c.model.formulas[future].kind)->symbol))
+                .note(written.span, "the frames are chosen here");
+        if (const Index compared = node_without_truth(c.model, where); compared != kNone)
+            c.report(Code::frames_without_truth, c.model.formulas[compared].span,
+                     fmt::format("frames are chosen by what is true, and nothing says when '{}' is",
+                                 c.model.predicates[c.model.formulas[compared].index].shown()))
+                .note(
+                    "name a predicate: its truth counts, from 'truth NAME = ...;' or an array "
+                    "truth.NAME in the episodes");
+    }
 }
 
 namespace {

@@ -1,13 +1,16 @@
 // What is legal and surely not meant: declarations without use, predicates without choice.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
+#include <tuple>
 
-#include "check/context/steps.hpp"
-#include "check/formulas/formula_warnings.hpp"
+#include "check/context/context.hpp"
+#include "check/formulas/constancy.hpp"
+#include "check/formulas/horizons.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/predicates/predicates.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {
@@ -80,6 +83,183 @@ void warn_of_same_predicates(Context& c) {
     }
 }
 
+// ---- formulas, each warned of once an operator or monitor
+// ----------------------------------------
+
+using Kind = Formula::Kind;
+
+/// A number for each formula, equal for formulas of the same structure.
+std::vector<Index> structures(const Model& model) {
+    std::map<std::vector<Index>, Index> known;
+    std::vector<Index> result;
+    for (const Formula& formula : model.formulas) {
+        std::vector<Index> operands;
+        for (const Index operand : formula.operands) operands.push_back(result[operand]);
+        const bool commutes = formula.kind == Kind::conjunction ||
+                              formula.kind == Kind::disjunction ||
+                              formula.kind == Kind::equivalence;
+        if (commutes) std::sort(operands.begin(), operands.end());
+        std::vector<Index> key{static_cast<Index>(formula.kind), formula.index, formula.low,
+                               formula.high};
+        key.insert(key.end(), operands.begin(), operands.end());
+        result.push_back(
+            known.try_emplace(std::move(key), static_cast<Index>(known.size())).first->second);
+    }
+    return result;
+}
+
+bool is_unbounded(const Formula& formula, Kind kind) {
+    return formula.kind == kind && formula.high == kUnbounded;
+}
+
+class FormulaWarnings {
+public:
+    explicit FormulaWarnings(Context& context)
+        : c_(context),
+          model_(context.model),
+          structures_(structures(model_)),
+          constancies_(constancies(model_)),
+          reaches_(reaches(model_)) {}
+
+    void run() {
+        for (Index i = 0; i < model_.formulas.size(); ++i) {
+            warn_of_same_operands(i);
+            warn_of_eventual_implication(i);
+        }
+        const std::vector<bool> in_prefix = below_prefix_monitors();
+        for (Index i = 0; i < model_.formulas.size(); ++i)
+            if (in_prefix[i]) warn_of_last_step(i);
+        for (Index i = 0; i < model_.monitors.size(); ++i) {
+            const Monitor& monitor = model_.monitors[i];
+            const Entity& entity = c_.scope.entity(NameKind::monitor, i);
+            if (monitor.formula == kNone) continue;
+            if (!warn_of_constant(monitor, entity.span))
+                warn_of_first_position(monitor, entity.span);
+            warn_of_same_monitor(monitor, entity);
+        }
+    }
+
+private:
+    std::vector<bool> below_prefix_monitors() const {
+        std::vector<bool> found(model_.formulas.size());
+        for (const Monitor& monitor : model_.monitors)
+            if (monitor.formula != kNone && !monitor.sliding) found[monitor.formula] = true;
+        for (std::size_t i = found.size(); i-- > 0;)
+            if (found[i])
+                for (const Index operand : model_.formulas[i].operands) found[operand] = true;
+        return found;
+    }
+
+    /// Two operands of the same structure, or one the negation of the other: `p || p`, `p U p`, `p
+    /// && !p`.
+    void warn_of_same_operands(Index at) {
+        const Formula& formula = model_.formulas[at];
+        if (formula.operands.size() < 2) return;
+        std::map<Index, Index> seen;
+        for (const Index operand : formula.operands) {
+            const auto [same, is_new] = seen.try_emplace(structures_[operand], operand);
+            if (is_new) continue;
+            c_.report(Code::same_operands, c_.operator_spans[at],
+                      fmt::format("{} has the operand '{}' twice",
+                                  ast::operator_of(formula.kind)->symbol, shown(model_, operand)));
+            return;
+        }
+        for (const Index operand : formula.operands) {
+            if (model_.formulas[operand].kind != Kind::negation) continue;
+            const Index inner = model_.formulas[operand].operands[0];
+            if (!seen.contains(structures_[inner])) continue;
+            c_.report(Code::same_operands, c_.operator_spans[at],
+                      fmt::format("{} has the operand '{}' and its negation",
+                                  ast::operator_of(formula.kind)->symbol, shown(model_, inner)));
+            return;
+        }
+    }
+
+    void warn_of_eventual_implication(Index at) {
+        const Formula& formula = model_.formulas[at];
+        if (formula.kind != Kind::eventually ||
+            model_.formulas[formula.operands[0]].kind != Kind::implication)
+            return;
+        const Formula& implication = model_.formulas[formula.operands[0]];
+        const std::string left = shown(model_, implication.operands[0]);
+        c_.report(
+              Code::eventual_implication, c_.operator_spans[at],
+              fmt::format("F of an implication holds as soon as its left side '{}' does not", left))
+            .note(
+                "G (a -> F b) says that every a is followed by a b, F (a && b) that both happen at "
+                "once");
+    }
+
+    void warn_of_last_step(Index at) {
+        const Formula& outer = model_.formulas[at];
+        if (outer.operands.size() != 1) return;
+        const Formula& inner = model_.formulas[outer.operands[0]];
+        const bool eventually_always =
+            is_unbounded(outer, Kind::eventually) && is_unbounded(inner, Kind::always);
+        const bool always_eventually =
+            is_unbounded(outer, Kind::always) && is_unbounded(inner, Kind::eventually);
+        if (!eventually_always && !always_eventually) return;
+        const std::string_view words = eventually_always ? "F G" : "G F";
+        auto& warning = c_.report(
+            Code::last_step_only, c_.operator_spans[at],
+            inner.low == 0
+                ? fmt::format("on a growing prefix {} says no more than that its operand holds at "
+                              "the last step",
+                              words)
+                : fmt::format("on a growing prefix the inner operator of {} looks past the last "
+                              "step, where it is {}",
+                              words, eventually_always ? "always satisfied" : "never satisfied"));
+        warning.note(
+            "every operator is cut at the prefix; G F[0, b] p or F G[0, b] p with a bound says "
+            "more");
+    }
+
+    bool warn_of_constant(const Monitor& monitor, Span name) {
+        const Constancies& found = constancies_[monitor.formula];
+        const bool anywhere = monitor.sliding || monitor.restarts != Restarts::never;
+        const Constancy constancy = anywhere ? found.anywhere : found.at_start;
+        if (constancy == Constancy::varies) return false;
+        auto& warning = c_.report(
+            Code::constant_verdict, name,
+            fmt::format("'{}' is {} from the first step, whatever the inputs are", monitor.name,
+                        constancy == Constancy::always ? "satisfied" : "violated"));
+        if (!anywhere && found.anywhere == Constancy::varies)
+            warning.note(
+                "a prefix monitor reports about position 0, which has no past; did you mean a "
+                "sliding monitor?");
+        return true;
+    }
+
+    void warn_of_first_position(const Monitor& monitor, Span name) {
+        if (monitor.sliding || monitor.restarts != Restarts::never ||
+            reaches_[monitor.formula].future != kNone)
+            return;
+        c_.report(Code::first_position_only, name,
+                  fmt::format("'{}' looks only at position 0, so that its verdict never changes "
+                              "after the first step",
+                              monitor.name))
+            .note("did you mean a sliding monitor, or G in front of the formula?");
+    }
+
+    void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
+        if (monitor.calibration) return;                       // shifted, each by its own
+        if (monitor.restarts == Restarts::on_request) return;  // each at its own time
+        const auto [first, is_new] = monitors_.try_emplace(
+            {structures_[monitor.formula], monitor.sliding, monitor.restarts}, &entity);
+        if (is_new) return;
+        c_.report(Code::same_definition, entity.span,
+                  fmt::format("'{}' is the same monitor as '{}'", entity.name, first->second->name))
+            .note(first->second->span, fmt::format("'{}' is declared here", first->second->name));
+    }
+
+    Context& c_;
+    const Model& model_;
+    std::vector<Index> structures_;
+    std::vector<Constancies> constancies_;
+    std::vector<Reach> reaches_;
+    std::map<std::tuple<Index, bool, Restarts>, const Entity*> monitors_;
+};
+
 }  // namespace
 
 void warn(Context& c) {
@@ -89,7 +269,7 @@ void warn(Context& c) {
     warn_of_constant_predicates(c);
     warn_of_similarities(c);
     warn_of_same_predicates(c);
-    warn_about_formulas(c);
+    FormulaWarnings(c).run();
 }
 
 }  // namespace etlc::check

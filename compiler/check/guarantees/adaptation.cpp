@@ -7,7 +7,6 @@
 #include <vector>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 

@@ -37,10 +37,7 @@ const Method* find_method(Context& c, const ast::Name& name) {
         if (method.name == name.text) return &method;
         names.emplace_back(method.name);
     }
-    auto& error = c.report(Code::unknown_method, name.span,
-                           fmt::format("'{}' is not a calibration method; expected {}", name.text,
-                                       diag::alternatives(names)));
-    if (const auto near = diag::nearest_name(name.text, names)) diag::did_you_mean(error, *near);
+    report_unknown_word(c, Code::unknown_method, name, "is not a calibration method", names);
     return nullptr;
 }
 
@@ -139,6 +136,12 @@ std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& a
 }
 
 }  // namespace
+
+std::string_view method_name(ThresholdOrigin origin) {
+    for (const Method& method : methods())
+        if (method.origin == origin) return method.name;
+    return "";
+}
 
 std::string_view word(Against against) {
     return against == Against::missed_alarm ? "missed_alarm" : "missed_success";

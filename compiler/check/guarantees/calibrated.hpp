@@ -20,6 +20,9 @@ std::optional<Threshold> check_calibrated(Context& context, const ast::Calibrate
 std::optional<MonitorCalibration> check_monitor_calibrated(Context& context,
                                                            const ast::Calibrated& written);
 
+/// How specs and thresholds files call the method: "conformal"; empty for a literal threshold.
+std::string_view method_name(ThresholdOrigin origin);
+
 std::string_view word(Against against);  ///< "missed_alarm"
 
 }  // namespace etlc::check

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 
 namespace etlc::check {
 

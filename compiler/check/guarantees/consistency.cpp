@@ -24,7 +24,7 @@ bool keeps_all(const Entry& entry) {
 }
 
 /// As a number, and no longer than a line bears.
-std::string shown(const std::string& alpha) {
+std::string short_text(const std::string& alpha) {
     constexpr std::size_t kLongest = 40;
     const std::string text = Decimal::parse(alpha).text();
     return text.size() <= kLongest ? text : text.substr(0, kLongest) + "...";
@@ -52,11 +52,11 @@ Found counts(const Entry& entry, const std::string& place) {
     if (k > entry.n)
         return Contradiction{
             fmt::format("'{}.n' is {}, expected at least {}, which alpha = {} takes", place,
-                        entry.n, scores_needed(entry.alpha), shown(entry.alpha))};
+                        entry.n, scores_needed(entry.alpha), short_text(entry.alpha))};
     if (k != entry.k)
         return Contradiction{
             fmt::format("'{}.k' is {}, expected {}: the rank of alpha = {} among {}", place,
-                        entry.k, k, shown(entry.alpha), diag::counted(entry.n, "score"))};
+                        entry.k, k, short_text(entry.alpha), diag::counted(entry.n, "score"))};
     return std::nullopt;
 }
 

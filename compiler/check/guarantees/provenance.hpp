@@ -10,10 +10,24 @@
 #include <string_view>
 #include <vector>
 
-#include "check/guarantees/reads.hpp"
 #include "check/model/model.hpp"
 
 namespace etlc::check {
+
+/// For each thing that scores or frames are computed from, by kind and name ("input z"), a
+/// canonical text: two models with equal texts make the same of the same episodes. Every struct of
+/// the model is taken apart into all its fields, so a new field does not compile before somebody
+/// has said whether it counts.
+using Reads = std::map<std::string, std::string>;
+
+/// Of its threshold: the threshold itself and `missing` are not read by it.
+Reads reads(const Model& model, Index predicate);
+/// Of its shift: the monitor without it, beside the same formula over the truths.
+Reads reads(const Model& model, const Monitor& monitor);
+Reads reads(const Model& model, const Fitted& fitted);
+
+/// What differs between two of them, a sentence each: "predicate a was: x <= 0.5; it is: x <= 1".
+std::vector<std::string> differences(const Reads& then, const Reads& now);
 
 struct Provenance {
     std::string predicate;  ///< canonical text without the threshold
@@ -42,9 +56,6 @@ std::string labels(const std::string& truth, Index predicate, const Labelling& l
 std::string stated(std::string labels);
 
 Provenance provenance(const Model& model, Index predicate);
-
-/// How a thresholds file calls the method: "conformal"; empty for a literal threshold.
-std::string_view method_name(ThresholdOrigin origin);
 
 /// The same of a calibrated monitor: `predicate` is its formula with the predicates and their
 /// thresholds written out, `truth` says of each what its labels are, `targets` are all that either

@@ -1,7 +1,9 @@
-#include "check/guarantees/reads.hpp"
+// All that a guarantee was made from, as text.
+#include "check/guarantees/provenance.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <set>
 #include <vector>
 
@@ -27,40 +29,6 @@ std::string_view word(InputType type) {
         case InputType::f32: return "f32";
         case InputType::f16: return "f16";
         case InputType::i8: return "i8";
-    }
-    return "";
-}
-
-std::string_view word(Metric metric) {
-    switch (metric) {
-#define DISTANCE(id, Type, prepared, zero_is_unknown) \
-    case Metric::id:                                  \
-        return #id;
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-    }
-    return "";
-}
-
-std::string_view word(Aggregation aggregation) {
-    switch (aggregation) {
-        case Aggregation::min: return "min";
-        case Aggregation::max: return "max";
-        case Aggregation::mean: return "mean";
-        case Aggregation::kth: return "kth";
-    }
-    return "";
-}
-
-std::string_view word(Comparison comparison) {
-    switch (comparison) {
-        case Comparison::less_equal: return "<=";
-        case Comparison::less: return "<";
-        case Comparison::greater_equal: return ">=";
-        case Comparison::greater: return ">";
-        case Comparison::equal: return "==";
-        case Comparison::not_equal: return "!=";
     }
     return "";
 }
@@ -92,7 +60,8 @@ public:
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
-        add("predicate " + name, fmt::format("{} {}", print(model_, expression), word(comparison)));
+        add("predicate " + name,
+            fmt::format("{} {}", print(model_, expression), symbol(comparison)));
         add_truth(index);
     }
 
@@ -178,7 +147,8 @@ private:
         const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
         std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
-                                      word(metric), text_of(point), add_target(target));
+                                      kMetricWords[static_cast<std::size_t>(metric)],
+                                      text_of(point), add_target(target));
         if (metric == Metric::mahalanobis)
             all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,
                                weights_hash(model_.distances[index]));
@@ -207,7 +177,7 @@ private:
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
-        std::string all = fmt::format("{} {} {}", print(model_, expression), word(comparison),
+        std::string all = fmt::format("{} {} {}", print(model_, expression), symbol(comparison),
                                       text_of(threshold));
         if (missing) all += fmt::format(" missing {}", *missing);
         return add("predicate " + model_.predicates[index].shown(), std::move(all));
@@ -233,14 +203,10 @@ private:
     /// Of all that the formula consists of, lets written out, each part once; what its atoms read
     /// is added.
     std::string hash_of(Index root, Atoms atoms) {
-        std::vector<bool> seen(root + 1, false);
-        seen[root] = true;
-        for (Index i = root + 1; i-- > 0;)
-            if (seen[i])
-                for (const Index operand : model_.formulas[i].operands) seen[operand] = true;
-        std::vector<std::string> hashes(root + 1);
-        for (Index i = 0; i <= root; ++i) {
-            if (!seen[i]) continue;
+        std::vector<Index> parts = parts_of(model_, root);
+        std::reverse(parts.begin(), parts.end());  // operands first
+        std::map<Index, std::string> hashes;
+        for (const Index i : parts) {
             const auto& [kind, index, operands, low, high, span] = model_.formulas[i];
             std::string text = fmt::format("{} [{}, {}]", static_cast<int>(kind), low, high);
             if (kind == Formula::Kind::predicate) text += ' ' + add_atom(index, atoms);

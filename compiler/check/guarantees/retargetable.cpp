@@ -1,10 +1,12 @@
-#include "check/guarantees/retargetable.hpp"
-
+// A model whose numbers may change while its monitors run: --retargetable. What cannot change
+// between steps is refused; predicates may have any robustness, so bounds rest on no number; every
+// predicate has a name, so nothing is named after one.
 #include <fmt/format.h>
 
 #include <set>
 
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/context/context.hpp"
+#include "check/numbers/range.hpp"
 
 namespace etlc::check {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <filesystem>
 
+#include "check/context/context.hpp"
 #include "check/context/options.hpp"
-#include "check/context/steps.hpp"
 #include "check/guarantees/adaptation.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/guarantees/consistency.hpp"
@@ -35,7 +35,7 @@ std::vector<Index> calibrated_predicates(Context& c) {
 
 /// What calibration has not made yet: until then the threshold is NaN.
 diag::Diagnostic& report_missing(Context& c, Code code, Span span, std::string message) {
-    diag::Diagnostic found{code, std::move(message), span, {}, 0, 0, {}};
+    diag::Diagnostic found{code, std::move(message), span};
     found.is_allowed = c.options.allow_missing;
     return c.sink.report(std::move(found));
 }
@@ -58,16 +58,8 @@ std::optional<thresholds::File> read_thresholds(Context& c, const std::string& n
                 "another");
         return std::nullopt;
     }
-    auto file = thresholds::read(path);
-    if (!file) {
-        diag::Diagnostic found = data::in_file(file.failure(), path);
-        found.is_allowed = c.options.allow_missing && !std::filesystem::exists(path, error);
-        c.sink.report(std::move(found))
-            .note(first.span, fmt::format("the threshold of '{}' is calibrated", name));
-        return std::nullopt;
-    }
-    c.dependencies.insert(path);
-    return std::move(*file);
+    return read_made(c, path, thresholds::read, first.span,
+                     fmt::format("the threshold of '{}' is calibrated", name));
 }
 
 bool same_number(const std::string& a, const std::string& b) {
@@ -164,22 +156,18 @@ private:
                                       name));
     }
 
-    bool is_input(const std::string& name) const {
-        return std::any_of(model_.inputs.begin(), model_.inputs.end(),
-                           [&](const Input& input) { return input.name == name; });
+    template <class Thing>
+    static bool has(const std::vector<Thing>& things, const std::string& name) {
+        return std::any_of(things.begin(), things.end(),
+                           [&](const Thing& thing) { return thing.name == name; });
     }
 
+    bool is_input(const std::string& name) const { return has(model_.inputs, name); }
+
     std::string_view what_is_hashed(const std::string& name) const {
-        if (std::any_of(model_.encoders.begin(), model_.encoders.end(),
-                        [&](const Encoder& declared) { return declared.name == name; }))
-            return "model or settings";
-        const bool target =
-            std::any_of(model_.targets.begin(), model_.targets.end(),
-                        [&](const Target& declared) { return declared.name == name; });
-        const bool projection =
-            std::any_of(model_.projections.begin(), model_.projections.end(),
-                        [&](const Projection& declared) { return declared.name == name; });
-        return target || projection ? "values" : is_input(name) ? "declaration" : "weights";
+        if (has(model_.encoders, name)) return "model or settings";
+        if (has(model_.targets, name) || has(model_.projections, name)) return "values";
+        return is_input(name) ? "declaration" : "weights";
     }
 
     const Model& model_;
@@ -207,14 +195,11 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
             .note(std::string(kAgain));
         return nullptr;
     }
-    const std::vector<std::string> all = differences(found->second);
-    if (all.empty()) return &found->second;
-    auto& error = c.report(
-        Code::threshold_stale, threshold.span,
-        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path));
-    for (const std::string& difference : all) error.note(difference);
-    error.note(std::string(kAgain));
-    return nullptr;
+    const bool is_current = is_up_to_date(
+        c, Code::threshold_stale, threshold.span,
+        fmt::format("the threshold of '{}' in {} was calibrated for something else", name, path),
+        differences(found->second), kAgain);
+    return is_current ? &found->second : nullptr;
 }
 
 /// Says beside the guarantees that they are about other labels than the spec says.

@@ -75,13 +75,9 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     if (!array) {
         diag::Diagnostic diagnostic = data::in_file(array.failure(), path);
         diagnostic.span = load.span;
-        std::error_code unknown;
-        const bool lacks_file = diagnostic.code == Code::unreadable_data_file &&
-                                !std::filesystem::exists(path, unknown) && !unknown;
+        const bool lacks_file = diagnostic.code == Code::unreadable_data_file && !exists(path);
         const bool lacks_key = diagnostic.code == Code::no_such_array && !load.key.empty();
-        diagnostic.is_allowed = c.options.allow_missing && (lacks_file || lacks_key);
-        c.lacks_data = c.lacks_data || diagnostic.is_allowed;
-        c.sink.report(std::move(diagnostic));
+        c.report_data(std::move(diagnostic), lacks_file || lacks_key);
         return std::nullopt;
     }
     if (!has_usable_shape(c, *array, load)) return std::nullopt;
@@ -132,6 +128,11 @@ std::optional<Matrix> literal_matrix(Context& c,
 
 std::string beside_spec(const Context& c, const std::string& path) {
     return data::beside(c.file.path(), path);
+}
+
+bool exists(const std::string& path) {
+    std::error_code unknown;
+    return std::filesystem::exists(path, unknown) || unknown;
 }
 
 std::optional<Matrix> read_matrix(Context& c, const ast::Load& load) {

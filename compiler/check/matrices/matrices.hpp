@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "ast/ast.hpp"
@@ -17,8 +18,15 @@ namespace etlc::check {
 /// A path of the spec, relative to where etlc runs.
 std::string beside_spec(const Context& context, const std::string& path);
 
+/// Whether there is such a file, or nothing can be said of it.
+bool exists(const std::string& path);
+
 std::optional<Matrix> read_matrix(Context& context, const ast::Load& load);
 std::optional<Matrix> read_matrix(Context& context, const ast::MatrixLiteral& literal);
 std::optional<Matrix> read_matrix(Context& context, const ast::VectorLiteral& literal);
+template <class... Alternatives>
+std::optional<Matrix> read_matrix(Context& context, const std::variant<Alternatives...>& source) {
+    return std::visit([&](const auto& s) { return read_matrix(context, s); }, source);
+}
 
 }  // namespace etlc::check

@@ -6,6 +6,8 @@
 #include <string_view>
 #include <utility>
 
+#include "source/utf8.hpp"
+
 namespace etlc::check {
 
 namespace {
@@ -14,9 +16,7 @@ constexpr std::string_view kLeftOut = "...";
 
 /// The first and the last characters of a long word; no code point is cut in two.
 std::string middle_left_out(const std::string& word, std::size_t most) {
-    const auto inside = [&](std::size_t i) {
-        return (static_cast<unsigned char>(word[i]) & 0xC0U) == 0x80U;
-    };
+    const auto inside = [&](std::size_t i) { return source::is_continuation(word[i]); };
     const std::size_t kept = most - kLeftOut.size();
     std::size_t head = (kept + 1) / 2;
     std::size_t tail = word.size() - kept / 2;

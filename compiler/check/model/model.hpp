@@ -6,13 +6,16 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <limits>
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
+#include "ast/operators.hpp"
 #include "check/model/inputs.hpp"
 #include "check/numbers/bounds.hpp"
 #include "source/source.hpp"
@@ -28,6 +31,14 @@ enum class Metric : std::uint8_t {
 #undef DISTANCE
 };
 
+/// The words of the metrics, in their order.
+inline constexpr std::array kMetricWords = std::to_array<std::string_view>({
+#define DISTANCE(id, Type, prepared, zero_is_unknown) #id,
+#define DISTANCE_BY_WEIGHTS(...)
+#include "etlmon/distance/distances.def"
+#undef DISTANCE
+});
+
 /// Between directions: the length of a vector does not count, and the zero vector has none.
 constexpr bool is_of_directions(Metric metric) {
     switch (metric) {
@@ -41,7 +52,7 @@ constexpr bool is_of_directions(Metric metric) {
     return false;
 }
 
-enum class Aggregation : std::uint8_t { min, max, mean, kth };
+using Aggregation = ast::AggregationKind;
 
 /// d aggregated over a target set: AGG DIST(point, target).
 struct Distance {
@@ -65,20 +76,7 @@ struct Distance {
 
 /// EXPR, evaluated in float32, each operation rounded once, in the order given.
 struct Expr {
-    enum class Kind : std::uint8_t {
-        number,
-        scalar,
-        distance,
-        negate,
-        add,
-        subtract,
-        multiply,
-        divide,
-        abs,
-        sqrt,
-        min,
-        max
-    };
+    using Kind = ast::ExprKind;
     Kind kind = Kind::number;
     std::string text;    ///< number: its decimal text
     double number = 0;   ///< the decimal text rounded to double: only truth formulas use it
@@ -103,14 +101,7 @@ void for_each_distance(const Expr& expression, const Visit& visit) {
     });
 }
 
-enum class Comparison : std::uint8_t {
-    less_equal,
-    less,
-    greater_equal,
-    greater,
-    equal,
-    not_equal,
-};
+using ast::Comparison;
 
 /// delta CMP epsilon
 template <class Number>
@@ -210,31 +201,16 @@ struct Predicate {
 // ---- what must hold -----------------------------------------------------------------------------
 
 struct Formula {
-    /// The operators of the language after desugaring words; `next`, `previous`,
-    /// `rise`, `fall` and `held` stay as written.
+    /// The operators of the language: rise f is f && Y !f, fall f is !f && Y f, and held[0, n] f is
+    /// H[0, n] f && O[n, n] true.
     enum class Kind : std::uint8_t {
         constant_true,
         constant_false,
         predicate,
         boolean_input,
-        negation,
-        conjunction,
-        disjunction,
-        implication,
-        equivalence,
-        next,
-        eventually,
-        always,
-        until,
-        weak_until,
-        release,
-        previous,
-        once,
-        historically,
-        since,
-        rise,  ///< f && Y !f
-        fall,  ///< !f && Y f
-        held,  ///< [0, n]: H[0,n] f && O[n,n] true
+#define OPERATOR(name, ...) name,
+#include "ast/operators.def"
+#undef OPERATOR
     };
     Kind kind = Kind::constant_true;
     Index index = 0;              ///< predicate or boolean_input
@@ -244,14 +220,24 @@ struct Formula {
     Span span;
 };
 
+constexpr bool looks(Formula::Kind kind, ast::Looks where) {
+    const ast::Operator* const op = ast::operator_of(kind);
+    return op != nullptr && op->looks == where;
+}
+constexpr bool looks_ahead(Formula::Kind kind) {
+    return looks(kind, ast::Looks::ahead);
+}
+constexpr bool looks_back(Formula::Kind kind) {
+    return looks(kind, ast::Looks::back);
+}
+
 /// X, Y, rise and fall, whose interval [1, 1] is not written.
 constexpr bool looks_one_step_away(Formula::Kind kind) {
     using Kind = Formula::Kind;
     return kind == Kind::next || kind == Kind::previous || kind == Kind::rise || kind == Kind::fall;
 }
 
-// ---- what is fitted to episodes
-// ------------------------------------------------------------------
+// ---- what is fitted to episodes -----------------------------------------------------------------
 
 enum class FittedMethod : std::uint8_t {
     mean,
@@ -362,6 +348,9 @@ struct Model {
     /// episodes which overlap were allowed, and why; that labels were not those of a truth.
     std::vector<std::string> reservations;
 };
+
+/// The formulas that a formula consists of, from itself down to its operands: descending.
+std::vector<Index> parts_of(const Model& model, Index formula);
 
 /// The formula as canonical text with symbols, minimal parentheses and names: "F (at_a && F at_b)".
 /// Lets are written out, except in formulas of more than kMaxPrinted operators and atoms: there the

@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/duration.hpp"
 #include "data/files/file.hpp"
 #include "data/text/quote.hpp"

@@ -4,8 +4,10 @@
 // outward for ranges). Keeps true: nothing passes through binary floating point on the way.
 #pragma once
 
+#include <cmath>
 #include <compare>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -42,5 +44,25 @@ enum class Fit : std::uint8_t { fits, overflow, underflow };
 Fit to_float(std::string_view text, float& value);
 /// The double nearest to the text, infinities where it overflows.
 double to_double(std::string_view text);
+
+// Rounding outward: a number beyond all finite float32 lies between the last of them and the
+// infinity.
+
+/// The greatest float32 that is not above x.
+inline float round_down(double x) {
+    const auto nearest = static_cast<float>(x);
+    return static_cast<double>(nearest) > x
+               ? std::nextafter(nearest, -std::numeric_limits<float>::infinity())
+               : nearest;
+}
+
+/// The least float32 that is not below x.
+inline float round_up(double x) {
+    return -round_down(-x);
+}
+
+/// The same of a decimal text, which may be "inf" or "-inf".
+float round_down(std::string_view text);
+float round_up(std::string_view text);
 
 }  // namespace etlc::check

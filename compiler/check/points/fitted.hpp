@@ -11,11 +11,13 @@
 namespace etlc::check {
 
 /// The index in model.fitted of what fills the declaration `name`, the model's target or projection
-/// `index`; kNone where it had an error, which is reported.
+/// `index`; kNone where it had an error, which is reported. Metrics, mahalanobis(fitted(...)), have
+/// neither name nor index: equal ones stand once.
 Index check_fitted(Context& context, const ast::Fitted& written, Fitted::Slot slot,
-                   const std::string& name, Index index);
+                   std::string name = {}, Index index = kNone);
 
-/// The same of a metric, mahalanobis(fitted(...)): equal ones stand once.
-Index check_fitted_metric(Context& context, const ast::Fitted& written);
+/// The entry with the shape that the spec asks for, which is then filled; null where there is none,
+/// which is reported unless it may be missing. The file is read at the first call.
+const fitted::Entry* fitted_entry(Context& context, Index fitted);
 
 }  // namespace etlc::check

@@ -88,7 +88,7 @@ Index projected(Context& c, const ast::Name& name, Index inner, Span span) {
 }
 
 /// "the vector", "'z'", "Q(z)"
-std::string shown(const Context& c, const Point& point) {
+std::string words_of(const Context& c, const Point& point) {
     if (point.is_projected()) return point.text;
     return point.is_vector() ? "the vector"
                              : fmt::format("'{}'", c.model.inputs[point.inputs[0]].name);
@@ -98,7 +98,7 @@ void report_wrong_space(Context& c, const Target& target, const Point& point, Sp
     const std::string& space = c.model.points[target.space].text;
     c.report(Code::wrong_space, span,
              fmt::format("target '{}' is in the space of {}, which {} does not go through",
-                         target.name, space, shown(c, point)))
+                         target.name, space, words_of(c, point)))
         .note(target.span, fmt::format("'{}' is declared here", target.name))
         .note(fmt::format("measure from {}, or from a projection of it", space));
 }
@@ -107,11 +107,11 @@ void report_dimensions(Context& c, const Target& target, const Point& point, con
                        Span span) {
     auto& error =
         c.report(Code::dimension_mismatch, span,
-                 fmt::format("{} has dimension {}, target '{}' has dimension {}", shown(c, point),
-                             point.dimension, target.name, target.dimension));
+                 fmt::format("{} has dimension {}, target '{}' has dimension {}",
+                             words_of(c, point), point.dimension, target.name, target.dimension));
     if (point.kind == Point::Kind::embedding)
         error.note(c.model.inputs[point.inputs[0]].span,
-                   fmt::format("{} is declared here", shown(c, point)));
+                   fmt::format("{} is declared here", words_of(c, point)));
     error.note(target.span, fmt::format("'{}' has {} of {}", target.name,
                                         diag::counted(target.rows, "row"), target.dimension));
     if (whole.is_projected() && !point.is_projected())

@@ -1,10 +1,9 @@
 // The projections: matrices that are loaded, spelled out or fitted.
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
-#include "check/points/fitted_file.hpp"
 #include "check/points/project.hpp"
 
 namespace etlc::check {
@@ -13,21 +12,13 @@ namespace {
 
 using diag::Code;
 
-template <class... Alternatives>
-std::optional<Matrix> matrix_of(Context& c, const std::variant<Alternatives...>& numbers) {
-    if (const auto* load = std::get_if<ast::Load>(&numbers)) return read_matrix(c, *load);
-    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&numbers))
-        return read_matrix(c, *literal);
-    return read_matrix(c, std::get<ast::VectorLiteral>(numbers));
-}
-
 Span span_of(const ast::Projection::Numbers& numbers) {
     return std::visit([](const auto& n) { return n.span; }, numbers);
 }
 
 /// False, with a diagnostic, where the offset is no point that the projection takes.
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
-    auto offset = matrix_of(c, written);
+    auto offset = read_matrix(c, written);
     if (!offset) return false;
     if (offset->rows != 1 || offset->columns != projection.dimension) {
         c.report(Code::projection_form, span_of(written),
@@ -73,7 +64,6 @@ bool set_fitted(Context& c, const ast::Fitted& written, Projection& projection) 
         projection.matrix = entry->matrix;
         projection.offset = entry->offset;
         projection.hash = entry->hash;
-        c.model.fitted[projection.fitted].filled = true;
     }
     return true;
 }

@@ -2,13 +2,14 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
 #include <cassert>
+#include <cmath>
 
+#include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
+#include "check/points/fitted.hpp"
 #include "check/points/points.hpp"
-#include "check/predicates/expressions.hpp"
-#include "check/predicates/weights.hpp"
+#include "check/predicates/predicates.hpp"
 
 namespace etlc::check {
 
@@ -16,27 +17,200 @@ namespace {
 
 using diag::Code;
 
-struct MetricName {
-    std::string_view text;
-    Metric metric;
+// ---- the weights of mahalanobis(M): a symmetric positive definite matrix, the inverse of a
+// covariance
+
+/// |W_ij - W_ji| may be this times sqrt(W_ii W_jj): float32 files of a symmetric matrix differ by
+/// rounding. The weights are then the mean of the two.
+constexpr double kSymmetryTolerance = 1e-5;
+
+struct Weights {
+    std::vector<float> values;
+    bool diagonal = false;
+    std::string path;
+    std::string text;  ///< canonical: a name, load("w.npy"), or the numbers of a small literal
+    std::string hash;
+    Index fitted = kNone;  ///< of model.fitted
 };
 
-constexpr std::array kMetrics = std::to_array<MetricName>({
-#define DISTANCE(id, Type, prepared, zero_is_unknown) {#id, Metric::id},
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-});
+/// A pivot below this times its diagonal element is rounding noise of the elimination.
+constexpr double kPivotTolerance = 1e-12;
+/// Longer literals appear in canonical text by their hash.
+constexpr std::size_t kMaxSpelledOut = 16;
 
-std::string_view word(Aggregation aggregation) {
-    switch (aggregation) {
-        case Aggregation::min: return "min";
-        case Aggregation::max: return "max";
-        case Aggregation::mean: return "mean";
-        case Aggregation::kth: return "kth";
+std::string literal_text(const Matrix& matrix, const std::vector<std::vector<ast::Number>>& rows,
+                         bool brackets) {
+    if (matrix.values.size() > kMaxSpelledOut)
+        return fmt::format("literal {} x {} {}", matrix.rows, matrix.columns, matrix.hash);
+    std::string text = brackets ? "[" : "";
+    for (std::size_t i = 0; i < rows.size(); ++i) {
+        text += i > 0 ? ", [" : "[";
+        for (std::size_t j = 0; j < rows[i].size(); ++j)
+            text += (j > 0 ? ", " : "") + Decimal::parse(rows[i][j].text).text();
+        text += ']';
     }
-    return "";
+    return brackets ? text + ']' : text;
 }
+
+struct Source {
+    Matrix matrix;
+    std::string text;
+};
+
+std::optional<Source> read_source(Context& c, const ast::Weights& weights) {
+    if (const auto* name = std::get_if<ast::Name>(&weights)) {
+        const Index index = resolve(c, *name, NameKind::target);
+        if (index == kNone) return std::nullopt;
+        const Target& target = c.model.targets[index];
+        if (target.fitted != kNone) {
+            c.report(Code::fitting_argument, name->span,
+                     fmt::format("the rows of '{}' are fitted, and are no weights; expected a "
+                                 "matrix, or fitted(discriminant, of = POINT, where = FORMULA)",
+                                 name->text));
+            return std::nullopt;
+        }
+        Matrix matrix{target.rows,   target.dimension, false,      target.values,
+                      target.origin, target.path,      target.hash};
+        return Source{std::move(matrix), target.name};
+    }
+    if (const auto* load = std::get_if<ast::Load>(&weights)) {
+        auto matrix = read_matrix(c, *load);
+        if (!matrix) return std::nullopt;
+        const std::string key = load->key.empty() ? "" : fmt::format(", \"{}\"", load->key);
+        return Source{std::move(*matrix), fmt::format("load(\"{}\"{})", load->path, key)};
+    }
+    if (const auto* literal = std::get_if<ast::MatrixLiteral>(&weights)) {
+        auto matrix = read_matrix(c, *literal);
+        if (!matrix) return std::nullopt;
+        std::string text = literal_text(*matrix, literal->rows, true);
+        return Source{std::move(*matrix), std::move(text)};
+    }
+    const auto& vector = std::get<ast::VectorLiteral>(weights);
+    auto matrix = read_matrix(c, vector);
+    if (!matrix) return std::nullopt;
+    std::string text = literal_text(*matrix, {vector.values}, false);
+    return Source{std::move(*matrix), std::move(text)};
+}
+
+/// The first diagonal element that is not positive, or `n`.
+std::size_t first_not_positive(const std::vector<float>& values, std::size_t n,
+                               std::size_t stride) {
+    std::size_t i = 0;
+    while (i < n && values[i * stride] > 0) ++i;
+    return i;
+}
+
+/// Replaces both halves by their mean; false, with a diagnostic, where they differ by more than
+/// rounding. The diagonal is positive.
+bool make_symmetric(Context& c, Matrix& w, Span span) {
+    const std::size_t n = w.rows;
+    for (std::size_t i = 0; i < n; ++i) {
+        for (std::size_t j = i + 1; j < n; ++j) {
+            const double a = w.values[i * n + j];
+            const double b = w.values[j * n + i];
+            const double size = std::sqrt(static_cast<double>(w.values[i * n + i]) *
+                                          static_cast<double>(w.values[j * n + j]));
+            if (std::abs(a - b) > kSymmetryTolerance * size) {
+                c.report(Code::weights_not_symmetric, span,
+                         fmt::format("the weights are not symmetric: {:g} at row {}, column {} and "
+                                     "{:g} at row {}, column {} (from 0)",
+                                     a, i, j, b, j, i));
+                return false;
+            }
+            w.values[i * n + j] = w.values[j * n + i] = static_cast<float>((a + b) / 2);
+        }
+    }
+    return true;
+}
+
+/// Cholesky elimination in double on the upper half; the first row without a positive pivot, or the
+/// number of rows.
+std::size_t first_bad_pivot(const Matrix& w) {
+    const std::size_t n = w.rows;
+    std::vector<double> a(w.values.begin(), w.values.end());
+    for (std::size_t k = 0; k < n; ++k) {
+        const double pivot = a[k * n + k];
+        if (!(pivot > kPivotTolerance * static_cast<double>(w.values[k * n + k]))) return k;
+        for (std::size_t i = k + 1; i < n; ++i) {
+            const double factor = a[k * n + i] / pivot;
+            if (factor == 0) continue;
+            for (std::size_t j = i; j < n; ++j) a[i * n + j] -= factor * a[k * n + j];
+        }
+    }
+    return n;
+}
+
+bool check_definite(Context& c, Matrix& w, bool diagonal, Span span) {
+    const std::size_t n = w.columns;
+    const std::size_t bad = first_not_positive(w.values, n, diagonal ? 1 : n + 1);
+    if (bad < n) {
+        c.report(Code::weights_not_definite, span,
+                 fmt::format("the weights are not positive definite: element {} (from 0) of the "
+                             "diagonal is {:g}",
+                             bad, w.values[bad * (diagonal ? 1 : n + 1)]));
+        return false;
+    }
+    if (diagonal) return true;
+    if (!make_symmetric(c, w, span)) return false;
+    const std::size_t row = first_bad_pivot(w);
+    if (row == n) return true;
+    c.report(Code::weights_not_definite, span,
+             fmt::format("the weights are not positive definite: the leading {} x {} block has no "
+                         "Cholesky factor",
+                         row + 1, row + 1))
+        .note("mahalanobis takes the inverse of a covariance");
+    return false;
+}
+
+/// They are for distances between the points that they are fitted to.
+std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, Index point) {
+    const Index index = check_fitted(c, written, Fitted::Slot::metric);
+    if (index == kNone) return std::nullopt;
+    const Fitted& fitted = c.model.fitted[index];
+    if (fitted.point != point) {
+        c.report(Code::wrong_space, written.span,
+                 fmt::format("the weights are fitted to {}, the distance is from {}",
+                             c.model.points[fitted.point].text, c.model.points[point].text));
+        return std::nullopt;
+    }
+    Weights weights;
+    weights.text = fitted.declaration;
+    weights.fitted = index;
+    const fitted::Entry* const entry = fitted_entry(c, index);
+    if (entry == nullptr) return weights;
+    Matrix matrix{entry->rows, entry->columns, false, entry->matrix, "fitted", "", entry->hash};
+    if (!check_definite(c, matrix, false, written.span)) return std::nullopt;
+    weights.values = std::move(matrix.values);
+    return weights;
+}
+
+/// The weights for distances from the model's `point`; nothing, with a diagnostic, where they do
+/// not fit.
+std::optional<Weights> check_weights(Context& c, const ast::Weights& weights, Index point,
+                                     Span span) {
+    if (const auto* fitted = std::get_if<ast::Fitted>(&weights))
+        return fitted_weights(c, *fitted, point);
+    const std::uint32_t dimension = c.model.points[point].dimension;
+    auto source = read_source(c, weights);
+    if (!source) return std::nullopt;
+    Matrix& w = source->matrix;
+    const bool diagonal = w.rows == 1;
+    const bool fits = w.columns == dimension && (diagonal || w.rows == dimension);
+    if (!fits) {
+        const std::string shape = w.one_dimensional ? fmt::format("({})", w.columns)
+                                                    : fmt::format("({}, {})", w.rows, w.columns);
+        c.report(Code::weights_shape, span,
+                 fmt::format("the weights have shape {}; for points of dimension {} expected ({}, "
+                             "{}), or the {} elements of a diagonal",
+                             shape, dimension, dimension, dimension, dimension));
+        return std::nullopt;
+    }
+    if (!check_definite(c, w, diagonal, span)) return std::nullopt;
+    return Weights{std::move(w.values), diagonal, std::move(w.path), std::move(source->text),
+                   std::move(w.hash)};
+}
+
+// ---- the distance
 
 class DistanceCheck {
 public:
@@ -58,10 +232,10 @@ public:
 
 private:
     void set_metric() {
-        const auto named = [&](const MetricName& row) { return row.text == written_.metric.text; };
-        const auto found = std::find_if(kMetrics.begin(), kMetrics.end(), named);
-        assert(found != kMetrics.end());  // the grammar has no other
-        distance_.metric = found->metric;
+        const auto* const found =
+            std::find(kMetricWords.begin(), kMetricWords.end(), written_.metric.text);
+        assert(found != kMetricWords.end());  // the grammar has no other
+        distance_.metric = static_cast<Metric>(found - kMetricWords.begin());
     }
 
     std::uint32_t dimension() const { return c_.model.points[distance_.point].dimension; }
@@ -88,14 +262,8 @@ private:
                                   written_.metric.text));
             return false;
         }
-        using Kind = ast::Aggregation::Kind;
-        switch (written_.aggregation->kind) {
-            case Kind::min: distance_.aggregation = Aggregation::min; return true;
-            case Kind::max: distance_.aggregation = Aggregation::max; return true;
-            case Kind::mean: distance_.aggregation = Aggregation::mean; return true;
-            case Kind::kth: distance_.aggregation = Aggregation::kth; return set_kth();
-        }
-        return true;
+        distance_.aggregation = written_.aggregation->kind;
+        return distance_.aggregation != Aggregation::kth || set_kth();
     }
 
     bool set_kth() {

@@ -1,4 +1,5 @@
-#include "check/predicates/expressions.hpp"
+// EXPR: scalars, numbers, aggregated distances and arithmetic on them.
+#include "check/predicates/predicates.hpp"
 
 #include <fmt/format.h>
 
@@ -6,33 +7,15 @@
 #include <set>
 
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/range.hpp"
 #include "etlmon/distance/distances.hpp"
 
 namespace etlc::check {
 
 namespace {
 
+using ast::ExprKind;
 using diag::Code;
-using ExprKind = Expr::Kind;
-
-ExprKind kind_of(ast::Expr::Kind kind) {
-    switch (kind) {
-        case ast::Expr::Kind::number: return ExprKind::number;
-        case ast::Expr::Kind::name: return ExprKind::scalar;
-        case ast::Expr::Kind::distance: return ExprKind::distance;
-        case ast::Expr::Kind::negate: return ExprKind::negate;
-        case ast::Expr::Kind::add: return ExprKind::add;
-        case ast::Expr::Kind::subtract: return ExprKind::subtract;
-        case ast::Expr::Kind::multiply: return ExprKind::multiply;
-        case ast::Expr::Kind::divide: return ExprKind::divide;
-        case ast::Expr::Kind::abs: return ExprKind::abs;
-        case ast::Expr::Kind::sqrt: return ExprKind::sqrt;
-        case ast::Expr::Kind::min: return ExprKind::min;
-        case ast::Expr::Kind::max: return ExprKind::max;
-    }
-    return ExprKind::number;
-}
 
 bool set_number(Context& c, Expr& result, const ast::Expr& written) {
     const std::size_t errors = c.sink.errors();
@@ -63,7 +46,7 @@ bool set_scalar(Context& c, Expr& result, const ast::Expr& written) {
 
 std::optional<Expr> build(Context& c, const ast::Expr& written) {
     Expr result;
-    result.kind = kind_of(written.kind);
+    result.kind = written.kind;
     result.span = written.span;
     bool good = true;
     if (result.kind == ExprKind::number) good = set_number(c, result, written);

@@ -3,9 +3,8 @@
 
 #include <cmath>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/rounding.hpp"
 #include "check/time/time.hpp"
 
 namespace etlc::check {

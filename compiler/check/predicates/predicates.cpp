@@ -5,29 +5,16 @@
 #include <cmath>
 #include <limits>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/guarantees/calibrated.hpp"
 #include "check/numbers/decimal.hpp"
-#include "check/numbers/range_arithmetic.hpp"
-#include "check/predicates/expressions.hpp"
+#include "check/numbers/range.hpp"
 
 namespace etlc::check {
 
 namespace {
 
 using diag::Code;
-
-Comparison comparison_of(ast::Comparison comparison) {
-    switch (comparison) {
-        case ast::Comparison::less_equal: return Comparison::less_equal;
-        case ast::Comparison::less: return Comparison::less;
-        case ast::Comparison::greater_equal: return Comparison::greater_equal;
-        case ast::Comparison::greater: return Comparison::greater;
-        case ast::Comparison::equal: return Comparison::equal;
-        case ast::Comparison::not_equal: return Comparison::not_equal;
-    }
-    return Comparison::less_equal;
-}
 
 std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number) {
     const std::size_t errors = c.sink.errors();
@@ -141,7 +128,7 @@ std::optional<Predicate> make_predicate(Context& c, Sides sides, Span span) {
 }
 
 Sides declared_sides(Context& c, const ast::Predicate& declaration) {
-    const Comparison comparison = comparison_of(declaration.comparison);
+    const Comparison comparison = declaration.comparison;
     if (const auto* right = std::get_if<ast::ExprPtr>(&declaration.threshold))
         return sides(c, *declaration.expression, comparison, **right);
     const auto& calibrated = std::get<ast::Calibrated>(declaration.threshold);
@@ -190,22 +177,9 @@ std::optional<bool> Predicate::constant_answer() const {
     return answer;
 }
 
-std::string_view symbol(Comparison comparison) {
-    switch (comparison) {
-        case Comparison::less_equal: return "<=";
-        case Comparison::less: return "<";
-        case Comparison::greater_equal: return ">=";
-        case Comparison::greater: return ">";
-        case Comparison::equal: return "==";
-        case Comparison::not_equal: return "!=";
-    }
-    return "";
-}
-
 Index comparison_predicate(Context& c, const ast::Formula& comparison) {
     auto predicate = make_predicate(
-        c, sides(c, *comparison.left, comparison_of(comparison.comparison), *comparison.right),
-        comparison.span);
+        c, sides(c, *comparison.left, comparison.comparison, *comparison.right), comparison.span);
     if (!predicate) return kNone;
     // Equal numbers may be written differently, and the text of the threshold is as written.
     const std::string key = predicate->text + Decimal::parse(predicate->threshold.text).text();

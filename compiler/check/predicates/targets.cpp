@@ -3,12 +3,10 @@
 
 #include <limits>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/encoders/encoded.hpp"
-#include "check/encoders/frames.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/points/fitted.hpp"
-#include "check/points/fitted_file.hpp"
 #include "check/points/points.hpp"
 #include "data/arrays/array.hpp"
 
@@ -112,7 +110,6 @@ bool set_fitted(Context& c, const ast::Fitted& written, Target& target) {
     if (const fitted::Entry* const entry = fitted_entry(c, target.fitted)) {
         target.values = entry->matrix;
         target.hash = entry->hash;
-        c.model.fitted[target.fitted].filled = true;
     }
     if (c.model.points[fitted.point].is_projected()) target.space = fitted.point;
     return true;

@@ -2,7 +2,7 @@
 
 #include <fmt/format.h>
 
-#include "check/context/steps.hpp"
+#include "check/context/context.hpp"
 #include "check/numbers/duration.hpp"
 
 namespace etlc::check {

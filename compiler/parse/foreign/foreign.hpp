@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "parse/stream/stuck.hpp"
 
@@ -22,8 +23,11 @@ struct Native {
 /// Nothing where the word is not known.
 std::optional<Native> native(Foreign kind, std::string_view word);
 
-/// Whether an operand, or an interval, ends with this token; null: there is none.
-bool ends_operand(const Token* token);
+/// The words of the language of that kind, operators aside.
+std::vector<std::string> own_words(Foreign kind);
+
+/// Whether `list`, words with a blank between them, has the word.
+bool is_listed(std::string_view list, std::string_view word);
 
 /// An operator of another language: the whole error.
 std::optional<diag::Diagnostic> foreign_operator(const Stuck& stuck, const Token& found,
@@ -32,5 +36,10 @@ std::optional<diag::Diagnostic> foreign_operator(const Stuck& stuck, const Token
 /// Adds to an error how the form that was meant is written; nothing where none is known.
 void add_note_on_foreign_form(const Stuck& stuck, const Token& found, const source::File& file,
                               diag::Diagnostic& to);
+
+/// What to say of a token for which is_mistake() holds, and of what it stands behind (null: of
+/// nothing); nothing where its bytes are not UTF-8, which has been said of the file as a whole.
+std::optional<diag::Diagnostic> explain_mistake(const Token& token, const Token* previous,
+                                                const source::File& file);
 
 }  // namespace etlc::parse

@@ -4,6 +4,7 @@
 // one cannot reach another.
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "parse/stream/tokens.hpp"
@@ -16,6 +17,11 @@ struct Slice {
 };
 
 std::vector<Slice> slices_of(const Tokens& tokens);
+
+/// The first token of a slice that nests deeper than kMaxNesting, so that ANTLR's recursive descent
+/// never goes there: what is let through recurses at most kMaxNesting times a grammar rule, in
+/// parse/ and in all that walk trees.
+std::optional<std::size_t> too_deep_at(const Tokens& tokens, Slice slice);
 
 /// One slice as ANTLR's token stream. Reads as EOF past the slice's end.
 class SliceStream final : public antlr4::TokenStream {

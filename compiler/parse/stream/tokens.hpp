@@ -3,11 +3,14 @@
 // indices are byte offsets of the file; any bytes can be lexed.
 #pragma once
 
+#include <initializer_list>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "antlr4-runtime.h"
+#include "ast/ast.hpp"
 #include "diag/diag.hpp"
 #include "source/source.hpp"
 
@@ -34,5 +37,19 @@ bool is_mistake(const Token& token);
 bool is_reserved_word(const Token& token, const source::File& file);
 /// Identifiers and contextual words: whatever the rule `name` takes.
 bool is_name(const Token& token);
+
+/// Whether a token is of one of these types; null is of none.
+bool is(const Token* token, std::initializer_list<std::size_t> types);
+
+/// Whether an operand may begin with this token, brackets of vectors and signs aside.
+bool begins_operand(const Token& token);
+/// Whether an operand, or an interval, ends with this token; null: there is none.
+bool ends_operand(const Token* token);
+
+/// The operator of formulas that tokens of a type are; nothing where they are none.
+std::optional<ast::Formula::Kind> operator_kind(std::size_t type);
+
+/// The spelling of tokens that have only one; else empty.
+std::string keyword(std::size_t type);
 
 }  // namespace etlc::parse

@@ -1,9 +1,9 @@
-#include "check/numbers/range_arithmetic.hpp"
+#include "check/numbers/range.hpp"
 
 #include <algorithm>
 #include <cmath>
 
-#include "check/numbers/rounding.hpp"
+#include "check/numbers/decimal.hpp"
 
 namespace etlc::check {
 
@@ -64,16 +64,10 @@ Range hull_of_corners(const Range& a, const Range& b, Operation operation) {
     return result;
 }
 
-float sqrt_down(float x) {
-    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
-    const double square = static_cast<double>(root) * static_cast<double>(root);  // exact: 48 bits
-    return square > static_cast<double>(x) ? std::nextafter(root, 0.0F) : root;
-}
-
-float sqrt_up(float x) {
-    const auto root = static_cast<float>(std::sqrt(static_cast<double>(x)));
-    const double square = static_cast<double>(root) * static_cast<double>(root);
-    return square < static_cast<double>(x) ? std::nextafter(root, kInfinity) : root;
+/// A double and the sign of the error of its square, which is exact with fma.
+Exact exact_root(float a) {
+    const double x = a, root = std::sqrt(x);
+    return {root, std::fma(-root, root, x)};
 }
 
 }  // namespace
@@ -107,7 +101,7 @@ Range abs(const Range& a) {
 
 Range sqrt(const Range& a) {
     if (a.high < 0) return kEverything;
-    return {sqrt_down(std::max(a.low, 0.0F)), sqrt_up(a.high)};
+    return {down(exact_root(std::max(a.low, 0.0F))), up(exact_root(a.high))};
 }
 
 Range min(const std::vector<Range>& ranges) {
