@@ -57,10 +57,10 @@ void Sink::drop_warnings_of_spec() {
 
 std::vector<Diagnostic> Sink::sorted() const {
     std::vector<Diagnostic> result = diagnostics_;
-    // Stable, so that what a stage found at one place stays in the order in which it was found. A
-    // finding about the whole spec has no span and comes first.
+    // A stable sort keeps the order in which a stage found things at one place. A finding about the
+    // whole spec has no span and comes first.
     std::stable_sort(result.begin(), result.end(), [](const Diagnostic& a, const Diagnostic& b) {
-        // The spec's own findings have no file name, which sorts before every name.
+        // Findings in the spec have no file name, which sorts before every name.
         const auto place = [](const Diagnostic& d) {
             const std::uint32_t begin = d.span && d.file.empty() ? d.span->begin : 0;
             return std::tuple<const std::string&, std::uint32_t, std::uint32_t, std::uint32_t>(
@@ -92,9 +92,9 @@ std::string alternatives(const std::vector<std::string>& words) {
 
 namespace {
 
-/// Longer names are not misspelt but generated; comparing them would only cost time.
+/// Longer names are generated rather than misspelt; comparing them would only cost time.
 constexpr std::size_t kLongest = 64;
-/// Costs are in half edits: another case of the same letter is half as far as another letter.
+/// Costs are in half edits: the same letter in the other case costs half as much as another letter.
 constexpr int kEdit = 2;
 constexpr int kCase = 1;
 
@@ -104,8 +104,8 @@ int substitution(char a, char b) {
     return lower(a) == lower(b) ? kCase : kEdit;
 }
 
-/// Damerau-Levenshtein distance with adjacent transpositions (optimal string alignment), in half
-/// edits.
+/// Returns the Damerau-Levenshtein distance with adjacent transpositions (optimal string
+/// alignment), in half edits.
 int distance(std::string_view a, std::string_view b) {
     std::array<std::array<int, kLongest + 1>, 3> rows{};
     for (std::size_t j = 0; j <= b.size(); ++j) rows[0][j] = kEdit * static_cast<int>(j);
@@ -133,8 +133,8 @@ std::optional<std::string> nearest_name(std::string_view name,
     int best_distance = 0;
     for (const std::string& candidate : candidates) {
         if (candidate.empty() || candidate.size() > kLongest) continue;
-        // One edit in three letters, rounded up from two letters on: `p1` may mean `p2`, but `a`
-        // does not mean `b`.
+        // One edit in three letters is allowed, rounded up from two letters on: `p1` may mean `p2`,
+        // but `a` does not mean `b`.
         const auto longer = static_cast<int>(std::max(name.size(), candidate.size()));
         const int allowed = std::max(kCase, kEdit * ((longer + 1) / 3));
         const int difference = static_cast<int>(name.size()) - static_cast<int>(candidate.size());

@@ -12,24 +12,24 @@ namespace etlc::diag {
 
 namespace {
 
-/// Diagnostics shown in the text form; the summary counts them all.
+/// Diagnostics printed as text; the summary counts all of them.
 constexpr std::size_t kMaxShown = 200;
 
-/// Columns shown of a line that is longer than this.
+/// Columns printed of a longer line.
 constexpr std::size_t kWindow = 120;
 constexpr std::size_t kContextBefore = 40;
 constexpr std::string_view kReplacement = "\xEF\xBF\xBD";
 constexpr std::string_view kEllipsis = "...";
 
-/// One character of a line: its bytes, and the columns it takes.
+/// One character of a line: its bytes, and the number of columns that it takes.
 struct Cell {
     std::string_view bytes;
     std::size_t offset;  ///< in the line
     std::uint8_t width;
 };
 
-/// Columns of a code point, after Unicode's East Asian Width and general categories Mn and Cf, by
-/// their main blocks.
+/// Returns the columns of a code point, after Unicode's East Asian Width and the general categories
+/// Mn and Cf, by their main blocks.
 std::uint8_t width_of(char32_t c) {
     static constexpr std::array<source::CodePoints, 8> kZero{{{0x300, 0x36F},
                                                               {0x483, 0x489},
@@ -67,13 +67,13 @@ std::vector<Cell> cells_of(std::string_view line, std::size_t offset) {
     return cells;
 }
 
-/// The part of a long line that is decoded at all: a line may have megabytes.
+/// The part of a long line that is decoded; a line may have megabytes.
 struct Part {
     std::size_t begin;
     std::size_t end;
 };
 
-/// Moves back to the first byte of a character; at most three bytes, since the text need not be
+/// Moves back to the first byte of a character, at most three bytes, since the text may not be
 /// UTF-8.
 std::size_t character_begin(std::string_view line, std::size_t at) {
     for (int i = 0; i < 3 && at > 0 && at < line.size() && source::is_continuation(line[at]); ++i)
@@ -89,11 +89,11 @@ Part part_around(std::string_view line, std::size_t at) {
     return {begin, character_begin(line, std::min(line.size(), begin + kWindow))};
 }
 
-/// A source line and its carets, as a terminal shows them: the carets stand under the span whatever
+/// A source line and its carets, as a terminal shows them. The carets stand under the span whatever
 /// the line holds (tabs, wide and combining characters, bytes that are not UTF-8), and both lines
 /// have a bounded width.
 struct SourceView {
-    /// The line, or a part of it around the span between "..." where it is very long.
+    /// The line, or the part around the span between "..." where it is very long.
     std::string text;
     std::string carets;  ///< blanks (tabs where the line has them), then ^~~~
 };
@@ -105,7 +105,7 @@ SourceView view(const source::File& file, source::Span span) {
         std::min<std::size_t>(span.begin - file.line_begin(line_number), line.size());
     const std::size_t past = std::max(span.begin, span.end) - file.line_begin(line_number);
     const std::size_t end =
-        std::clamp<std::size_t>(past, begin, line.size());  // a span of many lines: the first
+        std::clamp<std::size_t>(past, begin, line.size());  // only the first line of a longer span
 
     const Part part = part_around(line, begin);
     SourceView result;
@@ -122,7 +122,7 @@ SourceView view(const source::File& file, source::Span span) {
             started = true;
         }
     }
-    if (!started) result.carets += '^';  // just after the line's last character
+    if (!started) result.carets += '^';  // just after the last character of the line
     if (part.end < line.size()) result.text += kEllipsis;
     return result;
 }

@@ -10,7 +10,7 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Line, column, end_line, end_column; 0: unknown. The end is the position just after the span.
+/// Line, column, end_line and end_column; 0 where unknown. The end is just after the span.
 using Place = std::array<std::uint32_t, 4>;
 
 Place place_of(const source::File& spec, const std::optional<source::Span>& span) {

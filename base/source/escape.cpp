@@ -10,7 +10,8 @@ namespace etlc::source {
 
 namespace {
 
-/// Calls `take` with each character, or byte that is no part of one, and whether it is a character.
+/// Calls `take` with each character, or each byte that belongs to none, and whether it is a
+/// character.
 template <class Take>
 void for_each_character(std::string_view text, const Take& take) {
     while (!text.empty()) {
@@ -51,7 +52,7 @@ std::string visible_lines(std::string_view text) {
 std::string code_line(std::string_view text) {
     std::string line = visible(text);
     line.erase(line.find_last_not_of(' ') + 1);
-    // A backslash joins the next line to this one, and so does the trigraph for it.
+    // A backslash joins the next line to this one, and so does its trigraph.
     if (line.ends_with('\\')) return line + "x5c";
     if (line.ends_with("?\?/")) return line.substr(0, line.size() - 1) + "\\x2f";
     return line;
@@ -99,7 +100,7 @@ std::optional<std::string> depfile_path(std::string_view path, InRule place) {
         if (c == '$') result += '$';
         result += c;
     }
-    // A home folder; a member of an archive; an end that one of them takes for its own.
+    // These are a home folder, a member of an archive, and an end that make or ninja interprets.
     if (path.empty() || path[0] == '~' ||
         std::string_view(") :").find(path.back()) != std::string_view::npos)
         return std::nullopt;

@@ -12,8 +12,7 @@ std::size_t utf8_length(std::string_view text) {
     if (text.size() < length) return 0;
     for (std::size_t i = 1; i < length; ++i)
         if (!is_continuation(text[i])) return 0;
-    // The second byte rules out what a shorter form could say, surrogates, and values above
-    // U+10FFFF.
+    // The second byte excludes overlong forms, surrogates and values above U+10FFFF.
     const bool overlong = (lead == 0xE0 && byte(1) < 0xA0) || (lead == 0xF0 && byte(1) < 0x90);
     const bool surrogate = lead == 0xED && byte(1) >= 0xA0;
     const bool too_large = lead == 0xF4 && byte(1) >= 0x90;

@@ -1,5 +1,5 @@
-// The operators of the language: how they are written and how tight they bind. The syntax tree and
-// the typed model share them.
+// How the operators of the language are written and how tightly they bind, for the syntax tree and
+// the typed model.
 #pragma once
 
 #include <array>
@@ -11,7 +11,7 @@ namespace etlc::ast {
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-/// How tight a formula binds, from the loosest.
+/// Binding levels of formulas, loosest first.
 enum FormulaLevel : std::uint8_t {
     kIff,
     kImplies,
@@ -23,7 +23,7 @@ enum FormulaLevel : std::uint8_t {
     kAtom
 };
 
-/// The direction of time in which an operator looks.
+/// Direction of time in which an operator looks.
 enum class Looks : std::uint8_t { nowhere, ahead, back };
 
 struct Operator {
@@ -39,7 +39,8 @@ inline constexpr std::array kOperators = std::to_array<Operator>({
 #undef OPERATOR
 });
 
-/// The row of an operator; null for atoms. `Kind` is the syntax tree's or the model's.
+/// Returns the row of an operator; null for atoms. `Kind` is that of the syntax tree or of the
+/// model.
 template <class Kind>
 constexpr const Operator* operator_of(Kind kind) {
     if (kind < Kind::negation) return nullptr;
@@ -62,7 +63,7 @@ constexpr std::string_view symbol(Comparison comparison) {
     return kSymbols[static_cast<std::size_t>(comparison)];
 }
 
-/// How the distances to the rows of a target become one number.
+/// Aggregation of the distances to all rows of a target.
 enum class AggregationKind : std::uint8_t { min, max, mean, kth };
 
 constexpr std::string_view word(AggregationKind kind) {
@@ -72,8 +73,8 @@ constexpr std::string_view word(AggregationKind kind) {
 
 enum class ExprKind : std::uint8_t {
     number,
-    name,           ///< of an input or a constant
-    scalar = name,  ///< in the model a name is a scalar input
+    name,           ///< an input or a constant
+    scalar = name,  ///< in the model, names are scalar inputs
     distance,
     negate,
     add,
@@ -86,11 +87,11 @@ enum class ExprKind : std::uint8_t {
     max
 };
 
-/// How tight an expression binds, from the loosest.
+/// Binding levels of expressions, loosest first.
 enum ExprLevel : std::uint8_t { kSum, kProduct, kSign, kPrimary };
 
 struct ExprOperator {
-    std::string_view text;  ///< an operator, or a function
+    std::string_view text;  ///< operator or function
     ExprLevel level;
 };
 
@@ -110,8 +111,8 @@ constexpr ExprOperator operator_of(ExprKind kind) {
     return kTexts[static_cast<std::size_t>(kind)];
 }
 
-/// Appends an expression to the text, in brackets where it binds looser than `needed`; so a long
-/// chain takes linear time. `leaf` gives the text of numbers, names and distances, `argument` the
+/// Appends an expression to the text in linear time, in brackets where it binds looser than
+/// `needed`. `leaf` returns the text of numbers, names and distances; `argument` returns the
 /// expression behind an element of `arguments`.
 template <class Expr, class Leaf, class Argument>
 void append(std::string& text, const Expr& e, const Leaf& leaf, const Argument& argument,

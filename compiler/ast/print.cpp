@@ -102,7 +102,7 @@ std::string text_of(const Fitted& fitted) {
 
 // ---- formulas -----------------------------------------------------------------------------------
 
-/// "1 step", "n steps"
+/// "1 step", "n steps".
 std::string unit_word(const Number& number, const std::string& unit) {
     return unit == kStepsUnit && number.text == "1" ? "step" : unit;
 }
@@ -123,7 +123,7 @@ FormulaLevel level_of(const Formula& f) {
     return f.kind == Formula::Kind::comparison ? kComparison : kAtom;
 }
 
-/// The level that an operand needs to stand without brackets.
+/// Returns the level that an operand needs to stand without brackets.
 FormulaLevel needed_by(const Formula& f, bool is_first) {
     switch (level_of(f)) {
         case kIff: return is_first ? kIff : kImplies;
@@ -131,7 +131,7 @@ FormulaLevel needed_by(const Formula& f, bool is_first) {
         case kOr: return kAnd;
         case kAnd: return kBinary;
         case kBinary: return is_first ? kPrefix : kBinary;
-        // `!x > 0` is !(x > 0); the brackets are there for readers who know another language.
+        // `!x > 0` means !(x > 0); the brackets help readers who know another language.
         default: return f.operands[0]->kind == Formula::Kind::comparison ? kAtom : kPrefix;
     }
 }

@@ -7,12 +7,12 @@ namespace etlc::parse {
 
 namespace {
 
-/// A declaration without its ';'.
+/// Returns the span of a declaration without its ';'.
 source::Span span_of_declaration(const Grammar::DeclarationContext& context, source::Span last) {
     return source::join(span_of(*context.start), last);
 }
 
-/// What stands before the closing ';'.
+/// Returns the span of the last part before the closing ';'.
 source::Span last_part(const Grammar::DeclarationContext& context) {
     auto* const part = context.children[context.children.size() - 2];
     if (auto* const terminal = dynamic_cast<antlr4::tree::TerminalNode*>(part))

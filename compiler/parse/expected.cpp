@@ -26,11 +26,11 @@ namespace {
 
 using Types = std::vector<std::size_t>;
 
-/// Tokens that are named together where all of them could stand.
+/// Tokens that are named together where all of them are accepted.
 struct Group {
     Types types;
     std::string words;
-    bool closed;  ///< a list of keywords: another word in their place is an unknown one
+    bool closed;  ///< a closed list of keywords, so that another word is an unknown keyword
 };
 
 const std::vector<Group>& groups() {
@@ -70,8 +70,7 @@ bool expects_operand(const Stuck& stuck) {
            stuck.expects(EtlParser::LPAREN);
 }
 
-/// Formulas and expressions share rules; what stands before the place tells which of them was
-/// begun.
+/// Formulas and expressions share rules; the tokens before the place tell which one was begun.
 std::string operand_words(const Stuck& stuck) {
     if (is(stuck.previous, {EtlParser::LESS_EQUAL, EtlParser::LESS, EtlParser::GREATER_EQUAL,
                             EtlParser::GREATER, EtlParser::EQUAL, EtlParser::NOT_EQUAL}))
@@ -108,15 +107,14 @@ std::string name_words(const Stuck& stuck) {
     }
 }
 
-/// The operators that could follow an operand are tried by loops, so the parser does not expect
-/// them any more.
+/// The parser tries operators after an operand in loops, so they are no longer in its expected set.
 bool operators_could_follow(const Stuck& stuck) {
     if (stuck.rule == EtlParser::RulePrimary) return true;
     return stuck.rule == EtlParser::RuleDeclaration && stuck.in_formula() &&
            stuck.expects(EtlParser::SEMICOLON);
 }
 
-/// Tokens that are named by their spelling.
+/// Tokens that messages name by their spelling.
 constexpr std::array kSpelled = std::to_array<std::size_t>(
     {EtlParser::MONITOR,  EtlParser::IN,     EtlParser::HOLD,      EtlParser::MISSING,
      EtlParser::SCALE,    EtlParser::OFFSET, EtlParser::FITTED,    EtlParser::FRAMES,
@@ -125,7 +123,8 @@ constexpr std::array kSpelled = std::to_array<std::size_t>(
      EtlParser::ASSIGN,   EtlParser::LPAREN, EtlParser::RPAREN,    EtlParser::LBRACKET,
      EtlParser::RBRACKET, EtlParser::COMMA,  EtlParser::COLON,     EtlParser::SEMICOLON});
 
-/// Lists are read by loops too, so another item is not expected any more where the list may end.
+/// The parser reads lists in loops too, so another item is no longer expected where the list may
+/// end.
 bool another_item_could_follow(const Stuck& stuck) {
     switch (stuck.rule) {
         case EtlParser::RuleDeclaration: return stuck.expects(EtlParser::COLON);
@@ -144,7 +143,7 @@ bool contains(const std::vector<std::size_t>& types, std::size_t type) {
     return std::find(types.begin(), types.end(), type) != types.end();
 }
 
-/// Groups first, each token then once; the tokens left over by their spelling.
+/// Lists groups first, each token once, then the remaining tokens by their spelling.
 std::vector<std::string> listed(const Stuck& stuck) {
     std::vector<std::string> words;
     Types covered{EtlParser::MINUS};  // begins a number
@@ -171,7 +170,7 @@ std::string expected_words(const Stuck& stuck) {
         return stuck.rule == EtlParser::RuleLiteral ? "a number, or a row [...] of numbers"
                                                     : "an operator";
     if (expects_operand(stuck)) return operand_words(stuck);
-    // A name that stands where a number can is that of a constant, or a word of an argument.
+    // A name where a number is accepted is a constant, or the value of an argument.
     const bool in_argument =
         is(stuck.previous, {EtlParser::ASSIGN}) && stuck.rule != EtlParser::RuleDeclaration;
     if (in_argument && stuck.expects(EtlParser::NUMBER)) return "a number or a word";

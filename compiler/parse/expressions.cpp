@@ -40,7 +40,7 @@ bool is_single(const ParserRuleContext& context) {
     return context.children.size() == 1;
 }
 
-/// The sum that a formula's rule consists of; nullptr where a formula's operator stands in it.
+/// Returns the sum that a formula rule consists of; nullptr if it has an operator of formulas.
 Grammar::SumContext* only_sum(const Grammar::FormulaContext& context) {
     const ParserRuleContext* at = &context;
     while (is_single(*at)) {

@@ -22,7 +22,7 @@ const Token& symbol(antlr4::tree::ParseTree* child) {
     return *dynamic_cast<antlr4::tree::TerminalNode*>(child)->getSymbol();
 }
 
-/// The primary that a sum consists of; nullptr where an operator of expressions stands in it.
+/// Returns the primary that a sum consists of; nullptr if it has an operator of expressions.
 Grammar::PrimaryContext* only_primary(Grammar::SumContext& context) {
     if (context.children.size() != 1) return nullptr;
     auto& product = dynamic_cast<Grammar::ProductContext&>(*context.children[0]);

@@ -1,4 +1,5 @@
-// How deep a declaration nests: everything that the grammar reads by recursion, in one pass.
+// Measures how deep a declaration nests, in one pass: everything that the grammar reads by
+// recursion counts.
 #include <vector>
 
 #include "EtlLexer.h"
@@ -11,9 +12,9 @@ using grammar::EtlLexer;
 
 namespace {
 
-/// What is open between one pair of brackets: everything that the grammar reads by recursion.
+/// What is open between one pair of brackets.
 struct Level {
-    int base = 0;      ///< depth outside the bracket, and one for the bracket
+    int base = 0;      ///< depth outside the bracket, plus one
     int arrows = 0;    ///< `->` in a row
     int untils = 0;    ///< U W R S in a row
     int prefixes = 0;  ///< ! X F G Y O H rise fall held in a row

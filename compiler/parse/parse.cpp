@@ -18,7 +18,7 @@ using diag::Diagnostic;
 
 namespace {
 
-/// Reads one file, declaration by declaration.
+/// Reads one file, one declaration at a time.
 class Reader {
 public:
     Reader(const source::File& file, diag::Sink& sink) : file_(file), sink_(sink), builder_(file) {}
@@ -80,12 +80,12 @@ private:
         }
     }
 
-    /// Thrown for a declaration whose trouble has been reported already.
+    /// Thrown for a declaration whose error has already been reported.
     struct Unexplained {};
 
     void refuse_mistakes(Slice slice) const {
         for (std::size_t i = slice.begin; i < slice.end; ++i) {
-            // A string of bytes that are not UTF-8 has been told of with the file's.
+            // A string that is not UTF-8 has been reported for the whole file.
             if (tokens_[i]->getType() == Grammar::STRING) {
                 const std::string_view content = file_.text(span_of(*tokens_[i]));
                 if (source::first_invalid_utf8(content) < content.size()) throw Unexplained{};
@@ -133,7 +133,8 @@ private:
         spec_seen_ = true;
     }
 
-    /// Notes what a broken declaration would have declared, as far as its first words tell.
+    /// Records the names that a broken declaration would have declared, as far as its first words
+    /// tell.
     void add_unreadable(Slice slice) {
         const std::size_t last = slice.end;
         std::size_t at = slice.begin;
@@ -153,8 +154,8 @@ private:
         }
     }
 
-    /// A reserved word used as a name breaks every other declaration that uses it: that is one
-    /// cause, told once.
+    /// A reserved word used as a name breaks every other declaration that uses it; this single
+    /// cause is reported once.
     void report_errors() {
         std::vector<std::string> misused;
         for (const SyntaxError& error : errors_)
@@ -182,8 +183,8 @@ private:
         missing.note("a file begins with 'spec NAME;', which names the generated code");
     }
 
-    /// A first declaration that is none, in a file without `spec NAME;`: the missing spec is what
-    /// is wrong with it.
+    /// Whether the error is about a first statement that is no declaration in a file without `spec
+    /// NAME;`. The missing spec is the real error.
     bool is_missing_spec(const SyntaxError& error) const {
         return !spec_seen_ && error.previous.empty() && !error.found.empty() &&
                error.diagnostic.span == span_of(*tokens_.front());

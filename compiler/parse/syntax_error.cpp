@@ -22,7 +22,7 @@ bool is_aggregation(const Token* token) {
     return is(token, {EtlParser::MIN, EtlParser::MAX, EtlParser::MEAN});
 }
 
-/// Composes the diagnostic of one place.
+/// Composes the diagnostic for one place.
 class Explanation {
 public:
     Explanation(const Stuck& stuck, const Token& found, const source::File& file)
@@ -45,8 +45,8 @@ private:
 
     bool found_is_word() const { return found_.getType() == EtlParser::IDENTIFIER; }
 
-    /// Where what is missing belongs: after the last word on its line rather than before the first
-    /// on the next.
+    /// Returns the place of something missing: after the last word on its line rather than before
+    /// the first word on the next.
     source::Span place() const {
         const source::Span found = span_of(found_);
         if (stuck_.previous == nullptr) return found;
@@ -63,7 +63,7 @@ private:
         if (to.span != span_of(word)) to.meant.clear();
     }
 
-    /// Whether the word is one of another language.
+    /// Explains a word of another language, if it is one.
     bool add_native(Diagnostic& to, Foreign kind, const Token& word) const {
         auto here = native(kind, text(word));
         if (!here) return false;
@@ -105,8 +105,8 @@ private:
         return result;
     }
 
-    /// A word before '(' that is neither a distance nor a function, or a word after an
-    /// aggregation that is no distance.
+    /// Whether a word before '(' is neither a distance nor a function, or a word after an
+    /// aggregation is no distance.
     bool unknown_call() const {
         if (is_aggregation(stuck_.previous) && found_is_word()) return true;
         const bool after_operand = stuck_.rule == EtlParser::RulePrimary ||
@@ -151,9 +151,8 @@ private:
         return result;
     }
 
-    /// A word after a bound is a unit where the interval goes on behind it, or where it
-    /// is close to one; else the interval should have ended before it, as in "F[0, 5
-    /// q".
+    /// A word after a bound is a unit if the interval continues after it or it resembles a unit;
+    /// otherwise the interval should have ended before it, as in "F[0, 5 q".
     bool unknown_unit() const {
         const bool word = is_name(found_) || is_reserved_word(found_, file_);
         if (!is(stuck_.previous, {EtlParser::NUMBER}) || !word) return false;
@@ -192,7 +191,7 @@ private:
             to.meant = ";";
     }
 
-    /// What the words found and before suggest was meant.
+    /// Adds a note that the words around the place suggest.
     void add_note_on_words(Diagnostic& to) const {
         const std::size_t found = found_.getType();
         const bool in_brackets =
@@ -214,7 +213,7 @@ private:
                                 description_of_reserved(found)));
     }
 
-    /// How the thing that is being read is written.
+    /// Adds a note on how the current construct is written.
     void add_note_on_rule(Diagnostic& to) const {
         const bool in_duration = stuck_.rule == EtlParser::RuleDuration ||
                                  stuck_.parent_rule == EtlParser::RuleDuration ||

@@ -1,7 +1,5 @@
-// What stops the reading of one declaration.
-// Takes: the place where ANTLR's parser is stuck. Gives: one diagnostic in the user's terms, thrown
-// as SyntaxError. Keeps true: parsing stops at a declaration's first error; ANTLR's own recovery
-// and messages are never used.
+// Explains an error in one declaration in the user's terms, as a SyntaxError. Parsing stops at a
+// declaration's first error.
 #pragma once
 
 #include <string>
@@ -13,8 +11,8 @@ namespace etlc::parse {
 
 struct SyntaxError {
     diag::Diagnostic diagnostic;
-    /// The words at the place: an error that only follows from a reserved word used as a name is
-    /// told by them.
+    /// The words at the place; they identify errors that only follow from a reserved word used as a
+    /// name.
     std::string found{};
     std::string previous{};
 };
@@ -32,8 +30,7 @@ private:
     Slice slice_;
 };
 
-/// `next`: the first token after the slice, which is what the user sees where the slice ended too
-/// early.
+/// `next` is the first token after the slice, which the user sees where the slice ended too early.
 SyntaxError explain(const Stuck& stuck, const Token& next, const source::File& file);
 
 }  // namespace etlc::parse

@@ -15,7 +15,7 @@ namespace {
 using check::Formula;
 using check::Index;
 
-/// What the plan costs; nothing where it is not within the limits.
+/// Returns the cost of the plan, or nothing if it exceeds the limits.
 std::optional<plan::Cost> cost_of(const check::Model& model, const Options& options) {
     ir::Program program = ir::lower(model);
     opt::optimise(program);
@@ -24,7 +24,7 @@ std::optional<plan::Cost> cost_of(const check::Model& model, const Options& opti
     return plan ? std::optional(plan->cost) : std::nullopt;
 }
 
-/// Tries rewritings of one monitor, in a model of its own.
+/// Tries rewritings of one monitor in a model of its own.
 class Rewriting {
 public:
     Rewriting(const check::Model& model, Index monitor, plan::Among among, const Options& options)
@@ -34,7 +34,7 @@ public:
         for (check::Let& let : model_.lets) let.telemetry = false;
     }
 
-    /// Of `G f`, and of a formula that looks ahead for a bounded time.
+    /// Tries a sliding monitor in place of `G f`, or of a formula with a bounded future.
     std::optional<diag::Note> as_sliding_monitor() {
         check::Monitor& monitor = model_.monitors[monitor_];
         const check::Monitor written = monitor;
@@ -57,7 +57,7 @@ public:
                                       plan::in_words(*cost))};
     }
 
-    /// Of the longest one.
+    /// Shortens the longest window.
     std::optional<diag::Note> with_shorter_window() {
         const Index at = longest_window();
         if (at == check::kNone) return std::nullopt;
@@ -93,7 +93,7 @@ private:
         return cost.has_value();
     }
 
-    /// Of the monitor's formula; kNone where it has none of more than a step.
+    /// Returns the longest window of more than a step in the monitor's formula, or kNone.
     Index longest_window() const {
         Index longest = check::kNone;
         for (const Index at : check::parts_of(model_, model_.monitors[monitor_].formula)) {
@@ -111,10 +111,9 @@ private:
     plan::Cost cost_;  ///< of the last that fitted
 };
 
-/// What would fit in place of a monitor that exceeds the limits: rewritings that are within them,
-/// with what they cost. Each was really planned; a call plans a few dozen times at most, and stops
-/// doubling a window where it no longer fits. `among`: all monitors of the model have to fit
-/// together, or this one by itself.
+/// Returns rewritings of a monitor that exceeds the limits, with their costs. Each was really
+/// planned; a call plans a few dozen times at most, and stops doubling a window where it no longer
+/// fits. `among`: all monitors of the model have to fit together, or this one alone.
 std::vector<diag::Note> alternatives(const check::Model& model, Index monitor, plan::Among among,
                                      const Options& options) {
     Rewriting rewriting(model, monitor, among, options);

@@ -137,31 +137,40 @@ private:
         std::visit([this](auto& v) { this->replace(v); }, value);
     }
 
+    template <class... Parts>
+    void each(Parts&... parts) {
+        (replace(parts), ...);
+    }
+
     void replace(ast::Name& /*name*/) {}
     void replace(ast::Load& /*load*/) {}
     void replace(ast::Constant& /*constant*/) {}
+    void replace(ast::Images& /*images*/) {}
+    void replace(ast::Point& /*point*/) {}
     void replace(ast::MatrixLiteral& matrix) { replace(matrix.rows); }
     void replace(ast::VectorLiteral& vector) { replace(vector.values); }
-
-    void replace(ast::Point& /*point*/) {}
-
-    void replace(ast::Frames& frames) {
-        replace(frames.frames);
-        replace(frames.stride);
-    }
-
-    void replace(ast::Fitted& fitted) {
-        for (ast::Fitted::Argument& argument : fitted.arguments) replace(argument.value);
-    }
-
-    void replace(ast::Distance& distance) {
-        if (distance.aggregation) replace(distance.aggregation->n);
-        replace(distance.weights);
-    }
+    void replace(ast::Frames& frames) { each(frames.frames, frames.stride); }
+    void replace(ast::Fitted& fitted) { replace(fitted.arguments); }
+    void replace(ast::Fitted::Argument& argument) { replace(argument.value); }
+    void replace(ast::Aggregation& aggregation) { replace(aggregation.n); }
+    void replace(ast::Distance& distance) { each(distance.aggregation, distance.weights); }
+    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
+    void replace(ast::Interval& interval) { each(interval.low, interval.high); }
+    void replace(ast::Formula& f) { each(f.operands, f.interval, f.left, f.right); }
+    void replace(ast::Encoder::Setting& setting) { replace(setting.values); }
+    void replace(ast::Encoder& encoder) { replace(encoder.settings); }
+    void replace(ast::Type& type) { each(type.dimension, type.scale); }
+    void replace(ast::Range& range) { each(range.low, range.high); }
+    void replace(ast::Input& input) { each(input.type, input.range, input.hold); }
+    void replace(ast::Projection& projection) { each(projection.matrix, projection.offset); }
+    void replace(ast::Target& target) { replace(target.sources); }
+    void replace(ast::Predicate& p) { each(p.expression, p.threshold); }
+    void replace(ast::Truth& truth) { replace(truth.formula); }
+    void replace(ast::Let& let) { replace(let.formula); }
+    void replace(ast::Monitor& monitor) { each(monitor.formula, monitor.calibrated); }
 
     void replace(ast::Expr& expression) {
-        replace(expression.distance);
-        replace(expression.arguments);
+        each(expression.distance, expression.arguments);
         const Reference* meant =
             expression.kind == ast::Expr::Kind::name ? c_.scope.find(expression.text) : nullptr;
         if (meant == nullptr || meant->kind != NameKind::constant) return;
@@ -172,18 +181,6 @@ private:
         expression.constant = number.constant;
     }
 
-    void replace(ast::Bound& bound) { replace(bound.number, bound.unit); }
-
-    void replace(ast::Formula& formula) {
-        replace(formula.operands);
-        if (formula.interval) {
-            replace(formula.interval->low);
-            replace(formula.interval->high);
-        }
-        replace(formula.left);
-        replace(formula.right);
-    }
-
     void replace(ast::Calibrated& calibrated) {
         for (ast::Calibrated::Argument& argument : calibrated.arguments) {
             auto* const name = std::get_if<ast::Name>(&argument.value);
@@ -192,12 +189,6 @@ private:
                 argument.value = ast::Number{name->text, name->span, name->text};
             replace(argument.value);
         }
-    }
-
-    void replace(ast::Images& /*images*/) {}
-
-    void replace(ast::Encoder& encoder) {
-        for (ast::Encoder::Setting& setting : encoder.settings) replace(setting.values);
     }
 
     void replace(ast::Rate& rate) {
@@ -211,32 +202,6 @@ private:
             fmt::format("'{0}' is a number{2}, {1}, and a period has a unit of time; expected "
                         "one, as in 'period {0} ms'",
                         rate.number.constant, rate.number.text, in_steps ? " of steps" : ""));
-    }
-
-    void replace(ast::Input& input) {
-        replace(input.type.dimension);
-        replace(input.type.scale);
-        if (input.range) {
-            replace(input.range->low);
-            replace(input.range->high);
-        }
-        replace(input.hold);
-    }
-
-    void replace(ast::Projection& projection) {
-        replace(projection.matrix);
-        replace(projection.offset);
-    }
-    void replace(ast::Target& target) { replace(target.sources); }
-    void replace(ast::Predicate& predicate) {
-        replace(predicate.expression);
-        replace(predicate.threshold);
-    }
-    void replace(ast::Truth& truth) { replace(truth.formula); }
-    void replace(ast::Let& let) { replace(let.formula); }
-    void replace(ast::Monitor& monitor) {
-        replace(monitor.formula);
-        replace(monitor.calibrated);
     }
 
     Context& c_;

@@ -16,9 +16,9 @@ namespace {
 
 struct Row {
     Foreign kind;
-    std::string_view written;    ///< words with the same meaning, a blank between them
-    std::string_view here;       ///< empty: there is no one word
-    std::string_view note = "";  ///< empty: made of the word
+    std::string_view written;    ///< synonyms, separated by blanks
+    std::string_view here;       ///< empty if no single word replaces it
+    std::string_view note = "";  ///< empty: "did you mean 'HERE'?"
 };
 
 constexpr std::array kRows{
@@ -49,7 +49,7 @@ std::optional<Native> foreign_word(Foreign kind, std::string_view word) {
     return Native{std::string(row->here), std::string(row->note)};
 }
 
-/// A word of the language, given in small letters.
+/// Finds a word of the language in lower case.
 std::optional<Native> own_word(Foreign kind, std::string_view lower) {
     for (const ast::Operator& op : ast::kOperators)
         if (kind == (op.level == ast::kPrefix ? Foreign::prefix : Foreign::infix) &&
@@ -60,7 +60,7 @@ std::optional<Native> own_word(Foreign kind, std::string_view lower) {
     return std::nullopt;
 }
 
-/// F_ of F_[0,2], as in papers, and F_I; GF of GF p.
+/// Explains F_ in F_[0,2] and F_I, as in papers, and GF in GF p.
 std::optional<Native> written_together(Foreign kind, std::string_view word) {
     const std::string_view letters = kind == Foreign::prefix ? kPrefixLetters : kInfixLetters;
     const std::string_view stem = word.substr(0, word.size() - 1);
@@ -125,7 +125,7 @@ std::string note_on_interval(const Stuck& stuck, const Token& found, const sourc
     return is_found({EtlParser::RPAREN}) ? "an interval holds both its bounds: [a, b]" : "";
 }
 
-/// F(0, 2) p, and F[0, 2]s p.
+/// Explains F(0, 2) p and F[0, 2]s p.
 std::string note_on_brackets(const Stuck& stuck, const Token& found, const source::File& file) {
     const bool number =
         is(stuck.previous, {EtlParser::NUMBER}) && is(stuck.before_previous, {EtlParser::LPAREN});
@@ -205,7 +205,7 @@ std::optional<Native> native(Foreign kind, std::string_view word) {
     const std::string lower = in_lower_case(word);
     if (lower == word) return std::nullopt;
     if (auto own = own_word(kind, lower)) return own;
-    // A letter alone is another word in the other case.
+    // A single letter means something else in the other case.
     return lower.size() > 1 ? foreign_word(kind, lower) : std::nullopt;
 }
 

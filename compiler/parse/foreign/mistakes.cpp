@@ -1,4 +1,4 @@
-// Tokens that are mistakes: characters, numbers and operators that the language does not have.
+// Explains mistaken tokens: characters, numbers and operators that the language does not have.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -18,9 +18,9 @@ using source::Span;
 namespace {
 
 struct Hint {
-    std::string_view written;  ///< with a blank between what means the same
+    std::string_view written;  ///< synonyms, separated by blanks
     std::string_view hint;
-    std::string_view meant = "";  ///< where there is but one thing to write instead
+    std::string_view meant = "";  ///< replacement, if there is only one
 };
 
 constexpr std::array kHints{
@@ -64,7 +64,7 @@ constexpr std::array kHints{
     Hint{"\xEF\xBB\xBF", "this is a byte order mark; take it away"},
 };
 
-/// Where an operand should begin, and behind an operator, some mean another thing.
+/// Some mean something else where an operand should begin.
 constexpr std::array kHintsBeforeOperand{
     Hint{"<>", "'eventually' is 'F'", "F"},
     Hint{"|", "the value of x without its sign is abs(x)"},
@@ -101,13 +101,13 @@ void add_hint(diag::Diagnostic& to, std::string_view written, const Token* previ
 
 constexpr const char* kCommaInInterval = "a comma stands between the bounds: [0, 2 s]";
 
-/// `0.` and `..` of 0..2.
+/// `0.` and `..` in 0..2.
 bool begins_dots(Span span, const source::File& file) {
     const std::string_view rest = file.text().substr(span.begin);
     return rest.starts_with("..") || file.text().substr(span.end).starts_with('.');
 }
 
-/// A number with a digit missing: .5, 5., 0.5f.
+/// Completes a number: .5, 5., 0.5f.
 std::string mended(std::string number) {
     const auto is_digit = [](char c) { return c >= '0' && c <= '9'; };
     if (number.starts_with('.')) return "0" + number;

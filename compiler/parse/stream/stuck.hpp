@@ -1,4 +1,4 @@
-// Where ANTLR's parser cannot go on.
+// The state of ANTLR's parser where it cannot go on.
 #pragma once
 
 #include <cstddef>
@@ -9,26 +9,25 @@
 
 namespace etlc::parse {
 
-/// A parser that cannot go on, and what it would have taken.
 struct Stuck {
-    const Token* found;            ///< EOF where the slice ended
-    const Token* previous;         ///< nullptr: nothing read yet
-    const Token* before_previous;  ///< nullptr: no such token
-    const Token* following;        ///< after `found`; nullptr: the slice ends
+    const Token* found;            ///< EOF if the slice ended
+    const Token* previous;         ///< nullptr if nothing was read yet
+    const Token* before_previous;  ///< nullptr if there is none
+    const Token* following;        ///< after `found`; nullptr at the end of the slice
     antlr4::misc::IntervalSet expected;
     std::size_t rule;         ///< EtlParser::Rule...
-    std::size_t parent_rule;  ///< of the rule that called it
-    std::size_t declaration;  ///< type of the slice's first token
-    bool looked_ahead;        ///< found lies past the token at which the parser had to decide
+    std::size_t parent_rule;  ///< of the calling rule
+    std::size_t declaration;  ///< type of the first token in the slice
+    bool looked_ahead;        ///< `found` lies after the token at which the parser had to decide
 
     bool expects(std::size_t type) const { return expected.contains(type); }
 
-    /// The rule that the parser is in; names have one of their own.
+    /// Returns the rule that the parser is in, or the one around a name.
     std::size_t rule_around() const {
         return rule == grammar::EtlParser::RuleName ? parent_rule : rule;
     }
 
-    /// In the declaration of a let, a truth or a monitor.
+    /// Whether the place is in the declaration of a let, a truth or a monitor.
     bool in_formula() const {
         switch (declaration) {
             case grammar::EtlParser::LET:
@@ -42,7 +41,7 @@ struct Stuck {
     }
 };
 
-/// Stops the parser at its first error: ANTLR's own recovery and messages are never used.
+/// Stops the parser at its first error; ANTLR's own recovery and messages are never used.
 class StopAtError : public antlr4::ANTLRErrorStrategy {
 public:
     void reset(antlr4::Parser* /*parser*/) override {}

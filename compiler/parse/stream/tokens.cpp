@@ -15,9 +15,9 @@ using source::Span;
 
 namespace {
 
-/// The bytes of a file as ANTLR's character stream: one character a byte, so that ANTLR's indices
-/// are our offsets. Every byte above ASCII reads as DEL: outside strings and comments none of them
-/// can stand, inside any can, and ANTLR caches its transitions for ASCII alone.
+/// Presents a file to ANTLR with one character per byte, so that ANTLR's indices are byte offsets.
+/// Bytes above ASCII read as DEL: they may stand in strings and comments only, where all are alike,
+/// and ANTLR caches transitions for ASCII only.
 class ByteStream final : public antlr4::CharStream {
 public:
     explicit ByteStream(std::string_view text) : text_(text) {}
@@ -56,7 +56,7 @@ Tokens tokens_of(const source::File& file) {
     if (file.text().substr(0, source::kByteOrderMark.size()) == source::kByteOrderMark)
         bytes.seek(source::kByteOrderMark.size());
     EtlLexer lexer(&bytes);
-    lexer.removeErrorListeners();  // every byte begins some token: there is nothing to listen to
+    lexer.removeErrorListeners();  // every byte begins some token, so the lexer has no errors
     Tokens tokens;
     do tokens.push_back(lexer.nextToken());
     while (tokens.back()->getType() != Token::EOF);
