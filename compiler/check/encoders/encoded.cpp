@@ -38,15 +38,15 @@ std::string then_and_now(std::string_view what, const std::string& then, const s
     return fmt::format("{} then: {}; now: {}", what, then, now);
 }
 
-/// What is not as it was. A model that is not here is not missed: where a monitor is built there
-/// need be none.
+/// Returns the differences since the encoder was run. A missing model is no difference: it is not
+/// needed to build a monitor.
 std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::Encoder& then) {
     std::vector<std::string> found;
     if (then.declaration != encoder.declaration)
         found.push_back(then_and_now("the declaration", then.declaration, encoder.declaration));
     if (encoder.dimension != 0 && then.dimension != encoder.dimension)
         found.push_back(then_and_now("the dimension", std::to_string(then.dimension),
-                                   std::to_string(encoder.dimension)));
+                                     std::to_string(encoder.dimension)));
     if (then.kind != embedded::kCommand && !then.kind.starts_with(embedded::kOnnxRuntime))
         found.emplace_back(
             "an earlier etlc ran it, by OpenCV, whose numbers may be others than the model's, or "
@@ -72,7 +72,7 @@ Span span_of(const ast::Target::Source& source) {
     return std::visit([](const auto& s) { return s.span; }, source);
 }
 
-/// Nothing where it had an error, which is reported.
+/// Returns nothing after an error.
 std::optional<Encoded> encoded_of(Context& c, const ast::Target::Source& source,
                                   const std::optional<ast::Name>& encoder) {
     Encoded result;
@@ -112,8 +112,8 @@ std::vector<std::string> paths_in(const embedded::Entry& entry) {
     return paths;
 }
 
-/// What is not as it was, a sentence each. Files that are gone, all of them, are not missed: where
-/// a monitor is built there need be no images.
+/// Returns the differences since the images were embedded. If all files are missing there is no
+/// difference: they are not needed to build a monitor.
 std::vector<std::string> changes(Context& c, const Encoded& encoded, const embedded::Entry& entry) {
     const auto now = files_of(encoded, c.file.path());
     if (!now) return {};
@@ -136,7 +136,7 @@ std::vector<std::string> changes(Context& c, const Encoded& encoded, const embed
     return found;
 }
 
-/// Of Model::encoded, where equal ones stand once.
+/// Returns the index in Model::encoded, which has equal elements once.
 Index add(Model& model, const Encoded& encoded) {
     const auto same = [&](const Encoded& other) { return other.text == encoded.text; };
     const auto at = std::find_if(model.encoded.begin(), model.encoded.end(), same);

@@ -1,4 +1,4 @@
-// Frames of a recording as rows, frames("ep.npz", "z", [120, 180]).
+// Reads frames of a recording as rows: frames("ep.npz", "z", [120, 180]).
 #include "check/encoders/encoded.hpp"
 
 #include <fmt/format.h>
@@ -19,9 +19,9 @@ namespace {
 
 using diag::Code;
 
-/// Steps of a recording are counted from 0, in 32 bits.
+/// Steps of a recording are numbered from 0 in 32 bits.
 constexpr std::uint64_t kMaxFrame = kMaxBound;
-/// More frames than this are no choice of frames.
+/// Limit on the frames of one declaration.
 constexpr std::uint64_t kMaxFrames = 1U << 20U;
 
 std::optional<std::uint64_t> whole(Context& c, const ast::Number& number, std::uint64_t least) {
@@ -43,8 +43,7 @@ const Input* input_of(Context& c, const ast::Frames& written) {
     return nullptr;
 }
 
-/// The sample as float32, what the input's type makes of it aside; false, with a diagnostic, where
-/// it is missing.
+/// Converts a sample to float32, scaled if the input is i8; false, with an error, if it is missing.
 bool take(Context& c, const ast::Frames& written, const Input& input, std::uint64_t frame,
           const data::Sample& sample, std::vector<float>& row) {
     row.clear();
@@ -63,7 +62,7 @@ bool take(Context& c, const ast::Frames& written, const Input& input, std::uint6
 void report(Context& c, const ast::Frames& written, const std::string& path,
             const diag::Failure& failure) {
     diag::Diagnostic diagnostic = data::in_trace(failure, path);
-    diagnostic.notes.clear();  // of --map, which is for the episodes of the command
+    diagnostic.notes.clear();  // they explain --map, which is for the episodes of a command
     diagnostic.span = written.span;
     c.report_data(std::move(diagnostic), !exists(data::trace_file(path)));
 }

@@ -1,6 +1,5 @@
-// Whether the embeddings of an episode are by the spec's encoder.
-// Takes: an input, and what the episode's file says of its arrays. Gives: why they are not, or that
-// the file does not say. Keeps true: an array of which it says nothing is taken, with a warning.
+// Checks whether the embeddings in an episode were made by the spec's encoder. An episode that does
+// not name its encoder is accepted with a warning.
 #pragma once
 
 #include <optional>
@@ -12,13 +11,14 @@
 
 namespace etlc::check {
 
-/// `array`: the name of the input in the file.
+/// Returns an error if the array was made by another encoder than the input's. `array` is the name
+/// of the input in the file.
 std::optional<diag::Failure> other_encoder(const Model& model, const Input& input,
                                            const std::string& array, const embedded::Marks& marks);
 
-/// Whether an input is by an encoder and the file does not say by which.
+/// Whether the input has an encoder and the file does not name the encoder of the array.
 bool is_unmarked(const Input& input, const std::string& array, const embedded::Marks& marks);
-/// What a warning of such an episode (W1001) means, and how to keep what it lacks.
+/// Adds notes to the warning about such an episode (W1001): its meaning, and how to keep the name.
 void explain_unmarked(diag::Diagnostic& warning);
 
 }  // namespace etlc::check

@@ -15,7 +15,7 @@ Constancy negation(Constancy a) {
     return a == varies ? varies : a == always ? never : always;
 }
 
-/// `deciding` decides alone, as `never` does under &&.
+/// Combines operands of && or ||, of which `deciding` decides alone, as `never` does for &&.
 Constancy combine(const Operands& operands, Constancy deciding) {
     const auto is = [](Constancy value) {
         return [value](Constancy operand) { return operand == value; };
@@ -34,19 +34,18 @@ Constancy equivalence(Constancy a, Constancy b) {
     return a == b ? always : never;
 }
 
-/// F and O: without an operand that holds they fail, and a window that holds the present is never
-/// empty.
+/// F and O fail without an operand that holds; a window that contains the present is never empty.
 Constancy some(Constancy operand, bool holds_present) {
     if (operand == never) return never;
     return operand == always && holds_present ? always : varies;
 }
 
-/// G and H, the duals.
+/// G and H are the duals.
 Constancy every(Constancy operand, bool holds_present) {
     return negation(some(negation(operand), holds_present));
 }
 
-/// U and S: the left operand counts for certain where the right one cannot stand in the present.
+/// U and S need the left operand if the right one cannot hold in the present.
 Constancy until(Constancy left, Constancy right, bool holds_present) {
     if (right == never || (left == never && !holds_present)) return never;
     return right == always && holds_present ? always : varies;
@@ -86,7 +85,7 @@ Constancy of(const Formula& formula, const Operands& operands) {
     return varies;
 }
 
-/// Past operators at position 0 see themselves, or nothing.
+/// At position 0 past operators see only that position, or nothing.
 Constancy past_at_start(const Formula& formula, const Operands& operands) {
     if (formula.kind == Kind::held) return formula.high == 0 ? operands[0] : never;
     if (formula.low == 0) return operands.back();

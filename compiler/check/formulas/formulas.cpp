@@ -15,7 +15,7 @@ namespace {
 using diag::Code;
 using Kind = Formula::Kind;
 
-/// Constants and operators are numbered alike in the syntax tree and the model.
+/// Constants and operators have the same numbers in the syntax tree and in the model.
 Kind kind_of(ast::Formula::Kind written) {
     static_assert(static_cast<int>(Kind::negation) ==
                   static_cast<int>(ast::Formula::Kind::negation));
@@ -56,7 +56,7 @@ private:
         return static_cast<Index>(c_.model.formulas.size() - 1);
     }
 
-    /// An atom; `index` may be kNone.
+    /// Adds an atom; kNone for kNone.
     Index leaf(Kind kind, Index index, const ast::Formula& written) {
         if (index == kNone) return kNone;
         Formula formula;

@@ -13,7 +13,7 @@ void take_first(Index& mine, Index operands) {
     if (mine == kNone) mine = operands;
 }
 
-/// What one formula reads: inputs that may leave it unknown, and how many steps back.
+/// Inputs that may leave a formula unknown, and how many steps back it reads.
 struct Reading {
     std::set<Index> inputs;
     std::uint64_t back = 0;
@@ -79,7 +79,7 @@ std::vector<Gap> gaps(const Model& model) {
     std::vector<Gap> result;
     for (const Monitor& monitor : model.monitors) {
         const Reading& reading = all[monitor.formula];
-        // A prefix monitor goes on to speak of one position, which has lost its sample.
+        // A prefix monitor stays at one position, whose sample is lost.
         const std::uint64_t steps =
             monitor.sliding ? sum(reading.back, monitor.horizon + std::uint64_t{1}) : Gap::kForGood;
         result.push_back({{reading.inputs.begin(), reading.inputs.end()}, steps});

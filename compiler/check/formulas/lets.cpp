@@ -1,4 +1,4 @@
-// Lets: named sub-formulas, built after those that they name.
+// Builds lets after those that they name.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 using diag::Code;
 
-/// A name in a let's formula that means another let, and where it stands.
+/// A use of a let in the formula of another.
 struct Use {
     Index let;
     Span span;
@@ -36,7 +36,7 @@ std::vector<Use> lets_in(const Context& c, const ast::Formula& formula) {
     return uses;
 }
 
-/// Depth-first over the lets without recursion: a chain of lets may be as long as the spec.
+/// Orders lets depth-first without recursion, since a chain of lets may be as long as the spec.
 class LetOrder {
 public:
     explicit LetOrder(Context& context) : c_(context) {
@@ -83,7 +83,7 @@ private:
         path_.push_back(let);
     }
 
-    /// The use closes a circle: from the let it names, along the path, and back.
+    /// Reports the cycle from the let that is used, along the path, and back.
     void report_cycle(const Use& use) {
         const auto begin = std::find(path_.begin(), path_.end(), use.let);
         if (std::all_of(begin, path_.end(), [&](Index let) { return entity(let).broken; })) return;

@@ -1,4 +1,5 @@
-// Monitors and truths: which operators each may hold, and how long a sliding verdict is delayed.
+// Checks monitors and truths: which operators each may have, and by how many steps a sliding
+// verdict is delayed.
 #include <fmt/format.h>
 
 #include "check/context/context.hpp"
@@ -59,7 +60,7 @@ private:
         return ast::operator_of(c_.model.formulas[formula].kind)->symbol;
     }
 
-    /// Where the operator stands in a let, where it is used as well.
+    /// If the operator is in a let, notes where the let is used.
     void note_use(diag::Diagnostic& error, Span user, Span shown, Index at,
                   std::string text) const {
         const Span place = c_.operator_spans[at];
@@ -67,7 +68,7 @@ private:
         if (!inside) error.note(shown, std::move(text));
     }
 
-    /// Calls `report` for each node below the monitor that `what` of its own reach names, once in
+    /// Calls `report` for each node below the monitor that `what` names as its own reach, once for
     /// all monitors.
     template <class Report>
     void report_all(const Monitor& monitor, Index Reach::*what, std::vector<bool>& visited,
@@ -116,7 +117,7 @@ private:
     std::vector<bool> reported_past_;
 };
 
-/// The node of a predicate that `is` so, at or below `root`; kNone where there is none.
+/// Returns the node of a predicate for which `is` holds, at or below `root`; otherwise kNone.
 template <class Is>
 Index predicate_node(const Model& model, Index root, Is is) {
     for (const Index at : parts_of(model, root)) {
@@ -126,14 +127,14 @@ Index predicate_node(const Model& model, Index root, Is is) {
     return kNone;
 }
 
-/// The node of a comparison without a name, and so of one whose truth nothing says.
+/// Returns the node of a comparison that has neither a name nor a truth; otherwise kNone.
 Index node_without_truth(const Model& model, Index root) {
     return predicate_node(model, root, [&](Index predicate) {
         return model.predicates[predicate].name.empty() && !is_own_truth(model, predicate);
     });
 }
 
-/// A shift is guaranteed for the thresholds that it was fitted with.
+/// The guarantee of a shift holds for the thresholds that it was fitted with.
 void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
     const Index at = predicate_node(c.model, monitor.formula, [&](Index predicate) {
         return c.model.predicates[predicate].threshold.adaptation.has_value();
@@ -146,7 +147,8 @@ void refuse_moving_thresholds(Context& c, const Monitor& monitor) {
         .note(c.model.formulas[at].span, "it is used here");
 }
 
-/// A predicate over an embedding has its truth by its name. Compared with itself, it always agrees.
+/// A predicate over an embedding gets its truth by its name; compared with itself it would always
+/// agree.
 void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
     const Index at = node_without_truth(c.model, monitor.formula);
     if (at == kNone) return;
@@ -161,13 +163,13 @@ void refuse_comparisons_without_truth(Context& c, const Monitor& monitor) {
                           comparison));
 }
 
-/// The predicate that the truth is of; kNone where there is none, or another truth of it.
+/// Returns the predicate of a truth; kNone after an error or for a second truth.
 Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Span>& first) {
     const Reference* before = c.scope.find(declaration.predicate.text);
     const bool used = before != nullptr && c.scope.entity(*before).used;
     const Index predicate = resolve(c, declaration.predicate, NameKind::predicate);
     if (before != nullptr)
-        c.scope.entity(*before).used = used;  // a truth alone is no use of its predicate
+        c.scope.entity(*before).used = used;  // a truth does not count as a use of its predicate
     if (before == nullptr || before->kind != NameKind::predicate) return kNone;
     const auto [at, is_new] = first.try_emplace(before->index, declaration.predicate.span);
     if (is_new) return predicate;
@@ -177,7 +179,7 @@ Index predicate_of(Context& c, const ast::Truth& declaration, std::map<Index, Sp
     return kNone;
 }
 
-/// What is fitted is fitted to what is true.
+/// Fitted elements are fitted to truths, so truths cannot use them.
 void refuse_fitted(Context& c, const Truth& truth) {
     const Index at = predicate_node(c.model, truth.formula, [&](Index predicate) {
         bool found = false;
@@ -222,7 +224,7 @@ void check_truths(Context& c) {
     c.model.truths = std::move(truths);
 }
 
-/// Which frames something is fitted on: `where` of fitted(...), as a formula.
+/// Checks the frames that something is fitted to: `where` in fitted(...).
 void check_fitted_frames(Context& c) {
     for (Index i = 0; i < c.model.fitted.size(); ++i) {
         const ast::Formula& written = *c.fitted_where[i];
@@ -259,7 +261,7 @@ Restarts restarts(ast::Monitor::Kind kind) {
     return Restarts::when_final;
 }
 
-/// The positions that it reports about depend on its verdicts, and these on the shift.
+/// The positions of a restarting monitor depend on its verdicts, and these on the shift.
 bool moves_with_its_shift(Context& c, const Monitor& monitor) {
     if (monitor.restarts == Restarts::never) return false;
     c.report(Code::calibration_not_available, monitor.calibration->threshold.span,

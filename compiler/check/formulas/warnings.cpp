@@ -1,4 +1,4 @@
-// What is legal and surely not meant: declarations without use, predicates without choice.
+// Warns of declarations and formulas that are legal but surely not intended.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -34,7 +34,7 @@ void warn_of_unused(Context& c) {
 void warn_of_constant_predicates(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || std::isnan(predicate.threshold.value))
-            continue;  // broken, or not yet calibrated
+            continue;  // broken or not yet calibrated
         const auto answer = predicate.constant_answer();
         if (!answer) continue;
         const Range& delta = predicate.delta;
@@ -47,7 +47,7 @@ void warn_of_constant_predicates(Context& c) {
     }
 }
 
-/// cosine(z, t) >= 0.9: near, were it a similarity.
+/// cosine(z, t) >= 0.9 would mean near if cosine were a similarity.
 void warn_of_similarities(Context& c) {
     for (const Predicate& predicate : c.model.predicates) {
         if (predicate.text.empty() || !predicate.plain_distance() || !predicate.lower_bound())
@@ -88,7 +88,7 @@ void warn_of_same_predicates(Context& c) {
 
 using Kind = Formula::Kind;
 
-/// A number for each formula, equal for formulas of the same structure.
+/// Numbers the formulas; those of the same structure have the same number.
 std::vector<Index> structures(const Model& model) {
     std::map<std::vector<Index>, Index> known;
     std::vector<Index> result;
@@ -150,8 +150,7 @@ private:
         return found;
     }
 
-    /// Two operands of the same structure, or one the negation of the other: `p || p`, `p U p`, `p
-    /// && !p`.
+    /// Warns of an operand that occurs twice or with its negation: `p || p`, `p U p`, `p && !p`.
     void warn_of_same_operands(Index at) {
         const Formula& formula = model_.formulas[at];
         if (formula.operands.size() < 2) return;
@@ -242,8 +241,8 @@ private:
     }
 
     void warn_of_same_monitor(const Monitor& monitor, const Entity& entity) {
-        if (monitor.calibration) return;                       // shifted, each by its own
-        if (monitor.restarts == Restarts::on_request) return;  // each at its own time
+        if (monitor.calibration) return;                       // each has its own shift
+        if (monitor.restarts == Restarts::on_request) return;  // each restarts at its own time
         const auto [first, is_new] = monitors_.try_emplace(
             {structures_[monitor.formula], monitor.sliding, monitor.restarts}, &entity);
         if (is_new) return;
@@ -263,7 +262,7 @@ private:
 }  // namespace
 
 void warn(Context& c) {
-    // A name that was misspelt in its only use is no second cause.
+    // A name misspelt in its only use is reported already.
     if (!c.sink.has_errors()) warn_of_unused(c);
     if (!c.sink.has_errors()) warn_of_bare_bounds(c);
     warn_of_constant_predicates(c);

@@ -41,7 +41,7 @@ const Method* find_method(Context& c, const ast::Name& name) {
     return nullptr;
 }
 
-/// Who writes 0.9 for the coverage gets thresholds that look good and miss nearly all.
+/// An alpha of 0.9, meant as coverage, gives thresholds that look good and miss nearly everything.
 void warn_of_large_alpha(Context& c, const ast::Number& alpha) {
     const Decimal value = Decimal::parse(alpha.text);
     if (!(Decimal::parse("0.5") < value)) return;
@@ -68,7 +68,7 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
     return false;
 }
 
-/// The arguments are those of the method, each once.
+/// Checks that the arguments are those of the method, each at most once.
 bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& method) {
     std::set<std::string_view> given;
     const std::size_t errors = c.sink.errors();
@@ -87,7 +87,7 @@ bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& met
     return c.sink.errors() == errors;
 }
 
-/// The text of alpha, empty for a method without; nothing where an argument had an error.
+/// Returns the text of alpha, empty for a method without; nothing after an error in an argument.
 std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
                                     const Method& method) {
     const std::size_t errors = c.sink.errors();
@@ -124,7 +124,7 @@ Threshold uncalibrated(const ast::Calibrated& written, const Method& method,
 constexpr std::string_view kMonitorForm =
     "calibrated(conformal, alpha = 0.1, against = missed_alarm)";
 
-/// The value of `against`, where it is one.
+/// Returns the value of `against`; nothing after an error.
 std::optional<Against> against_of(Context& c, const ast::Calibrated::Argument& argument) {
     const auto* name = std::get_if<ast::Name>(&argument.value);
     for (const Against against : {Against::missed_alarm, Against::missed_success})

@@ -17,13 +17,13 @@ namespace {
 using thresholds::Entry;
 using Found = std::optional<Contradiction>;
 
-/// One score a demonstration, all of them kept; the other methods pool frames and keep the score
-/// that was taken, f1 with the next one.
+/// Whether the method keeps all scores, one per demonstration; the others pool frames and keep the
+/// chosen score, f1 also the next.
 bool keeps_all(const Entry& entry) {
     return entry.method == "conformal" || entry.method == "adaptive";
 }
 
-/// As a number, and no longer than a line bears.
+/// Returns alpha in canonical form, shortened to fit a line.
 std::string short_text(const std::string& alpha) {
     constexpr std::size_t kLongest = 40;
     const std::string text = Decimal::parse(alpha).text();
@@ -60,7 +60,7 @@ Found counts(const Entry& entry, const std::string& place) {
     return std::nullopt;
 }
 
-/// The place of the first that stands before it too.
+/// Returns the first index whose hash occurs earlier.
 std::optional<std::size_t> first_again(const std::vector<std::uint64_t>& hashes) {
     std::vector<std::uint32_t> order(hashes.size());
     std::iota(order.begin(), order.end(), std::uint32_t{0});
@@ -89,7 +89,7 @@ Found episodes_of(const Entry& entry, const std::string& place,
                     *again, data::hash_text(episodes[*again]))};
 }
 
-/// What an F1-optimal threshold follows from, in words, and what it then is.
+/// Returns the derivation of an F1-optimal threshold in words, and its value.
 std::pair<std::string, float> f1_threshold(const Entry& entry, const std::string& place) {
     const auto score = static_cast<float>(entry.scores[0]);
     if (entry.scores.size() == 1)

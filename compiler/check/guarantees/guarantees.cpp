@@ -24,13 +24,13 @@ struct Polarity {
     bool negative = false;
 };
 
-/// p <-> q, and an edge of p, hold !p beside p.
+/// p <-> q and edges of p contain both p and !p.
 bool has_both_polarities(Kind kind) {
     return kind == Kind::equivalence || kind == Kind::rise || kind == Kind::fall;
 }
 
-/// Operands with the polarity that they have in the negation normal form; both where an operand has
-/// both.
+/// Returns the operands with their polarity in the negation normal form; an operand with both
+/// occurs twice.
 std::vector<Literal> operands_of(const Model& model, Literal literal) {
     const Formula& formula = model.formulas[literal.formula];
     std::vector<Literal> result;
@@ -65,7 +65,7 @@ std::map<Index, Polarity> predicates_in(const Model& model, Literal root) {
     return found;
 }
 
-/// The operands of the conjunction that the formula is, each once, or the formula.
+/// Splits a formula into its conjuncts, each once.
 class Conjuncts {
 public:
     explicit Conjuncts(const Model& model) : model_(model), seen_(model.formulas.size()) {}
@@ -94,7 +94,7 @@ private:
     std::vector<Literal> conjuncts_;
 };
 
-/// Exact sum of decimals in (0, 1): their digits after the point, added from the right.
+/// Adds decimals in (0, 1) exactly: digits after the point, from the right.
 std::string sum(const std::vector<std::string>& alphas) {
     std::vector<std::string> digits;
     std::size_t length = 0;
@@ -127,8 +127,8 @@ std::string_view uncovered(const Model& model, Index predicate) {
     return is_own_truth(model, predicate) ? "" : "has a literal threshold and is not its own truth";
 }
 
-/// At its threshold, where robustness is 0 and so satisfied, `<` and `>` say no, and `<=` and `>=`
-/// yes: negated, no.
+/// Whether the literal is false at its threshold, where robustness is 0 and thus satisfied: true
+/// for `<` and `>`, and for negated `<=` and `>=`.
 bool says_no_at_zero(const Predicate& predicate, const Polarity& polarity) {
     return predicate.strict() ? polarity.positive : polarity.negative;
 }
@@ -148,7 +148,7 @@ Claim claim(const Model& model, Literal part, Values values) {
             no_at_zero |= says_no_at_zero(model.predicates[predicate], polarity);
             continue;
         }
-        // Where there is no sample it may miss its truth, and with it an alarm.
+        // Without a sample it may miss its truth, and with it an alarm.
         if (polarity.negative && model.predicates[predicate].missing == false)
             result.why = fmt::format("'{}' counts as false where its sample is missing",
                                      model.predicates[predicate].shown());
@@ -182,7 +182,7 @@ bool reads_embedding(const Model& model, const Predicate& predicate) {
                        [&](Index input) { return model.inputs[input].is_embedding(); });
 }
 
-/// P(Binomial(n, x) >= k), which is P(Beta(k, n + 1 - k) <= x).
+/// Returns P(Binomial(n, x) >= k) = P(Beta(k, n + 1 - k) <= x).
 double binomial_tail(std::uint64_t n, std::uint64_t k, double x) {
     const auto count = static_cast<double>(n);
     double tail = 0;

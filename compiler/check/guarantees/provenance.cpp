@@ -15,8 +15,7 @@ namespace {
 
 using Hashes = std::map<std::string, std::string>;
 
-/// Samples that are taken as they are need no hash: what is left of the declaration is in the
-/// episode.
+/// Samples used unchanged need no hash: the rest of the declaration is part of the episode.
 void add_input(const Input& input, Hashes& hashes) {
     const bool narrowed = input.type == InputType::f16 || input.type == InputType::i8;
     if (!narrowed && !input.has_range && input.hold == 0) return;
@@ -24,13 +23,13 @@ void add_input(const Input& input, Hashes& hashes) {
                                             {input.scale, input.range.low, input.range.high});
 }
 
-/// What makes the input of images.
+/// Adds the encoder of the input, if it has one.
 void add_encoder(const Model& model, Index input, Hashes& hashes) {
     if (const Index encoder = model.inputs[input].encoder; encoder != kNone)
         hashes[model.encoders[encoder].name] = model.encoders[encoder].fingerprint;
 }
 
-/// Those that the point goes through.
+/// Adds the projections on the way to the point.
 void add_projections(const Model& model, Index point, Hashes& hashes) {
     for (Index at = point; model.points[at].is_projected(); at = model.points[at].inner) {
         const Projection& projection = model.projections[model.points[at].projection];
@@ -53,7 +52,7 @@ void add_predicate(const Model& model, Index predicate, Hashes& hashes) {
     }
 }
 
-/// The things at the atoms of this kind in a formula.
+/// Returns the indices in all atoms of one kind in a formula.
 std::set<Index> atoms_in(const Model& model, Index formula, Formula::Kind kind) {
     std::set<Index> found;
     for (const Index i : parts_of(model, formula))
@@ -66,7 +65,7 @@ void add_flags(const Model& model, Index formula, Hashes& hashes) {
         add_input(model.inputs[input], hashes);
 }
 
-/// The lets whose names stand in the text of a formula.
+/// Returns the lets whose names occur in the text of a formula.
 std::vector<const Let*> lets_in(const Model& model, Index formula) {
     std::vector<const Let*> found;
     if (lets_are_written_out(model, formula)) return found;
@@ -76,7 +75,8 @@ std::vector<const Let*> lets_in(const Model& model, Index formula) {
     return found;
 }
 
-/// The formula, then the definitions of the names in it: "held && far where held = gripper > 0.5".
+/// Returns the formula, then the definitions of its names: "held && far where held = gripper >
+/// 0.5".
 std::string text_with_definitions(const Model& model, Index formula) {
     std::string text = print(model, formula);
     std::string_view separator = " where ";
@@ -100,11 +100,12 @@ std::string text_with_definitions(const Model& model, Index formula) {
     return text;
 }
 
-/// The phrases in front of a truth that arrays stood in for; nothing in a formula reads so.
+/// Prefixes of a truth that arrays replaced; no formula contains them.
 constexpr std::string_view kInPlaceOf = "array in place of ";
 constexpr std::string_view kBeside = "array or ";
 
-/// What says when the predicate holds: a truth, its own comparison, or nothing in the spec.
+/// Returns what defines the predicate's labels: a truth, its own comparison, or nothing in the
+/// spec.
 std::string meaning(const Model& model, Index predicate, const Provenance& of) {
     if (!is_own_truth(model, predicate)) return of.truth;
     return of.predicate + model.predicates[predicate].threshold.text;

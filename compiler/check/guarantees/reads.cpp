@@ -1,4 +1,4 @@
-// All that a guarantee was made from, as text.
+// Describes everything that a guarantee depends on as text.
 #include "check/guarantees/provenance.hpp"
 
 #include <fmt/format.h>
@@ -16,10 +16,10 @@ namespace etlc::check {
 
 namespace {
 
-/// Stands before hashes of what is too long to be shown.
+/// Marks hashes of what is too long to print.
 constexpr char kHashed = '#';
 
-/// What an atom of a formula says: what its comparison does, or what is true.
+/// Whether the atoms of a formula are comparisons or truths.
 enum class Atoms : std::uint8_t { compared, truths };
 
 std::string_view word(InputType type) {
@@ -45,18 +45,18 @@ std::string_view word(Restarts restarts) {
 class Reading {
 public:
     explicit Reading(const Model& model) : model_(model) {
-        // Constants and durations count as the numbers that they have become; which part of the
-        // lists counts, the things in them say.
+        // Constants and durations count as the numbers that replaced them; list elements are added
+        // where they are used.
         const auto& [name, retargetable, constants, file, step_seconds, rounded, rounding, encoders,
                      encoded, inputs, projections, points, targets, fitted, distances, predicates,
                      formulas, lets, truths, monitors, dependencies, reservations] = model;
-        // Episodes at another rate have other frames.
+        // Episodes at another rate have different frames.
         if (step_seconds > 0) add("rate", fmt::format("{:.9g} s a step", step_seconds));
     }
 
     void add_calibrated(Index index) {
-        // How its left side is measured; the threshold is what is looked for, and where its sample
-        // is missing there is no score. Ranges follow from the expression.
+        // Only the left side counts: the threshold is the result, and missing samples have no
+        // score. Ranges follow from the expression.
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
@@ -66,7 +66,7 @@ public:
     }
 
     void add_monitor(const Monitor& monitor) {
-        // The method, alpha and `against` stand in the entry, the shift is what is looked for.
+        // The entry has method, alpha and `against`; the shift is the result.
         const auto& [name, formula, sliding, restarts, horizon, calibration, span] = monitor;
         add("monitor " + name,
             fmt::format("{}{}", word(restarts),
@@ -76,7 +76,7 @@ public:
     }
 
     void add_fitted(const Fitted& fitted) {
-        // What it gives is looked for.
+        // The values are the result.
         const auto& [name, declaration, method, rows, columns, away, point, where, slot, index,
                      filled, span] = fitted;
         add("fitted",
@@ -106,7 +106,7 @@ private:
     }
 
     std::string add_encoder(Index index) {
-        // The fingerprint is of the model, of what is done to images, and of what runs it.
+        // The fingerprint covers the model, the preprocessing and the runtime.
         const auto& [name, model, image, mean, deviation, declaration, dimension, fingerprint,
                      otherwise, span] = model_.encoders[index];
         add("encoder " + name, fingerprint.empty() ? declaration : kHashed + fingerprint);
@@ -114,14 +114,14 @@ private:
     }
 
     void add_projection(Index index) {
-        // The hash is of matrix and offset, wherever they come from.
+        // The hash covers matrix and offset, from any source.
         const auto& [name, rows, dimension, matrix, offset, origin, path, hash, fitted, span] =
             model_.projections[index];
         add("projection " + name, fmt::format("{} x {}, {}{}", rows, dimension, kHashed, hash));
     }
 
     std::string text_of(Index point) {
-        // The text is of the names of the others, and what these are is added.
+        // The text has the names of inputs and projections, which are added.
         const auto& [kind, inputs, dimension, projection, inner, text] = model_.points[point];
         for (const Index input : inputs) add_input(input);
         if (projection != kNone) add_projection(projection);
@@ -129,10 +129,10 @@ private:
         return text;
     }
 
-    /// Its name.
+    /// Returns its name.
     std::string add_target(Index index) {
-        // The hash is of the rows, wherever they come from. Those in another space follow from the
-        // declared ones and the maps of the point.
+        // The hash covers the rows, from any source. Projected rows follow from the declared ones
+        // and the maps of the point.
         const auto& [name, rows, dimension, values, origin, path, hash, encoded, space, source,
                      fitted, span] = model_.targets[index];
         if (source != kNone) return add_target(source);
@@ -143,7 +143,7 @@ private:
     }
 
     void add_distance(Index index) {
-        // The text stands for it in expressions, and says the same in words.
+        // Expressions contain the text, which describes the distance in words.
         const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
         std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
@@ -156,7 +156,7 @@ private:
     }
 
     void add_expression(const Expr& expression) {
-        // Its numbers are those of its text, which print() writes.
+        // print() writes the numbers from the text.
         const auto& [kind, text, number, number32, index, arguments, span] = expression;
         if (kind == Expr::Kind::scalar) add_input(index);
         if (kind == Expr::Kind::distance) add_distance(index);
@@ -164,16 +164,16 @@ private:
     }
 
     static std::string text_of(const Threshold& threshold) {
-        // What a calibrated one came from, its own entry says. Adaptive ones stand in no formula
-        // whose truth or shift is asked for.
+        // The entry of a calibrated threshold describes its origin. Adaptive thresholds are not
+        // used in such formulas.
         const auto& [origin, text, alpha, value64, value, n, k, adaptation, span] = threshold;
         if (origin == ThresholdOrigin::literal) return Decimal::parse(text).text();
         return fmt::format("{} from {}", value, text);
     }
 
-    /// What it says of a sample.
+    /// Adds the comparison of a predicate.
     std::string add_predicate(Index index) {
-        // The ranges follow from the rest, the inputs are those of the expression.
+        // The ranges follow from the rest, the inputs from the expression.
         const auto& [name, text, expression, comparison, threshold, delta, robustness, missing,
                      inputs, span] = model_.predicates[index];
         add_expression(expression);
@@ -183,7 +183,7 @@ private:
         return add("predicate " + model_.predicates[index].shown(), std::move(all));
     }
 
-    /// What says when it holds: that is so of truths, not of what a truth compares.
+    /// Adds the source of a predicate's labels.
     std::string add_truth(Index of) {
         const std::string key = "truth " + model_.predicates[of].shown();
         for (const Truth& truth : model_.truths) {
@@ -200,8 +200,7 @@ private:
         return atoms == Atoms::compared ? add_predicate(predicate) : add_truth(predicate);
     }
 
-    /// Of all that the formula consists of, lets written out, each part once; what its atoms read
-    /// is added.
+    /// Hashes a formula with its lets written out, each part once, and adds what its atoms read.
     std::string hash_of(Index root, Atoms atoms) {
         std::vector<Index> parts = parts_of(model_, root);
         std::reverse(parts.begin(), parts.end());  // operands first
@@ -223,7 +222,7 @@ private:
     }
 
     const Model& model_;
-    /// Of a key one; should two things ever have a name in common, none hides the other.
+    /// Texts by key, one each; if two things ever have the same key, both are kept.
     std::map<std::string, std::set<std::string>> texts_;
 };
 

@@ -1,6 +1,6 @@
-// A model whose numbers may change while its monitors run: --retargetable. What cannot change
-// between steps is refused; predicates may have any robustness, so bounds rest on no number; every
-// predicate has a name, so nothing is named after one.
+// --retargetable: makes a model whose numbers may change while its monitors run. What cannot change
+// between steps is refused; predicates may have any robustness, so bounds depend on no number; all
+// predicates get names that contain no numbers.
 #include <fmt/format.h>
 
 #include <set>
@@ -31,7 +31,7 @@ void refuse_what_cannot_change(Context& c) {
                    "beginning");
 }
 
-/// All that stand as fields, or parts of function names, beside predicates.
+/// Returns the names of fields, and of parts of function names, beside predicates.
 std::set<std::string> names_of(const Model& model) {
     std::set<std::string> names;
     for (const Input& input : model.inputs) names.insert(input.name);

@@ -1,5 +1,4 @@
-// The thresholds file: an epsilon for every calibrated predicate, where the file was made for this
-// spec.
+// Reads the thresholds file, if it was made for this spec.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -33,14 +32,14 @@ std::vector<Index> calibrated_predicates(Context& c) {
     return found;
 }
 
-/// What calibration has not made yet: until then the threshold is NaN.
+/// Reports a missing calibration, which leaves the threshold NaN.
 diag::Diagnostic& report_missing(Context& c, Code code, Span span, std::string message) {
     diag::Diagnostic found{code, std::move(message), span};
     found.is_allowed = c.options.allow_missing;
     return c.sink.report(std::move(found));
 }
 
-/// Those given, or the file's; nothing, with a diagnostic, where there is none or it is damaged.
+/// Returns the given thresholds or those in the file; nothing after an error.
 std::optional<thresholds::File> read_thresholds(Context& c, const std::string& name,
                                                 const Threshold& first) {
     if (c.options.thresholds != nullptr) return *c.options.thresholds;
@@ -66,10 +65,10 @@ bool same_number(const std::string& a, const std::string& b) {
     return a.empty() || b.empty() ? a == b : Decimal::parse(a) == Decimal::parse(b);
 }
 
-/// What differs between the spec and what the entry was calibrated for, a sentence each.
+/// Lists the differences between the spec and what an entry was calibrated for.
 class Differences {
 public:
-    /// `what`: predicate or formula.
+    /// `what` is "predicate" or "formula".
     Differences(const Model& model, const std::string& name, const Threshold& threshold,
                 std::string_view what, Provenance now, const thresholds::Entry& entry)
         : model_(model),
@@ -107,7 +106,7 @@ private:
         return text;
     }
 
-    /// Another truth, or one in place of an array, or an array in place of one.
+    /// Adds a change of the truth, or between a truth and an array.
     void add_labels() {
         const std::string then = stated(entry_.truth);
         if (then == entry_.truth && !now_.truth.empty()) return add("truth", then, now_.truth);
@@ -119,7 +118,7 @@ private:
                                      labels(now_.truth)));
     }
 
-    /// Whatever nobody has words for.
+    /// Adds differences that have no words of their own.
     void add_read() {
         if (!entry_.reads.empty())
             found_ = differences(entry_.reads, now_.reads);
@@ -132,8 +131,7 @@ private:
     void add_changed(const std::map<std::string, std::string>& hashes) {
         for (const auto& [name, hash] : hashes) {
             const auto then = entry_.targets.find(name);
-            // A target that the entry does not know belongs to a predicate that has changed, which
-            // has been said.
+            // An unknown target belongs to a changed predicate, which has been reported.
             if (then == entry_.targets.end() && found_.empty())
                 found_.push_back(is_input(name)
                                      ? fmt::format("the declaration of '{}' changed", name)
@@ -144,9 +142,9 @@ private:
         }
     }
 
-    /// What the entry was calibrated with, and is no more.
+    /// Adds what the entry was calibrated with but the spec no longer uses.
     void add_gone() {
-        if (!found_.empty()) return;  // which has said so
+        if (!found_.empty()) return;  // already explained
         for (const auto& [name, hash] : entry_.targets)
             if (!now_.targets.contains(name) && !now_.truth_targets.contains(name))
                 found_.push_back(
@@ -181,8 +179,8 @@ private:
 
 constexpr std::string_view kAgain = "calibrate again with 'etlc calibrate'";
 
-/// The entry of that name; null, with a diagnostic, where there is none or it was calibrated for
-/// something else, which `differences` finds.
+/// Returns the entry of that name; null after an error, if it is missing or `differences` finds
+/// some.
 template <class Compare>
 const thresholds::Entry* find_entry(Context& c, const std::string& name, const Threshold& threshold,
                                     const std::string& path,
@@ -202,7 +200,7 @@ const thresholds::Entry* find_entry(Context& c, const std::string& name, const T
     return is_current ? &found->second : nullptr;
 }
 
-/// Says beside the guarantees that they are about other labels than the spec says.
+/// Records, beside the guarantees, that labels differed from the truths in the spec.
 void reserve(Context& c, const std::string& labels, const std::string& name) {
     if (labels != "array" && labels != stated(labels))
         c.model.reservations.push_back(
@@ -211,7 +209,7 @@ void reserve(Context& c, const std::string& labels, const std::string& name) {
                         name));
 }
 
-/// Takes epsilon, n and k; nothing, with a diagnostic, where the entry contradicts itself.
+/// Sets epsilon, n and k; reports an inconsistent entry.
 void take(Context& c, const thresholds::Entry& entry, const std::string& place,
           Threshold& threshold, bool upper_bound, const std::string& path,
           const std::vector<std::uint64_t>& episodes) {
@@ -325,7 +323,7 @@ void check_thresholds(Context& c) {
         c.model.reservations.push_back(thresholds::text(allowance));
     const std::size_t errors = c.sink.errors();
     for (const Index index : predicates) take_threshold(c, index, *file);
-    if (c.sink.errors() > errors) return;  // a monitor's shift is for the thresholds in it
+    if (c.sink.errors() > errors) return;  // shifts depend on the thresholds of predicates
     for (Monitor* monitor : monitors) take_shift(c, *monitor, *file);
 }
 

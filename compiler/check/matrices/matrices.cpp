@@ -20,7 +20,7 @@ std::string origin_of(const ast::Load& load) {
     return load.key.empty() ? load.path : load.path + ":" + load.key;
 }
 
-/// Whether the array can be a matrix; else a diagnostic.
+/// Reports an array that cannot be a matrix.
 bool has_usable_shape(Context& c, const data::Array& array, const ast::Load& load) {
     const std::string origin = origin_of(load);
     if (array.element == data::Element::boolean) {
@@ -53,7 +53,7 @@ bool has_usable_shape(Context& c, const data::Array& array, const ast::Load& loa
     return true;
 }
 
-/// Rounds the values to float32; false, with a diagnostic, at the first that is not finite then.
+/// Rounds the values to float32; false after an error at the first that is not finite.
 bool round_values(Context& c, const data::Array& array, const ast::Load& load, Matrix& matrix) {
     matrix.values.reserve(array.values.size());
     for (std::size_t i = 0; i < array.values.size(); ++i) {
@@ -86,14 +86,14 @@ std::optional<Matrix> read_file(Context& c, const ast::Load& load, const std::st
     matrix.rows = matrix.one_dimensional ? 1 : static_cast<std::uint32_t>(array->shape[0]);
     matrix.columns = static_cast<std::uint32_t>(array->shape.back());
     if (!round_values(c, *array, load, matrix)) return std::nullopt;
-    array->values = {};  // of a large set twice what is kept
+    array->values = {};  // saves memory for large sets
     matrix.origin = origin_of(load);
     matrix.path = path;
     matrix.hash = data::content_hash({matrix.rows, matrix.columns}, matrix.values);
     return matrix;
 }
 
-/// Only what was read without a finding is known.
+/// Only files without errors are cached.
 std::optional<Matrix> known_or_read(Context& c, const ast::Load& load, const std::string& path) {
     if (c.known == nullptr) return read_file(c, load, path);
     std::error_code error;

@@ -1,5 +1,5 @@
-// Canonical text of formulas and expressions: symbols, and parentheses only where the grammar needs
-// them.
+// Prints formulas and expressions as canonical text with symbols, and parentheses only where the
+// grammar needs them.
 #include <string_view>
 #include <unordered_map>
 
@@ -15,7 +15,7 @@ using Kind = Formula::Kind;
 
 class Phrases {
 public:
-    /// `let_names` stand for formulas below the root.
+    /// `let_names` replace formulas below the root.
     Phrases(const Model& model, Index root, std::unordered_map<Index, std::string> let_names = {})
         : model_(model), root_(root), let_names_(std::move(let_names)) {}
 
@@ -47,7 +47,7 @@ private:
         return op == nullptr || let_name(index) != nullptr ? ast::kAtom : op->level;
     }
 
-    /// The loosest operator that an operand may have without parentheses.
+    /// Returns the loosest operator that an operand may have without parentheses.
     static int weakest(ast::FormulaLevel level, bool first) {
         if (level == ast::kPrefix) return level;
         const bool left_associative = level == ast::kIff;

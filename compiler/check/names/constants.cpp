@@ -1,7 +1,5 @@
-// Constants: what each is worth, from the spec or from outside, put in place of its name.
-// Takes: the tree, and settings. Gives: a tree whose numbers are numbers, each with the name that
-// stood for it. Keeps true: a declaration whose constant is unknown or does not fit is taken as
-// unreadable, so that one error makes no others.
+// Replaces constants by their values, from the spec or from --set. A declaration with an unknown or
+// unsuitable constant counts as unreadable, so that one error causes no others.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -30,7 +28,7 @@ std::string text_of(const Setting& setting) {
     return fmt::format("--set {}={}{}", setting.name, setting.number, setting.unit);
 }
 
-/// Puts the settings into the declarations of constants.
+/// Sets constants from --set.
 void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
     for (const Setting& setting : c.options.settings) {
         const auto named = [&](const ast::Constant* k) { return k->name.text == setting.name; };
@@ -58,13 +56,13 @@ void take_settings(Context& c, const std::vector<ast::Constant*>& constants) {
     }
 }
 
-/// Replaces the constants of one declaration.
+/// Replaces the constants in one declaration.
 class Replacement {
 public:
     Replacement(Context& context, const std::vector<ast::Constant*>& constants)
         : c_(context), constants_(constants) {}
 
-    /// False where one is unknown or does not fit, which is reported.
+    /// Returns false after an error.
     bool in(ast::Declaration& declaration) {
         good_ = true;
         std::visit([this](auto& d) { this->replace(d); }, declaration);
@@ -111,7 +109,7 @@ private:
         if (constant != nullptr && has_no_unit(*constant, number.span)) set(number, *constant);
     }
 
-    /// A time: its unit is that of the constant, or stands behind it.
+    /// Replaces a time; the constant has a unit, or one follows it.
     void replace(ast::Number& number, std::string& unit) {
         const ast::Constant* constant = value_of(number);
         if (constant == nullptr) return;
@@ -236,11 +234,11 @@ void set_constants(Context& c, ast::Spec& spec) {
         c.incomplete = true;
         return true;
     };
-    // Behind this, `constants` points to nothing.
+    // `constants` is invalid from here on.
     spec.declarations.erase(
         std::remove_if(spec.declarations.begin(), spec.declarations.end(), is_broken),
         spec.declarations.end());
-    c.scope = {};  // declare_names makes it of the declarations that are left
+    c.scope = {};  // declare_names builds it from the remaining declarations
 }
 
 }  // namespace etlc::check

@@ -1,4 +1,4 @@
-// Which names there are, whether they can be borne, and what a name or a number in the spec means.
+// Declares and resolves names, and checks whether they may be used.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,7 +26,7 @@ void check_spelling(Context& c, const ast::Name& name, std::string_view kind, bo
             c.report(Code::forbidden_name, name.span, fmt::format("'{}' {}", name.text, *why));
         return suggest(c, error, allowed_name(name.text, kind, is_namespace), is_namespace);
     }
-    // Programs write these names; all others stand in generated code alone.
+    // Programs write these names; all others occur only in generated code.
     const bool is_written = kind == "spec" || kind == "input" || kind == "monitor";
     const auto header = macro_elsewhere(name.text);
     if (!header || !is_written) return;
@@ -57,7 +57,7 @@ void declare_all(Context& c) {
         if (c.scope.find(name.text) == nullptr) c.scope.declare(NameKind::unreadable, name);
 }
 
-/// What stands in the place of a name that other languages have: TRUE, infinity; Gp for G p. Empty:
+/// Returns the replacement for a name known from other languages (TRUE, infinity; G p for Gp), or
 /// nothing.
 std::string meant_by(const Context& c, std::string_view name, const std::vector<NameKind>& kinds) {
     std::string lower(name);

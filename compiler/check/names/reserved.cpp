@@ -25,12 +25,12 @@ constexpr std::array kKeywords = std::to_array<std::string_view>({
     // clang-format on
 });
 
-/// What fields of the generated structs are made of.
+/// Names used in the fields of generated structs.
 constexpr std::array kGenerated =
     std::to_array<std::string_view>({"etlmon", "int16_t", "int32_t", "int64_t", "int8_t", "size_t",
                                      "std", "uint16_t", "uint32_t", "uint64_t", "uint8_t"});
 
-/// Macros of compilers and of the C and POSIX headers that are not in capitals.
+/// Macros of compilers and of C and POSIX headers that are not in capitals.
 constexpr std::array kMacros = std::to_array<std::string_view>({
     // clang-format off
     "AF_DECnet", "B0", "B1000000", "B110", "B115200", "B1152000", "B1200", "B134", "B150",
@@ -55,8 +55,8 @@ struct Elsewhere {
     std::vector<std::string_view> names;
 };
 
-/// Macros of platforms that stand for something else than a name, without those in capitals and
-/// those that take arguments.
+/// Macros of platforms that are not defined as names, without those in capitals and those with
+/// arguments.
 const std::vector<Elsewhere>& elsewhere() {
     static const std::vector<Elsewhere> all{
         {"<X11/X.h>",
@@ -72,17 +72,17 @@ const std::vector<Elsewhere>& elsewhere() {
     return all;
 }
 
-/// The controls of dialogs in <windows.h>: rad1, grp2, ...
+/// Controls of dialogs in <windows.h>: rad1, grp2, ...
 constexpr std::array kControls = std::to_array<std::string_view>(
     {"chx", "cmb", "ctl", "edt", "frm", "grp", "ico", "lst", "psh", "rad", "rct", "scr", "stc"});
 
-/// Functions and types at global scope in the C library and POSIX: no namespace may bear their
-/// names. Derived from the headers by tests/spec/library_names_test.sh.
+/// Functions and types at global scope in the C library and POSIX, which no namespace may be named
+/// after. tests/spec/library_names_test.sh derives them from the headers.
 constexpr std::array kLibrary = std::to_array<std::string_view>({
 #include "check/names/library_names.inc"
 });
 
-// Searched by halves.
+// Required by binary search.
 static_assert(std::is_sorted(kKeywords.begin(), kKeywords.end()));
 static_assert(std::is_sorted(kGenerated.begin(), kGenerated.end()));
 static_assert(std::is_sorted(kMacros.begin(), kMacros.end()));
@@ -102,14 +102,13 @@ bool is_lower(char c) {
     return std::islower(static_cast<unsigned char>(c)) != 0;
 }
 
-/// NULL, FLT_MAX, SPI1, but not G1: a firmware's headers have thousands of them, which no list
-/// knows.
+/// NULL, FLT_MAX, SPI1, but not G1. Firmware headers have too many of them for a list.
 bool in_capitals(std::string_view name) {
     return std::count_if(name.begin(), name.end(), is_upper) > 1 &&
            std::none_of(name.begin(), name.end(), is_lower);
 }
 
-/// PRId32 of <inttypes.h>, M_PIf of <math.h>: not in capitals alone.
+/// PRId32 in <inttypes.h>, M_PIf in <math.h>: not only capitals.
 bool macro_family(std::string_view name) {
     return name.starts_with("PRI") || name.starts_with("SCN") || name.starts_with("M_");
 }

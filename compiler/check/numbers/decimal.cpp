@@ -22,8 +22,7 @@ std::int64_t parse_exponent(std::string_view text) {
     return negative ? -value : value;
 }
 
-/// Digits that a decimal keeps in front of or behind its point before it is written with an
-/// exponent.
+/// Limits on the digits before and after the point; longer numbers have an exponent.
 constexpr std::int64_t kPlainDigits = 21;
 constexpr std::int64_t kPlainZeros = 6;
 
@@ -39,7 +38,7 @@ Fit nearest(std::string_view text, T& value) {
         return Fit::overflow;
     }
     if (result.ec != std::errc() || value == 0) {
-        value = 0;  // also for -0, which no robustness tells from 0
+        value = 0;  // also for -0, which has the same robustness
         return exact.is_zero() ? Fit::fits : Fit::underflow;
     }
     return Fit::fits;
@@ -69,7 +68,7 @@ Decimal Decimal::parse(std::string_view text) {
 }
 
 Decimal Decimal::of(double value) {
-    std::array<char, 1200> buffer;  // 767 significant digits are the most that a double has
+    std::array<char, 1200> buffer;  // a double has at most 767 significant digits
     const auto end = std::to_chars(buffer.data(), buffer.data() + buffer.size(), value,
                                    std::chars_format::scientific, 800);
     return parse({buffer.data(), static_cast<std::size_t>(end.ptr - buffer.data())});

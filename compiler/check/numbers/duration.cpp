@@ -20,14 +20,14 @@ struct Fraction {
     std::int64_t exponent = 0;
 };
 
-/// In lowest terms, the power of ten aside.
+/// Reduces the fraction to lowest terms, apart from the power of ten.
 Fraction reduced(const Fraction& x) {
     Wide common = x.numerator;
     for (Wide rest = x.denominator; rest != 0;) common = std::exchange(rest, common % rest);
     return {x.numerator / common, x.denominator / common, x.exponent};
 }
 
-/// The quantity in s or Hz; its numerator is at most 60 x 10^18.
+/// Returns the quantity in s or Hz; its numerator is at most 60 x 10^18.
 Fraction fraction_of(const Quantity& q) {
     const std::uint64_t mantissa = std::strtoull(q.value.digits.c_str(), nullptr, 10);
     const int power = q.unit == "us" ? -6 : q.unit == "ms" ? -3 : 0;
@@ -35,7 +35,7 @@ Fraction fraction_of(const Quantity& q) {
             q.value.exponent - static_cast<std::int64_t>(q.value.digits.size()) + power};
 }
 
-/// `time` / `step`, or time x rate: products stay below 2^128.
+/// Returns `time` / `step`, or time x rate; products stay below 2^128.
 Fraction quotient(const Quantity& time, const Quantity& step) {
     const Fraction t = fraction_of(time);
     const Fraction s = fraction_of(step);
@@ -56,7 +56,7 @@ bool multiply(Wide& value, Wide factor) {
     return true;
 }
 
-/// The fraction as a decimal, where one of moderate length is equal to it.
+/// Returns an equal decimal of moderate length, if there is one.
 std::string decimal_text(Fraction x) {
     for (const auto& [divisor, cofactor] : {std::pair<Wide, Wide>{10, 1}, {2, 5}, {5, 2}})
         for (; x.denominator % divisor == 0; x.denominator /= divisor, --x.exponent)
@@ -65,7 +65,7 @@ std::string decimal_text(Fraction x) {
     return Decimal::parse(digits_of(x.numerator) + "e" + std::to_string(x.exponent)).text();
 }
 
-/// The fraction as "100/3", where its terms are of moderate length.
+/// Returns "100/3" if the terms have moderate length.
 std::string fraction_text(Fraction x) {
     if (std::abs(x.exponent) > 38) return {};
     for (; x.exponent != 0; x.exponent += x.exponent < 0 ? 1 : -1)
@@ -87,7 +87,7 @@ StepCount count_steps(const Quantity& duration, const Quantity& step) {
         if (x.numerator % 10 == 0)
             x.numerator /= 10;
         else if (!multiply(x.denominator, 10))
-            return {};  // a denominator that does not fit exceeds the numerator
+            return {};  // the denominator would exceed the numerator
     }
     const Wide floor = x.numerator / x.denominator;
     if (floor > kMaxBound) return {.too_many = true};

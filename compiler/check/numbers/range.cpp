@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-/// A real number: a double and the sign of what the double lacks of it.
+/// A real number as a double and the sign of its rounding error.
 struct Exact {
     double value;
     double rest = 0;
@@ -27,7 +27,7 @@ float up(Exact x) {
     return -down({-x.value, -x.rest});
 }
 
-/// Knuth's TwoSum: the rest is what rounding the sum lost.
+/// Knuth's TwoSum, which also returns the rounding error.
 Exact sum(float a, float b) {
     const double x = a, y = b, s = x + y;
     if (std::isinf(s)) return {s};
@@ -35,14 +35,14 @@ Exact sum(float a, float b) {
     return {s, (x - (s - y_part)) + (y - y_part)};
 }
 
-/// Exact in double. An infinite end stands for finite values without bound, so 0 x inf is 0.
+/// The product is exact in double. Infinite ends stand for unbounded finite values, so 0 x inf is
+/// 0.
 Exact product(float a, float b) {
     if (a == 0 || b == 0) return {0};
     return {static_cast<double>(a) * static_cast<double>(b)};
 }
 
-/// b is not 0. inf / inf stands for finite numbers over finite numbers: the other corners bound
-/// them.
+/// b is not 0. inf / inf stands for a quotient of finite numbers, which the other corners bound.
 Exact exact_quotient(float a, float b) {
     if (std::isinf(b)) return {0};
     const double x = a, y = b, q = x / y;
@@ -64,7 +64,7 @@ Range hull_of_corners(const Range& a, const Range& b, Operation operation) {
     return result;
 }
 
-/// A double and the sign of the error of its square, which is exact with fma.
+/// The error of the root has the sign of x - root^2, which fma computes exactly.
 Exact exact_root(float a) {
     const double x = a, root = std::sqrt(x);
     return {root, std::fma(-root, root, x)};

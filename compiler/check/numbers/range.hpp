@@ -1,8 +1,6 @@
-// Intervals of float32, and arithmetic on them, rounded outward.
-// Takes: the ranges of an operation's operands. Gives: a range that holds every result that the
-// operation can have on them in float32, whether each operation is rounded or two are fused. Keeps
-// true: low <= high, neither is a NaN; an operand outside a function's domain (sqrt of a negative
-// number) gives no result, so only the defined part counts.
+// Interval arithmetic on float32, rounded outward. The result contains every value that the
+// operation can have in float32, whether each operation is rounded or two are fused. low <= high,
+// and neither is NaN. Operands outside a function's domain (sqrt of negative numbers) do not count.
 #pragma once
 
 #include <limits>
@@ -10,7 +8,7 @@
 
 namespace etlc::check {
 
-/// Closed interval of float32 values, rounded outward from the decimal text.
+/// A closed interval of float32 values.
 struct Range {
     float low = -std::numeric_limits<float>::infinity();
     float high = std::numeric_limits<float>::infinity();
@@ -24,10 +22,10 @@ Range negate(const Range& a);
 Range add(const Range& a, const Range& b);
 Range subtract(const Range& a, const Range& b);
 Range multiply(const Range& a, const Range& b);
-/// Everything where the divisor can be zero.
+/// Returns everything if the divisor can be zero.
 Range divide(const Range& a, const Range& b);
 Range abs(const Range& a);
-/// Everything where no element of `a` has a square root.
+/// Returns everything if no element of `a` has a square root.
 Range sqrt(const Range& a);
 Range min(const std::vector<Range>& ranges);
 Range max(const std::vector<Range>& ranges);

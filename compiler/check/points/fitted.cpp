@@ -19,13 +19,13 @@ namespace {
 using diag::Code;
 using Slot = Fitted::Slot;
 
-/// What a method gives, and the numbers that it takes besides `of` and `where`.
+/// The result of a method, and its arguments besides `of` and `where`.
 struct Method {
     std::string_view word;
     FittedMethod method;
     Slot slot;
-    std::string_view count;  ///< k, rows of a target, or r, of a projection; empty: it has none
-    bool away = false;       ///< may be told how far from a change of `where` frames are taken
+    std::string_view count;  ///< k for rows of a target, r for those of a projection; or empty
+    bool away = false;       ///< accepts `away`
 };
 
 constexpr std::array kMethods = std::to_array<Method>({
@@ -61,7 +61,7 @@ const Method* find_method(Context& c, const ast::Name& name, Slot slot) {
     return nullptr;
 }
 
-/// How the method is written.
+/// Returns the form of the method.
 std::string form(const Method& method) {
     return fmt::format("fitted({}{}, of = POINT, where = FORMULA)", method.word,
                        method.count.empty() ? "" : fmt::format(", {} = 8", method.count));
@@ -72,7 +72,7 @@ public:
     FittedCheck(Context& context, const ast::Fitted& written, const Method& method)
         : c_(context), written_(written), method_(method) {}
 
-    /// Without its name and slot; nothing where an argument had an error.
+    /// Returns the element without name and slot; nothing after an error.
     std::optional<Fitted> run() {
         const std::size_t errors = c_.sink.errors();
         for (const ast::Fitted::Argument& argument : written_.arguments) take(argument);
@@ -166,8 +166,8 @@ private:
     std::set<std::string> given_;
 };
 
-// ---- the file beside the spec: an entry is taken only where it was fitted for what the spec says
-// now
+// ---- the file of fitted values
+// -------------------------------------------------------------------
 
 constexpr std::string_view kFitAgain = "fit again with 'etlc fit'";
 

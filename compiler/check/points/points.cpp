@@ -12,7 +12,7 @@ namespace {
 
 using diag::Code;
 
-/// One input of the point; kNone with a diagnostic where it does not fit.
+/// Returns one input of the point; kNone after an error.
 Index element(Context& c, const ast::Point& written, const ast::Name& name) {
     const Index index = resolve(c, name, NameKind::input);
     if (index == kNone) return kNone;

@@ -1,4 +1,4 @@
-// The projections: matrices that are loaded, spelled out or fitted.
+// Checks projections: matrices that are loaded, literal or fitted.
 #include <fmt/format.h>
 
 #include "check/context/context.hpp"
@@ -16,7 +16,7 @@ Span span_of(const ast::Projection::Numbers& numbers) {
     return std::visit([](const auto& n) { return n.span; }, numbers);
 }
 
-/// False, with a diagnostic, where the offset is no point that the projection takes.
+/// Sets the offset; false, with an error, if it does not fit the matrix.
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
     auto offset = read_matrix(c, written);
     if (!offset) return false;

@@ -1,4 +1,4 @@
-// AGG DIST(point, target).
+// Checks AGG DIST(point, target).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -17,11 +17,11 @@ namespace {
 
 using diag::Code;
 
-// ---- the weights of mahalanobis(M): a symmetric positive definite matrix, the inverse of a
-// covariance
+// ---- weights: a symmetric positive definite matrix, the inverse of a covariance
+// ------------------
 
-/// |W_ij - W_ji| may be this times sqrt(W_ii W_jj): float32 files of a symmetric matrix differ by
-/// rounding. The weights are then the mean of the two.
+/// Limit on |W_ij - W_ji| relative to sqrt(W_ii W_jj): symmetric matrices in float32 files differ
+/// by rounding. The weights are the mean of both.
 constexpr double kSymmetryTolerance = 1e-5;
 
 struct Weights {
@@ -30,12 +30,12 @@ struct Weights {
     std::string path;
     std::string text;  ///< canonical: a name, load("w.npy"), or the numbers of a small literal
     std::string hash;
-    Index fitted = kNone;  ///< of model.fitted
+    Index fitted = kNone;  ///< in model.fitted
 };
 
-/// A pivot below this times its diagonal element is rounding noise of the elimination.
+/// A smaller pivot, relative to its diagonal element, is a rounding error of the elimination.
 constexpr double kPivotTolerance = 1e-12;
-/// Longer literals appear in canonical text by their hash.
+/// Longer literals appear in canonical text as hashes.
 constexpr std::size_t kMaxSpelledOut = 16;
 
 std::string literal_text(const Matrix& matrix, const std::vector<std::vector<ast::Number>>& rows,
@@ -92,7 +92,7 @@ std::optional<Source> read_source(Context& c, const ast::Weights& weights) {
     return Source{std::move(*matrix), std::move(text)};
 }
 
-/// The first diagonal element that is not positive, or `n`.
+/// Returns the first diagonal element that is not positive, or `n`.
 std::size_t first_not_positive(const std::vector<float>& values, std::size_t n,
                                std::size_t stride) {
     std::size_t i = 0;
@@ -100,8 +100,8 @@ std::size_t first_not_positive(const std::vector<float>& values, std::size_t n,
     return i;
 }
 
-/// Replaces both halves by their mean; false, with a diagnostic, where they differ by more than
-/// rounding. The diagonal is positive.
+/// Replaces both halves by their mean; false, with an error, if they differ by more than rounding.
+/// The diagonal is positive.
 bool make_symmetric(Context& c, Matrix& w, Span span) {
     const std::size_t n = w.rows;
     for (std::size_t i = 0; i < n; ++i) {
@@ -123,8 +123,8 @@ bool make_symmetric(Context& c, Matrix& w, Span span) {
     return true;
 }
 
-/// Cholesky elimination in double on the upper half; the first row without a positive pivot, or the
-/// number of rows.
+/// Eliminates the upper half in double (Cholesky); returns the first row without a positive pivot,
+/// or the number of rows.
 std::size_t first_bad_pivot(const Matrix& w) {
     const std::size_t n = w.rows;
     std::vector<double> a(w.values.begin(), w.values.end());
@@ -162,7 +162,7 @@ bool check_definite(Context& c, Matrix& w, bool diagonal, Span span) {
     return false;
 }
 
-/// They are for distances between the points that they are fitted to.
+/// Fitted weights are for distances from the point that they were fitted to.
 std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, Index point) {
     const Index index = check_fitted(c, written, Fitted::Slot::metric);
     if (index == kNone) return std::nullopt;
@@ -184,8 +184,7 @@ std::optional<Weights> fitted_weights(Context& c, const ast::Fitted& written, In
     return weights;
 }
 
-/// The weights for distances from the model's `point`; nothing, with a diagnostic, where they do
-/// not fit.
+/// Returns the weights for distances from the model's `point`; nothing after an error.
 std::optional<Weights> check_weights(Context& c, const ast::Weights& weights, Index point,
                                      Span span) {
     if (const auto* fitted = std::get_if<ast::Fitted>(&weights))
@@ -210,7 +209,7 @@ std::optional<Weights> check_weights(Context& c, const ast::Weights& weights, In
                    std::move(w.hash)};
 }
 
-// ---- the distance
+// ---- distances ---------------------------------------------------------------------------------
 
 class DistanceCheck {
 public:
@@ -242,7 +241,7 @@ private:
 
     const Target& target() const { return c_.model.targets[distance_.target]; }
 
-    /// Takes the target's rows where the point is.
+    /// Uses the target's rows in the space of the point.
     bool set_space() {
         const Index there =
             target_in_space(c_, distance_.target, distance_.point,
@@ -279,7 +278,7 @@ private:
         return false;
     }
 
-    /// cosine and angular compare directions, and a zero vector has none.
+    /// cosine and angular compare directions, which a zero vector lacks.
     bool rows_have_directions() {
         if (!is_of_directions(distance_.metric) || target().values.empty()) return true;
         const std::size_t columns = target().dimension;
@@ -310,7 +309,7 @@ private:
         return true;
     }
 
-    /// Over one row every aggregation is the distance itself, so none is written then.
+    /// With a single row every aggregation is the distance itself, so the text has none.
     std::string canonical_text() {
         std::string text;
         if (target().rows == 1) {

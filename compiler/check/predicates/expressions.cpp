@@ -1,4 +1,4 @@
-// EXPR: scalars, numbers, aggregated distances and arithmetic on them.
+// Checks EXPR: scalars, numbers, aggregated distances and arithmetic.
 #include "check/predicates/predicates.hpp"
 
 #include <fmt/format.h>
@@ -75,7 +75,7 @@ std::optional<Expr> check_expression(Context& context, const ast::Expr& expressi
 
 namespace {
 
-/// What an aggregated distance can be: cosine [0, 2], angular [0, pi], the others [0, inf].
+/// Returns the range of a distance: [0, 2] for cosine, [0, pi] for angular, [0, inf] for others.
 Range range_of(Metric metric) {
     switch (metric) {
 #define DISTANCE(id, Type, prepared, zero_is_unknown) \

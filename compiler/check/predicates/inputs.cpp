@@ -1,4 +1,4 @@
-// What the monitor sees: types, ranges, hold.
+// Checks inputs: types, ranges, hold.
 #include <fmt/format.h>
 
 #include <cmath>
@@ -13,12 +13,12 @@ namespace {
 
 using diag::Code;
 
-/// Of an embedding: a float32 vector of this length is 4 MiB.
+/// An embedding of this dimension has 4 MiB in float32.
 constexpr std::uint32_t kMaxDimension = 1U << 20U;
-/// Steps for which a sample may stand in for later ones.
+/// Limit on the steps for which a sample may replace later ones.
 constexpr std::uint32_t kMaxHold = kMaxBound;
 
-/// Checks one declaration, whose names share everything but the name.
+/// Checks one declaration, whose names differ in nothing else.
 class InputCheck {
 public:
     InputCheck(Context& context, const ast::Input& declaration)
@@ -126,7 +126,7 @@ private:
                            shown(number), number.text.starts_with('-') ? "-" : ""));
     }
 
-    /// A comparison may be false where a sample is missing; a number has no such value.
+    /// Only bools have a value for missing samples; comparisons of numbers may have one.
     std::optional<bool> missing(InputType type) {
         if (declaration_.missing && type != InputType::boolean)
             report(Code::missing_form, declaration_.span,
@@ -139,7 +139,7 @@ private:
         if (!declaration_.hold) return 0;
         const ast::Bound& hold = *declaration_.hold;
         if (!is_duration(hold)) {
-            // A number alone has always been one of steps here: no bound that is perhaps seconds.
+            // A number without a unit has always meant steps here, never seconds.
             const auto steps = Decimal::parse(hold.number.text).whole(kMaxHold);
             if (!steps)
                 report(Code::hold_out_of_range, hold.span,
@@ -153,7 +153,7 @@ private:
         return steps.value_or(0);
     }
 
-    /// Of its inputs, which all have the dimension of what it gives.
+    /// All inputs of an encoder have the dimension of its embeddings.
     Index encoder(const Input& input) {
         if (!declaration_.encoder) return kNone;
         const Index index = resolve(c_, *declaration_.encoder, NameKind::encoder);

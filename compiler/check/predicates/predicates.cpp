@@ -26,9 +26,9 @@ std::optional<Threshold> literal_threshold(Context& c, const ast::Number& number
     return c.sink.errors() == errors ? std::optional(std::move(threshold)) : std::nullopt;
 }
 
-/// A distance is never below zero. In a difference of two a negative threshold has its sense.
+/// A distance is never negative, but a difference of two may be.
 bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
-    const bool negative = threshold.range().low < 0;  // not known of one that is not yet calibrated
+    const bool negative = threshold.range().low < 0;  // unknown before calibration
     if (expression.kind != Expr::Kind::distance || !negative) return true;
     if (threshold.adaptation)
         c.report(Code::negative_threshold, threshold.span,
@@ -41,7 +41,7 @@ bool sign_fits(Context& c, const Expr& expression, const Threshold& threshold) {
     return false;
 }
 
-/// A number, with its sign where it has one.
+/// Returns a single number, with its sign.
 std::optional<ast::Number> lone_number(const ast::Expr& written) {
     if (written.kind == ast::Expr::Kind::number)
         return ast::Number{written.text, written.span, written.constant};
@@ -54,9 +54,9 @@ std::optional<ast::Number> lone_number(const ast::Expr& written) {
     return number;
 }
 
-/// What stands for "x CMP y" where both are numbers that change: x - y CMP 0.
+/// "x CMP y" with a number as y; if both change, it becomes x - y CMP 0.
 struct Sides {
-    std::optional<Expr> expression;  ///< nothing where a side had an error
+    std::optional<Expr> expression;  ///< empty after an error
     Comparison comparison;
     std::optional<Threshold> threshold;
 };
@@ -90,7 +90,7 @@ Sides sides(Context& c, const ast::Expr& left, Comparison comparison, const ast:
     return result;
 }
 
-/// A distance is hardly ever exactly equal to anything, and the rounding of its kernel decides.
+/// Distances are rounded by their kernels, so exact equality means nothing.
 bool can_be_equal(Context& c, const Predicate& predicate) {
     bool measures = false;
     for_each_distance(predicate.expression, [&](Index /*distance*/) { measures = true; });
@@ -102,7 +102,7 @@ bool can_be_equal(Context& c, const Predicate& predicate) {
     return false;
 }
 
-/// The predicate, or nothing where it had an error. `threshold` is absent where that had one.
+/// Returns the predicate, or nothing after an error.
 std::optional<Predicate> make_predicate(Context& c, Sides sides, Span span) {
     auto& expression = sides.expression;
     auto& threshold = sides.threshold;
@@ -143,7 +143,8 @@ Sides declared_sides(Context& c, const ast::Predicate& declaration) {
             check_calibrated(c, calibrated)};
 }
 
-/// epsilon - delta or delta - epsilon; and -inf or +inf, where a missing sample counts as that.
+/// Returns the range of epsilon - delta or delta - epsilon, extended by the value for missing
+/// samples.
 Range robustness_of(const Predicate& predicate) {
     if (std::isnan(predicate.threshold.value)) return kEverything;
     if (predicate.equality()) {
@@ -162,7 +163,7 @@ Range robustness_of(const Predicate& predicate) {
 
 }  // namespace
 
-/// A comparison by order changes its answer at most once along a range: the ends have all answers.
+/// The answer of an ordering changes at most once along a range, so the ends have all answers.
 std::optional<bool> Predicate::constant_answer() const {
     const Range epsilon = threshold.range();
     if (equality()) {
@@ -181,7 +182,7 @@ Index comparison_predicate(Context& c, const ast::Formula& comparison) {
     auto predicate = make_predicate(
         c, sides(c, *comparison.left, comparison.comparison, *comparison.right), comparison.span);
     if (!predicate) return kNone;
-    // Equal numbers may be written differently, and the text of the threshold is as written.
+    // Equal thresholds may be written differently.
     const std::string key = predicate->text + Decimal::parse(predicate->threshold.text).text();
     const auto [at, is_new] =
         c.predicate_of_text.try_emplace(key, static_cast<Index>(c.model.predicates.size()));

@@ -1,4 +1,4 @@
-// The target sets.
+// Checks target sets.
 #include <fmt/format.h>
 
 #include <limits>
@@ -37,7 +37,7 @@ std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
     return std::nullopt;
 }
 
-/// The rows of several places are one set.
+/// Appends rows from another source.
 bool append(Context& c, Matrix& all, Matrix rows, Span span) {
     if (rows.columns != all.columns) {
         c.report(Code::dimension_mismatch, span,
@@ -86,7 +86,7 @@ bool set_rows(Context& c, const ast::Target& declaration, Target& target) {
     return true;
 }
 
-/// `of P(z)`: the rows are in the space of P(z) as they are.
+/// `of P(z)`: the rows are in the space of P(z) already.
 bool set_space(Context& c, const ast::Point& written, Target& target) {
     const Index index = check_point(c, written);
     if (index == kNone) return false;

@@ -32,7 +32,7 @@ bool has_too_many_digits(Context& c, const ast::Number& number) {
     return true;
 }
 
-/// A period between a picosecond and about three years; the length of a step is also kept as a
+/// Accepts periods between a picosecond and about three years, since the length of a step is also a
 /// double.
 bool has_usable_length(Context& c, const ast::Rate& rate) {
     const double length = seconds(quantity(rate));
@@ -63,7 +63,7 @@ bool is_infinite(const ast::Bound& bound) {
     return bound.number.text == "inf" || bound.number.text == "-inf";
 }
 
-/// A bare 0 is zero steps and zero time alike.
+/// Whether the bound has no unit and needs none: inf, or 0, which is zero steps and zero time.
 bool has_no_unit_of_its_own(const ast::Bound& bound) {
     return is_infinite(bound) ||
            (bound.unit.empty() && Decimal::parse(bound.number.text).is_zero());
@@ -111,7 +111,7 @@ void report_not_whole(Context& c, const ast::Bound& bound, std::uint64_t below) 
                         rate_word(rate), written(rate.number), rate.unit));
 }
 
-/// The whole number of steps that a duration between two of them stands for.
+/// Rounds a duration that is not a whole number of steps.
 std::optional<std::uint32_t> rounded_steps(Context& c, const ast::Bound& bound,
                                            const StepCount& count) {
     const ast::Rate& rate = *c.step.rate;
