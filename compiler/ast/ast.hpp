@@ -82,6 +82,12 @@ struct Point {
     Span span;
 };
 
+/// Returns the span of the alternative that a variant holds.
+template <class... Alternatives>
+Span span_of(const std::variant<Alternatives...>& value) {
+    return std::visit([](const auto& v) { return v.span; }, value);
+}
+
 struct Formula;
 using FormulaPtr = std::unique_ptr<Formula>;
 

@@ -6,7 +6,7 @@
 #include <filesystem>
 
 #include "check/context/context.hpp"
-#include "check/encoders/settings.hpp"
+#include "check/encoders/encoders.hpp"
 #include "check/matrices/matrices.hpp"
 #include "data/files/file.hpp"
 #include "data/files/hash.hpp"
@@ -66,10 +66,6 @@ std::vector<std::string> changes(Context& c, Encoder encoder, const embedded::En
     if (now->settings != then.settings)
         found.push_back(then_and_now("the settings", then.settings, now->settings));
     return found;
-}
-
-Span span_of(const ast::Target::Source& source) {
-    return std::visit([](const auto& s) { return s.span; }, source);
 }
 
 /// Returns nothing after an error.

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <map>
 
-#include "check/encoders/marks.hpp"
+#include "check/encoders/encoders.hpp"
 #include "check/matrices/matrices.hpp"
 #include "check/numbers/decimal.hpp"
 #include "data/arrays/array.hpp"

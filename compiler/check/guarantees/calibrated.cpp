@@ -69,9 +69,8 @@ bool is_alpha(Context& c, const ast::Calibrated::Argument& argument) {
 }
 
 /// Checks that the arguments are those of the method, each at most once.
-bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& method) {
+void check_arguments(Context& c, const ast::Calibrated& written, const Method& method) {
     std::set<std::string_view> given;
-    const std::size_t errors = c.sink.errors();
     for (const ast::Calibrated::Argument& argument : written.arguments) {
         const std::string& key = argument.key.text;
         const auto& known = method.arguments;
@@ -84,14 +83,13 @@ bool arguments_fit(Context& c, const ast::Calibrated& written, const Method& met
             c.report(Code::calibration_argument, argument.key.span,
                      fmt::format("{} is given twice", key));
     }
-    return c.sink.errors() == errors;
 }
 
 /// Returns the text of alpha, empty for a method without; nothing after an error in an argument.
 std::optional<std::string> alpha_of(Context& c, const ast::Calibrated& written,
                                     const Method& method) {
     const std::size_t errors = c.sink.errors();
-    arguments_fit(c, written, method);
+    check_arguments(c, written, method);
     std::string alpha;
     for (const ast::Calibrated::Argument& argument : written.arguments)
         if (argument.key.text == "alpha" && !method.arguments.empty() && is_alpha(c, argument))
@@ -158,18 +156,12 @@ std::optional<MonitorCalibration> check_monitor_calibrated(Context& c,
             .note(fmt::format("expected {}", kMonitorForm));
         return std::nullopt;
     }
-    std::optional<Against> against;
-    ast::Calibrated rest = written;
-    std::erase_if(rest.arguments,
-                  [](const auto& argument) { return argument.key.text == "against"; });
+    const Method whole{method->name, method->origin, {"alpha", "against"}};
     const std::size_t errors = c.sink.errors();
-    for (const ast::Calibrated::Argument& argument : written.arguments) {
-        if (argument.key.text != "against") continue;
-        if (against)
-            c.report(Code::calibration_argument, argument.key.span, "against is given twice");
-        against = against_of(c, argument);
-    }
-    const auto alpha = alpha_of(c, rest, *method);
+    std::optional<Against> against;
+    for (const ast::Calibrated::Argument& argument : written.arguments)
+        if (argument.key.text == "against") against = against_of(c, argument);
+    const auto alpha = alpha_of(c, written, whole);
     if (!alpha || c.sink.errors() > errors) return std::nullopt;
     if (!against) {
         c.report(Code::calibration_argument, written.span,

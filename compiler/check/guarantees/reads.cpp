@@ -147,7 +147,7 @@ private:
         const auto& [point, target, metric, aggregation, kth, weights, weights_diagonal,
                      weights_fitted, weights_path, text, span] = model_.distances[index];
         std::string all = fmt::format("{} {} {} from {} to {}", word(aggregation), kth,
-                                      kMetricWords[static_cast<std::size_t>(metric)],
+                                      kMetrics[static_cast<std::size_t>(metric)].word,
                                       text_of(point), add_target(target));
         if (metric == Metric::mahalanobis)
             all += fmt::format(", {}{}{}", weights_diagonal ? "diagonal " : "", kHashed,

@@ -30,25 +30,21 @@ enum class Metric : std::uint8_t {
 #undef DISTANCE
 };
 
-/// The names of the metrics, in their order.
-inline constexpr std::array kMetricWords = std::to_array<std::string_view>({
-#define DISTANCE(id, Type, prepared, zero_is_unknown) #id,
+struct MetricRow {
+    std::string_view word;
+    bool is_of_directions;  ///< lengths do not count, and the zero vector has no direction
+};
+
+/// The rows of the metrics, in their order.
+inline constexpr std::array kMetrics = std::to_array<MetricRow>({
+#define DISTANCE(id, Type, prepared, zero_is_unknown) {#id, zero_is_unknown},
 #define DISTANCE_BY_WEIGHTS(...)
 #include "etlmon/distance/distances.def"
 #undef DISTANCE
 });
 
-/// Whether the metric compares directions: lengths do not count, and the zero vector has none.
 constexpr bool is_of_directions(Metric metric) {
-    switch (metric) {
-#define DISTANCE(id, Type, prepared, zero_is_unknown) \
-    case Metric::id:                                  \
-        return zero_is_unknown;
-#define DISTANCE_BY_WEIGHTS(...)
-#include "etlmon/distance/distances.def"
-#undef DISTANCE
-    }
-    return false;
+    return kMetrics[static_cast<std::size_t>(metric)].is_of_directions;
 }
 
 using Aggregation = ast::AggregationKind;

@@ -12,10 +12,6 @@ namespace {
 
 using diag::Code;
 
-Span span_of(const ast::Projection::Numbers& numbers) {
-    return std::visit([](const auto& n) { return n.span; }, numbers);
-}
-
 /// Sets the offset; false, with an error, if it does not fit the matrix.
 bool set_offset(Context& c, const ast::Projection::Numbers& written, Projection& projection) {
     auto offset = read_matrix(c, written);

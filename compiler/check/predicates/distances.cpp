@@ -232,9 +232,10 @@ public:
 private:
     void set_metric() {
         const auto* const found =
-            std::find(kMetricWords.begin(), kMetricWords.end(), written_.metric.text);
-        assert(found != kMetricWords.end());  // the grammar has no other
-        distance_.metric = static_cast<Metric>(found - kMetricWords.begin());
+            std::find_if(kMetrics.begin(), kMetrics.end(),
+                         [&](const MetricRow& row) { return row.word == written_.metric.text; });
+        assert(found != kMetrics.end());  // the grammar has no other
+        distance_.metric = static_cast<Metric>(found - kMetrics.begin());
     }
 
     std::uint32_t dimension() const { return c_.model.points[distance_.point].dimension; }

@@ -16,10 +16,6 @@ namespace {
 
 using diag::Code;
 
-Span span_of(const ast::Target::Source& source) {
-    return std::visit([](const auto& s) { return s.span; }, source);
-}
-
 std::optional<Matrix> rows_of(Context& c, const ast::Target::Source& source,
                               const ast::Target& target) {
     if (is_encoded(source)) return read_encoded(c, source, target.encoder);

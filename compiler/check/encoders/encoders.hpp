@@ -1,5 +1,6 @@
-// Preprocessing of images before a model, from a spec or from a .json file beside the model. A
-// setting is given once, or alike in both places.
+// Encoders: the preprocessing of images before their models, from a spec or from a .json file beside
+// the model, and whether embeddings in an episode were made by them. A setting is given once, or
+// alike in both places; an episode that does not name its encoder is accepted with a warning.
 #pragma once
 
 #include <optional>
@@ -31,5 +32,15 @@ std::string settings_path(const std::string& model_path);
 /// gets too. The caller sets kind and dimension. A failure is about the file `place`.
 diag::Result<embedded::Encoder> describe(Encoder& encoder, const std::string& model_path,
                                          std::string& place);
+
+/// Returns an error if the array was made by another encoder than the input's. `array` is the name
+/// of the input in the file.
+std::optional<diag::Failure> other_encoder(const Model& model, const Input& input,
+                                           const std::string& array, const embedded::Marks& marks);
+
+/// Whether the input has an encoder and the file does not name the encoder of the array.
+bool is_unmarked(const Input& input, const std::string& array, const embedded::Marks& marks);
+/// Adds notes to the warning about such an episode (W1001): its meaning, and how to keep the name.
+void explain_unmarked(diag::Diagnostic& warning);
 
 }  // namespace etlc::check
